@@ -12,11 +12,11 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file, written};
+use crate::output::{check_apart, check_place, image, style, to_stderr, to_stdout, write_file, written};
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::problem::Problem;
-use catchment::report::document::{Printed, Style, html, markdown, text};
+use catchment::report::document::{Described, Printed, Style, html, markdown, text};
 use catchment::report::figure::Picture;
 use catchment::report::folder::{Files, StudyFolder, encode};
 use catchment::report::json_schema;
@@ -31,18 +31,25 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// How a result is printed and stored.
+/// How a result is printed.
 #[derive(Debug, Args)]
-pub(crate) struct ResultArgs {
+pub(crate) struct PrintArgs {
     /// Print JSON, in D and radians
     #[arg(long, conflicts_with = "csv", help_heading = "Output")]
-    json: bool,
+    pub(crate) json: bool,
     /// Print the table for programs, in D and radians
     #[arg(long, help_heading = "Output")]
     csv: bool,
     /// End with exit code 1 unless this holds of the JSON report; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement, help_heading = "Output")]
-    require: Vec<Requirement>,
+    pub(crate) require: Vec<Requirement>,
+}
+
+/// How a result is printed and stored.
+#[derive(Debug, Args)]
+pub(crate) struct ResultArgs {
+    #[command(flatten)]
+    print: PrintArgs,
     /// Also write this: the ending of a file says what (.json, .csv, .md, .html, .txt, .png, .svg), a folder gets all of it
     #[arg(short, long, value_name = "PATH", value_hint = clap::ValueHint::AnyPath, help_heading = "Output")]
     output: Option<PathBuf>,
@@ -61,7 +68,7 @@ pub(crate) fn requirement(text: &str) -> Result<Requirement, String> {
 
 /// What a path receives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(crate) enum Kind {
     Json,
     Csv,
     Markdown,
@@ -97,6 +104,11 @@ impl Kind {
                 Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
             }
         }
+    }
+
+    /// By the ending of a path that receives the whole report as one text.
+    pub(crate) fn of_text(path: &Path) -> Option<Self> {
+        Self::of(path, false).ok().filter(|kind| !matches!(kind, Self::Csv | Self::Folder))
     }
 
     const fn is_picture(self) -> bool {
@@ -150,17 +162,8 @@ impl ResultArgs {
                 Some("leave it out, or give -o".to_owned()),
             ));
         }
-        self.check_requirements(report)?;
+        self.print.check(report)?;
         Ok(Output { args: self, file, figure, drawable })
-    }
-
-    fn check_requirements(&self, report: &str) -> Result<(), Failure> {
-        let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
-        for requirement in &self.require {
-            let tried = requirement.check(&schema, &[]);
-            tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
-        }
-        Ok(())
     }
 }
 
@@ -187,11 +190,8 @@ impl Output<'_> {
         let document = report.described();
         for (path, kind) in self.file.iter().chain(&self.figure) {
             let bytes = match kind {
-                Kind::Json => report.to_json()?.into_bytes(),
+                Kind::Json | Kind::Markdown | Kind::Html | Kind::Text => rendered(*kind, report, &document)?,
                 Kind::Csv => table(report)?,
-                Kind::Markdown => markdown(&document).into_bytes(),
-                Kind::Html => html(&document).into_bytes(),
-                Kind::Text => text(&document, Style::default()).into_bytes(),
                 Kind::Png | Kind::Svg => image(picture()?, kind.ending())?,
                 Kind::Folder => {
                     let folder = StudyFolder { path, name: B::KIND };
@@ -208,19 +208,55 @@ impl Output<'_> {
             };
             write_file(path, &bytes, self.args.force)?;
         }
-        if self.args.json {
+        self.args.print.print(report, &document)
+    }
+}
+
+impl PrintArgs {
+    /// Refuses requirements that no report of this kind answers.
+    fn check(&self, report: &str) -> Result<(), Failure> {
+        let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
+        for requirement in &self.require {
+            let tried = requirement.check(&schema, &[]);
+            tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+        }
+        Ok(())
+    }
+
+    /// Prints a report, and says which requirements it does not meet.
+    pub(crate) fn print<B: Printed + Serialize>(
+        &self,
+        report: &Envelope<B>,
+        document: &Described<'_>,
+    ) -> Result<ExitStatus, Failure> {
+        if self.json {
             to_stdout(&report.to_json()?)?;
-        } else if self.args.csv {
+        } else if self.csv {
             to_stdout(&String::from_utf8_lossy(&table(report)?))?;
         } else {
-            to_stdout(&text(&document, crate::output::style()))?;
+            to_stdout(&text(document, style()))?;
         }
-        let verdicts = report.verdicts(&self.args.require)?;
+        let verdicts = report.verdicts(&self.require)?;
         let unmet: Vec<String> =
             verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
         to_stderr(&unmet);
         Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
     }
+}
+
+/// A whole report as one text.
+pub(crate) fn rendered<B: Printed + Serialize>(
+    kind: Kind,
+    report: &Envelope<B>,
+    document: &Described<'_>,
+) -> Result<Vec<u8>, Failure> {
+    Ok(match kind {
+        Kind::Json => report.to_json()?,
+        Kind::Markdown => markdown(document),
+        Kind::Html => html(document),
+        _ => text(document, Style::default()),
+    }
+    .into_bytes())
 }
 
 /// The table of a report for programs.

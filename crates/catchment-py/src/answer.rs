@@ -5,7 +5,7 @@ use crate::refusal::Refusal;
 use crate::told::PNG_SCALE;
 use crate::work::{How, work};
 use catchment::report::figure::Drawn;
-use catchment::report::{Report, save, save_group, table};
+use catchment::report::{Report, save, save_group};
 use catchment::run::{self, Part, PartAnswer, Run};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -58,7 +58,7 @@ impl Answer {
 
     /// The report for eyes.
     fn table(&self) -> String {
-        table(&Report::of_answer(&self.inner))
+        Report::of_answer(&self.inner).table()
     }
 
     /// The code of every outcome, the first axis fastest: 1 aligned, 2 jammed, 3 missed, 4 undecided.

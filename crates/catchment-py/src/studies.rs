@@ -61,7 +61,7 @@ impl Problem {
             let settings = window::Settings { fixed, proportions, motions, seed, friction };
             let found = window::run(problem, &settings, exec)?;
             let report =
-                WindowReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));
+                WindowReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
             Told::new(report.to_json()?, report.table(), &report.records())
         })
     }
@@ -89,7 +89,7 @@ impl Problem {
                 jams::Settings { motions, seed, errors, examined: examine, friction, resolution, certified };
             let found = jams::run(problem, &settings, exec)?;
             let report =
-                JamsReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));
+                JamsReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
             let told = Told::new(report.to_json()?, report.table(), &report.records())?;
             told.with(figure::jams(&report.design, &report.found, problem.connector()))
         })

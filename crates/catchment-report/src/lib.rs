@@ -40,15 +40,13 @@ pub mod folder;
 pub mod gltf;
 mod hold;
 mod html;
-mod jams;
 pub mod json_schema;
 mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
 pub mod page;
 mod plan;
-mod resting;
-mod rests;
+mod run;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
@@ -65,12 +63,12 @@ mod trials;
 mod validation;
 mod version;
 pub mod vtk;
-mod window;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 mod zraa;
 
+use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
 use catchment_study::friction::Friction;
 
 pub use answer::{UnanswerableError, check_requirements};
@@ -93,15 +91,10 @@ pub use faces::{FacesBody, FacesError, FacesReport};
 pub use hold::{
     HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
 };
-pub use jams::{
-    ContactReport, ExaminedReport, ExtentReport, JamReport, JamsBody, JamsFound, JamsReport, PairReport,
-    WayOutReport,
-};
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
-pub use resting::{HeldReport, ThresholdsReport};
-pub use rests::{RestReport, RestsBody, RestsReport};
+pub use run::first_look;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
 pub use schema::{Report, RunBody};
@@ -115,7 +108,6 @@ pub use success::{
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};
-pub use table::{first_look, table, table_with};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
@@ -124,11 +116,16 @@ pub use validation::{
     TriedReport, ValidationBody, ValidationReport,
 };
 pub use version::{Version, VersionError};
-pub use window::{
-    CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
-    WorstReport,
-};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
+
+/// The places where motions rest that do not dock, with their head.
+pub type JamsReport = ReportOf<Jams>;
+
+/// The places where halves come to rest, with their head.
+pub type RestsReport = ReportOf<Rests>;
+
+/// The largest box of errors that all dock, with its head.
+pub type WindowReport = ReportOf<Window>;

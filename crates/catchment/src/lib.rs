@@ -61,7 +61,7 @@
 //! assert!(answer.onaa().is_some_and(|onaa| (onaa.edge - 0.3).abs() < 0.03));
 //!
 //! // 5. For people, in their own units.
-//! let table = report::table(&Report::of_answer(&answer));
+//! let table = Report::of_answer(&answer).table();
 //! assert!(table.contains("mm") && table.contains('°'), "{table}");
 //!
 //! // 6. Another method enters by the same door; its settings have names.

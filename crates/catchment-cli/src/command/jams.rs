@@ -2,19 +2,17 @@
 
 use super::run::resolution;
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::error_args::SpreadArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use catchment::landscape::Resolution;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{JamsReport, csv, figure};
-use catchment::run::jams::{Jams, Settings, run as find, run_for as find_for};
+use catchment::problem::Problem;
+use catchment::report::{JamsReport, figure};
+use catchment::run::jams::{Settings, run as find, run_for as find_for};
 use clap::Args;
-use std::time::Instant;
 
 /// Why it jams: where motions come to rest that do not dock, and the features that hold them there
 ///
@@ -29,8 +27,7 @@ use std::time::Instant;
     catchment jams design.toml --error-measured errors.csv\n  \
     catchment jams design.toml --require 'outcomes.jammed.share<=0.01'\n  \
     catchment jams design.toml --json | jq '.features[0]'\n\n\
-    -o writes .png and .svg (pictures), .csv (a line per contact of every jam) and .json. Lengths are in D and angles in \
-    radians in CSV and JSON.")]
+    CSV has a line per contact of every jam.")]
 pub(crate) struct JamsArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -55,40 +52,22 @@ pub(crate) struct JamsArgs {
     #[command(flatten)]
     errors: SpreadArgs,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
-    let problem = args.design.problem()?;
-    let settings = args.settings();
-    let spread = args.errors.spread(problem.design())?;
-    let form = Jams { expected: spread.as_ref().map(|_| [0; 4]), ..Jams::form(&settings) };
-    args.asked.check(&JamsReport::new(problem.design(), &form, Vec::new(), None))?;
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let found = match &spread {
-        Some(spread) => find_for(&problem, &settings, spread, &running.exec)?,
-        None => find(&problem, &settings, &running.exec)?,
+    let draw = |report: &JamsReport, problem: &Problem| {
+        Ok(figure::jams(&report.design, &report.result, problem.connector())?)
     };
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = JamsReport::new(problem.design(), &found, doubts, Some(timing));
-    match kind {
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(kind) => {
-            args.file.draw(kind, &figure::jams(&report.design, &report.found, problem.connector())?)?;
+    study(&args.design, &args.result, &args.exec, Some(draw), |problem, exec| {
+        let settings = args.settings();
+        match args.errors.spread(problem.design())? {
+            Some(spread) => Ok(find_for(problem, &settings, &spread, exec)?),
+            None => Ok(find(problem, &settings, exec)?),
         }
-        None => {}
-    }
-    args.asked.tell(&report, JamsReport::table)
+    })
 }
 
 impl JamsArgs {

@@ -2,17 +2,15 @@
 
 use super::run::resolution;
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::result_args::{ResultArgs, study};
 use catchment::landscape::Resolution;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{RestsReport, csv, figure};
-use catchment::run::rests::{Rests, Settings, run as find};
+use catchment::problem::Problem;
+use catchment::report::{RestsReport, figure};
+use catchment::run::rests::{Settings, run as find};
 use clap::Args;
-use std::time::Instant;
 
 /// Where a half rests under its load: every equilibrium, how it is held, and what it takes to leave
 ///
@@ -25,8 +23,7 @@ use std::time::Instant;
     catchment rests design.toml -o rests.png        each rest cut through its contacts, and in space\n  \
     catchment rests design.toml --require 'rests.0.depth_at_most_d>=0.1'\n  \
     catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'\n\n\
-    -o writes .png and .svg (pictures), .csv (a line per rest) and .json. Lengths are in D and angles in radians in CSV and JSON. Another direction \
-    of the load is another approach of the design.")]
+    CSV has a line per rest. Another direction of the load is another approach of the design.")]
 pub(crate) struct RestsArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -46,17 +43,12 @@ pub(crate) struct RestsArgs {
     #[arg(long)]
     certified: bool,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
-    let problem = args.design.problem()?;
     let settings = Settings {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
@@ -64,19 +56,8 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         resolution: args.resolution,
         certified: args.certified,
     };
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let found: Rests = find(&problem, &settings, &running.exec)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = RestsReport::new(problem.design(), &found, doubts, Some(timing));
-    args.asked.check(&report)?;
-    match kind {
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(kind) => args.file.draw(kind, &figure::rests(&report, problem.connector())?)?,
-        None => {}
-    }
-    args.asked.tell(&report, RestsReport::table)
+    let draw = |report: &RestsReport, problem: &Problem| Ok(figure::rests(report, problem.connector())?);
+    study(&args.design, &args.result, &args.exec, Some(draw), |problem, exec| {
+        Ok(find(problem, &settings, exec)?)
+    })
 }

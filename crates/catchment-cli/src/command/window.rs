@@ -1,21 +1,18 @@
 //! `catchment window`: the largest box of pose errors that all dock.
 
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::command::run::{LONG, time};
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr};
+use crate::output::to_stderr;
+use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{WindowReport, csv};
-use catchment::run::window::{Settings, Window, WindowError, run as find, seconds as expected};
+use catchment::run::window::{Settings, WindowError, run as find, seconds as expected};
 use clap::Args;
-use std::time::Instant;
 
 /// The window one may ship: the largest box of errors that all dock
 ///
@@ -51,41 +48,24 @@ pub(crate) struct WindowArgs {
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["csv", "json"])?;
-    let problem = args.design.problem()?;
-    let settings = args.settings(&problem)?;
-    let form = WindowReport::new(problem.design(), &Window::form(&problem), Vec::new(), None);
-    args.asked.check(&form)?;
-    let running = args.exec.start()?;
-    let seconds = expected(&problem, &settings) / running.exec.threads() as f64;
-    if seconds > LONG {
-        let free = problem.alignment().free.len();
-        to_stderr(&[format!(
-            "{free} errors on these halves: about {} (--motions N draws that many random poses)",
-            time(seconds)
-        )]);
-    }
-    let found = find(&problem, &settings, &running.exec).map_err(refused)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let objections = problem.objections();
-    let doubts = objections.iter().map(WarningReport::note).collect();
-    let report = WindowReport::new(problem.design(), &found, doubts, Some(timing));
-    match kind {
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
-        None => {}
-    }
-    args.asked.tell(&report, WindowReport::table)
+    study(&args.design, &args.result, &args.exec, None, |problem, exec| {
+        let settings = args.settings(problem)?;
+        let seconds = expected(problem, &settings) / exec.threads() as f64;
+        if seconds > LONG {
+            let free = problem.alignment().free.len();
+            to_stderr(&[format!(
+                "{free} errors on these halves: about {} (--motions N draws that many random poses)",
+                time(seconds)
+            )]);
+        }
+        find(problem, &settings, exec).map_err(refused)
+    })
 }
 
 impl WindowArgs {

@@ -73,6 +73,14 @@ pub enum Part {
     Paragraph(String),
 }
 
+impl Section {
+    /// Whether people see something of it.
+    pub fn is_shown(&self) -> bool {
+        let shown = |part: &Part| !matches!(part, Part::Table(table) if !table.is_shown());
+        self.title.is_some() || self.parts.iter().any(shown)
+    }
+}
+
 impl Document {
     /// Starts a section.
     pub fn section(&mut self, title: impl Into<Option<&'static str>>) -> &mut Self {

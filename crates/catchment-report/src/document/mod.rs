@@ -15,10 +15,11 @@ mod text;
 
 pub use html::html;
 pub use markdown::markdown;
-pub use text::{Style, text};
+pub use text::{Style, lines, text};
 
 use crate::envelope::{Body, Envelope};
 use crate::schema::{Timing, WarningReport};
+use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{Document, Subject, rounded};
 use serde::Serialize;
@@ -95,10 +96,19 @@ impl<T: Subject> Printed for OfDesign<T> {
 impl<B: Printed> Envelope<B> {
     /// The whole description, with title and warnings.
     pub fn described(&self) -> Described<'_> {
+        self.described_with(|_| None)
+    }
+
+    /// The same; beside a warning stands its advice in the words of `controls`: `--samples 4000`, where there is a command line.
+    pub fn described_with(&self, controls: impl Fn(Advice) -> Option<String>) -> Described<'_> {
+        let warning = |warning: &WarningReport| {
+            let advice = warning.warning.advice().and_then(&controls);
+            advice.map_or_else(|| warning.message.clone(), |words| format!("{} ({words})", warning.message))
+        };
         Described {
             title: self.body.title(),
             document: self.body.document(),
-            warnings: self.warnings.iter().map(|warning| warning.message.as_str()).collect(),
+            warnings: self.warnings.iter().map(warning).collect(),
         }
     }
 
@@ -121,7 +131,7 @@ pub struct Described<'a> {
     /// The document.
     pub document: Document,
     /// Warnings, a sentence or several each.
-    pub warnings: Vec<&'a str>,
+    pub warnings: Vec<String>,
 }
 
 /// The rows about a design that stand above every result.
@@ -169,7 +179,11 @@ pub(crate) mod tests {
         table.push(["yaw".into(), 12.0.into(), Cell::Empty, 2usize.into()]);
         document.table(table);
         document.section(None).paragraph("Every sampled pose of the window docks: 0 failures in 300 000 samples <95 % confidence> and so on to the end of a long line.");
-        Described { title: "peg | <socket>\u{1b}[2J", document, warnings: vec!["2 poses are undecided"] }
+        Described {
+            title: "peg | <socket>\u{1b}[2J",
+            document,
+            warnings: vec!["2 poses are undecided".to_owned()],
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A document as text, for terminals.
 
 use super::Described;
-use catchment_core::document::{Cell, Column, Part, Table};
+use catchment_core::document::{Cell, Column, Document, Part, Table};
 use catchment_core::terminal::printable;
 
 /// Columns before the value of a row: the indent, and the names.
@@ -51,22 +51,7 @@ pub fn text(described: &Described<'_>, style: Style) -> String {
     page.text.push_str(&style.painted(BOLD, &title));
     page.text.push('\n');
     page.line(&rule);
-    for (k, section) in described.document.sections.iter().enumerate() {
-        if k > 0 {
-            page.text.push('\n');
-        }
-        if let Some(title) = &section.title {
-            let title = style.painted(BOLD, &printable(title));
-            page.text.push_str(&format!("{INDENT}{title}\n"));
-        }
-        for part in &section.parts {
-            match part {
-                Part::Row { name, value } => page.row(name, value),
-                Part::Table(table) => page.table(table),
-                Part::Paragraph(text) => page.wrapped(INDENT, text),
-            }
-        }
-    }
+    page.document(&described.document);
     for warning in &described.warnings {
         page.text.push('\n');
         let start = page.text.len();
@@ -77,12 +62,38 @@ pub fn text(described: &Described<'_>, style: Style) -> String {
     page.text
 }
 
+/// The lines of a document without title and warnings.
+pub fn lines(document: &Document, style: Style) -> Vec<String> {
+    let mut page = Page { text: String::new(), style };
+    page.document(document);
+    page.text.lines().map(str::to_owned).collect()
+}
+
 struct Page {
     text: String,
     style: Style,
 }
 
 impl Page {
+    fn document(&mut self, document: &Document) {
+        for (k, section) in document.sections.iter().filter(|section| section.is_shown()).enumerate() {
+            if k > 0 {
+                self.text.push('\n');
+            }
+            if let Some(title) = &section.title {
+                let title = self.style.painted(BOLD, &printable(title));
+                self.text.push_str(&format!("{INDENT}{title}\n"));
+            }
+            for part in &section.parts {
+                match part {
+                    Part::Row { name, value } => self.row(name, value),
+                    Part::Table(table) => self.table(table),
+                    Part::Paragraph(text) => self.wrapped(INDENT, text),
+                }
+            }
+        }
+    }
+
     /// A line with what may be printed of `content`.
     fn line(&mut self, content: &str) {
         self.text.push_str(printable(content).trim_end());

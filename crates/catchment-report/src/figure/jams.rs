@@ -5,13 +5,13 @@ use super::plane::{Patch, Plane};
 use super::section::{Placement, View, describe};
 use super::solid::touching;
 use super::{FigureError, Picture};
-use crate::resting::{Told, words};
+use crate::RestsReport;
 use crate::text::{grouped, tenths};
-use crate::{ContactReport, JamReport, JamsFound, RestReport, RestsReport};
 use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
-use catchment_core::run::jams::Firmness;
+use catchment_core::run::jams::{FeatureContact, Firmness, Jam, Jams, contacts_in_words, lifted};
+use catchment_core::run::rests::RestPlace;
 use glam::{DMat3, DVec3};
 
 /// Jams that are drawn.
@@ -34,7 +34,7 @@ const TOP: f64 = 76.0;
 /// What a panel shows.
 struct Panel<'a> {
     head: String,
-    contacts: &'a [ContactReport],
+    contacts: &'a [FeatureContact],
     placement: Placement,
     /// Below what touches and where.
     tail: Vec<String>,
@@ -44,7 +44,7 @@ struct Panel<'a> {
 ///
 /// # Errors
 /// If nothing jams.
-pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result<Picture, FigureError> {
+pub fn jams(design: &Design, found: &Jams, connector: &Connector) -> Result<Picture, FigureError> {
     if found.jams.is_empty() {
         return Err(FigureError::Empty { what: "none of the poses jams" });
     }
@@ -65,17 +65,16 @@ pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result
     draw_all(design, connector, &story, &panels)
 }
 
-fn jam_panel<'a>(design: &Design, found: &JamsFound, number: usize, jam: &'a JamReport) -> Panel<'a> {
+fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> Panel<'a> {
     let tail = jam.examined.map(|examined| {
         let level = match examined.firmness {
             _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
             Firmness::Level => "near-level",
             firmness => firmness.name(),
         };
-        let lifted = |climb| Told::of(design).lifted(climb);
         let way = examined
             .way_out
-            .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(way.climb_at_most_d)));
+            .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(design, way.climb)));
         format!("{level}{way}")
     });
     Panel {
@@ -119,12 +118,12 @@ pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, Fig
     draw_all(&report.design, connector, &story, &panels)
 }
 
-fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestReport) -> Panel<'a> {
+fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestPlace) -> Panel<'a> {
     let docked = if rest.is_docked() { ", docked" } else { "" };
     let mut tail = Vec::new();
     if let Some(examined) = &rest.examined {
         tail.extend(examined.immobility.map(|held| held.words()));
-        tail.push(report.out(rest));
+        tail.push(report.way_out(&report.design, rest));
     }
     Panel {
         head: format!("rest {number}:  basin {} of the box{docked}", tenths(rest.of_box.share)),
@@ -164,7 +163,7 @@ fn draw(
     let placement = shown.placement;
     svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &shown.head);
     let mut lines: Vec<(&str, String)> = Vec::new();
-    for words in words(shown.contacts) {
+    for words in contacts_in_words(shown.contacts) {
         lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
     }
     let most = MOST_LINES + 1 - shown.tail.len().clamp(1, MOST_LINES);
@@ -198,7 +197,7 @@ fn draw(
     touching(svg, space, design, connector, &placement, &points)
 }
 
-fn patch(contact: &ContactReport, placed: (DMat3, DVec3)) -> Patch {
+fn patch(contact: &FeatureContact, placed: (DMat3, DVec3)) -> Patch {
     let points = contact.points_d.iter().copied().map(DVec3::from_array).collect();
     Patch::new(points, DVec3::from_array(contact.normal), placed)
 }
@@ -232,7 +231,7 @@ mod tests {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let found =
             run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
-        jams(problem.design(), &JamsFound::new(problem.design(), &found), problem.connector())
+        jams(problem.design(), &found, problem.connector())
     }
 
     #[test]
@@ -252,7 +251,7 @@ mod tests {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let settings = rests::Settings { motions: Some(400), ..rests::Settings::default() };
         let found = rests::run(&problem, &settings, &Exec::new()).unwrap();
-        let report = RestsReport::new(problem.design(), &found, Vec::new(), None);
+        let report = RestsReport::new(problem.design(), found, Vec::new(), None);
         let picture = super::rests(&report, problem.connector()).unwrap();
         look("rests", &picture);
         assert!(picture.svg().contains("immobile to first order"));

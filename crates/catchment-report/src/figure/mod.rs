@@ -112,7 +112,7 @@ pub use watersheds::watersheds;
 
 use super::schema::Interval;
 use super::text::percent;
-use super::{Report, table};
+use super::{Report, run};
 use catchment_core::merit::MeritError;
 
 /// Why a picture cannot be drawn.
@@ -165,8 +165,8 @@ impl Picture {
 /// by transport`.
 fn headline(report: &Report) -> String {
     let found = &report.acceptance;
-    let sum = table::sum(found);
-    let share = if table::upper_end(found).is_some() {
+    let sum = run::sum(found);
+    let share = if run::upper_end(found).is_some() {
         String::new()
     } else {
         format!("  ·  {} of the error box", percent(found.fraction))

@@ -64,7 +64,6 @@ mod tests {
     use super::super::testing::{corrected, look, pyramid, report_of};
     use super::*;
     use crate::schema::testing::{blob, design};
-    use crate::table;
     use catchment_core::acceptance::Outcome;
     use catchment_core::pose::DofSet;
 
@@ -102,6 +101,6 @@ mod tests {
         assert!(picture.svg().contains(told), "{}", picture.svg());
         assert!(picture.svg().contains("of this slice:") && picture.svg().contains("jammed 100 %"));
         assert!(picture.svg().contains("slice beside zero"));
-        assert!(table(&report).contains("AA (Sum)       10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
+        assert!(report.table().contains("AA (Sum)       10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
     }
 }

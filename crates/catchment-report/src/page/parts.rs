@@ -2,7 +2,8 @@
 
 use super::Page;
 #[cfg(feature = "zarr")]
-use crate::{JamsBody, WindowBody, WindowSection};
+use crate::document::OfDesign;
+use crate::schema::WindowSection;
 use crate::{JamsReport, Report, WindowReport};
 use catchment_core::acceptance::Acceptance;
 #[cfg(feature = "zarr")]
@@ -15,6 +16,7 @@ use catchment_core::method::Method;
 use catchment_core::problem::Problem;
 use catchment_core::run::Answer;
 use catchment_core::run::jams::{self, JamsError};
+use catchment_core::run::window::Window;
 use catchment_core::run::window::{self, WindowError};
 use catchment_study::planes;
 use serde_json::json;
@@ -83,9 +85,10 @@ impl Parts {
         let jams = report
             .jams
             .clone()
-            .map(|found| JamsReport::of(JamsBody { design: design(), found }, Vec::new(), None));
+            .map(|result| JamsReport::of(OfDesign { design: design(), result }, Vec::new(), None));
         let window = report.window.clone().map(|WindowSection { half_widths, found }| {
-            WindowReport::of(WindowBody { design: design(), window: half_widths, found }, Vec::new(), None)
+            let result = Window { window: half_widths, found };
+            WindowReport::of(OfDesign { design: design(), result }, Vec::new(), None)
         });
         Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })
     }
@@ -106,14 +109,14 @@ impl Parts {
         }
         if studies.jams {
             match jams::run(problem, &jams::Settings { friction, ..jams::Settings::default() }, exec) {
-                Ok(found) => self.jams = Some(JamsReport::new(design, &found, Vec::new(), None)),
+                Ok(found) => self.jams = Some(JamsReport::new(design, found, Vec::new(), None)),
                 Err(JamsError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no jams: {why}")),
             }
         }
         if studies.window {
             match window::run(problem, &window::Settings { friction, ..window::Settings::default() }, exec) {
-                Ok(found) => self.window = Some(WindowReport::new(design, &found, Vec::new(), None)),
+                Ok(found) => self.window = Some(WindowReport::new(design, found, Vec::new(), None)),
                 Err(WindowError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no window: {why}")),
             }

@@ -2,7 +2,6 @@
 //! [`Envelope`] of every report. The same run writes the same bytes but for `timing`.
 
 use super::envelope::{Body, Envelope};
-use super::{JamsFound, WindowSection};
 use catchment_core::acceptance::{Acceptance, Warning};
 use catchment_core::design::Design;
 use catchment_core::exec::Exec;
@@ -15,6 +14,8 @@ use catchment_core::merit::{MeritError, Merits};
 use catchment_core::method::certified::Certificate;
 use catchment_core::method::confluence::Joined;
 use catchment_core::pose::Dof;
+use catchment_core::run::jams::Jams;
+use catchment_core::run::window::{HalfWidths, Window, WindowDetails};
 use catchment_core::run::{Seating, Upright};
 use serde::{Deserialize, Serialize};
 
@@ -64,13 +65,31 @@ pub struct RunBody {
     pub joined: Option<Joined>,
     /// Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
     #[serde(default)]
-    pub jams: Option<JamsFound>,
+    pub jams: Option<Jams>,
     /// The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
     #[serde(default)]
     pub window: Option<WindowSection>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
+}
+
+/// A window in the report of a run: its half-widths by name beside everything else that was found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WindowSection {
+    /// ± so much of every free error, by its name, in D and radians.
+    #[serde(flatten)]
+    pub half_widths: HalfWidths,
+    /// The settings of the search and everything else that it found.
+    #[serde(flatten)]
+    pub found: WindowDetails,
+}
+
+impl From<&Window> for WindowSection {
+    fn from(window: &Window) -> Self {
+        Self { half_widths: window.window.clone(), found: window.found.clone() }
+    }
 }
 
 impl Body for RunBody {

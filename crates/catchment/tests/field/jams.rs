@@ -10,7 +10,7 @@ fn found(problem: &Problem, motions: usize) -> Jams {
 
 /// The pair of features that touches in most of the jams, the moving half's first, and in which share of them it does.
 fn foremost(found: &Jams) -> (String, f64) {
-    let pair = &found.pairs[0];
+    let pair = &found.features[0];
     let names = format!("{} on {}", pair.moving.name, pair.fixed.name);
     (names, pair.count as f64 / found.jammed() as f64)
 }
@@ -29,7 +29,7 @@ fn a_peg_stands_on_the_plate() {
     let (names, share) = foremost(&found);
     assert_eq!(names, "top on top");
     assert!(share > 0.8, "{share}");
-    assert_eq!(found.jams[0].examined.unwrap().held.firmness, Firmness::Level);
+    assert_eq!(found.jams[0].examined.unwrap().firmness, Firmness::Level);
 }
 
 /// Three balls in three grooves: a ball that misses its groove lies on the top of a block.
@@ -63,12 +63,12 @@ fn pointed_pins_stand_on_the_plate() {
     let problem = problem.with(design).unwrap();
     let found = found(&problem, 100);
     let named = |fixed: &str, moving: &str| {
-        found.pairs.iter().any(|pair| pair.fixed.name == fixed && pair.moving.name == moving)
+        found.features.iter().any(|pair| pair.fixed.name == fixed && pair.moving.name == moving)
     };
     assert!(
         named("flat", "corner of slopes of 45°") || named("corner of slopes of 45°", "flat"),
         "{:#?}",
-        found.pairs
+        found.features
     );
-    assert!(found.jams.iter().all(|jam| jam.above > 0.0));
+    assert!(found.jams.iter().all(|jam| jam.above_mated_d > 0.0));
 }

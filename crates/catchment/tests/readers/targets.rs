@@ -14,7 +14,7 @@ use catchment::poses::{
     Distribution, OffsetsAt, PoseTable, Spread, TriedTable, parse_draw, parse_pose, read_dynamics,
     read_robots,
 };
-use catchment::report::{Report, table};
+use catchment::report::Report;
 use catchment::run::Requirement;
 use std::path::Path;
 
@@ -282,7 +282,7 @@ pub(crate) fn report(bytes: &[u8]) {
         let again = report.to_json().expect("what was read has a JSON form");
         assert_eq!(Report::from_json(&again).expect("what was written is read"), report);
         if report.check().is_ok() {
-            assert!(!table(&report).chars().any(|c| c.is_control() && c != '\n'));
+            assert!(!report.table().chars().any(|c| c.is_control() && c != '\n'));
         }
     }
 }

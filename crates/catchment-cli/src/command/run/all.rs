@@ -39,14 +39,14 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         written(folder.path);
     }
     drop(running);
-    tell(&if args.json { json } else { report.table() }, &notes)
+    tell(&if args.print.json { json } else { report.table() }, &notes)
 }
 
 /// Options that are about one result.
 fn refuse_options(args: &RunArgs) -> Result<(), Failure> {
     let wrong = [
         ("--depth-tolerance", args.how.settings.depth_tolerance.is_some()),
-        ("--require", !args.require.is_empty()),
+        ("--require", !args.print.require.is_empty()),
         ("--jams", args.jams),
         ("--window", args.window),
         ("--figures", args.place.wants_figures_alone()),

@@ -14,13 +14,14 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
-use crate::output::{to_stderr, to_stdout};
+use crate::output::to_stderr;
+use crate::result_args::PrintArgs;
 use catchment::acceptance::Domain;
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, DofSet};
 use catchment::problem::Problem;
-use catchment::report::{self, Report, UnanswerableError, figure, first_look, table_with};
-use catchment::run::{Over, Plan, Requirement, Run, RunError, Sample, Upright};
+use catchment::report::{self, Report, UnanswerableError, figure, first_look};
+use catchment::run::{Over, Plan, Run, RunError, Sample, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
 
@@ -65,13 +66,8 @@ pub(crate) struct RunArgs {
     /// Also tell where poses jam and what touches there, the first few; `catchment jams` tells more
     #[arg(long)]
     jams: bool,
-    /// Print the report as JSON instead of the table
-    #[arg(long)]
-    json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "onaa.edge>=0.3" or "tolerances.x.plus>=2 mm"; may
-    /// be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = crate::asked::requirement)]
-    require: Vec<Requirement>,
+    #[command(flatten)]
+    print: PrintArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -102,7 +98,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         sample: args.sample.sample(),
         seed: args.sample.seed,
         errors: args.errors.distribution(problem.design())?,
-        requirements: args.require.clone(),
+        requirements: args.print.require.clone(),
         heights: targets.want_heights(),
         jams: args.jams,
         window: args.window,
@@ -141,23 +137,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     };
     let answer = run.on_with(&problem, &running.exec, first).map_err(|error| refused(&problem, error))?;
     let report = Report::of_answer(&answer);
-    let mut notes = targets.write(&answer, &running.exec)?;
+    let notes = targets.write(&answer, &report, &running.exec)?;
     drop(running);
-    let printed = if args.json {
-        to_stdout(&report.to_json()?)
-    } else {
-        to_stdout(&table_with(&report, advice::flags))
-    };
-    let verdicts = report.verdicts(&answer.run.requirements)?;
-    let status = if verdicts.iter().all(|verdict| verdict.met) {
-        printed?;
-        ExitStatus::Done
-    } else {
-        ExitStatus::RequirementNotMet
-    };
-    notes.extend(verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string));
+    let status = args.print.print(&report, &report.described_with(advice::flags));
     to_stderr(&notes);
-    Ok(status)
+    status
 }
 
 /// What takes longer than this is said before it begins, in seconds.

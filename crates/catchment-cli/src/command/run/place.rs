@@ -1,13 +1,15 @@
 //! Where the files of a run go.
 
+use crate::advice;
 use crate::failure::Failure;
-use crate::output::written;
+use crate::output::{check_place, write_file, written};
+use crate::result_args::{self, rendered};
 use catchment::exec::Exec;
 use catchment::report::figure::Drawn;
 use catchment::report::folder::{POSES, REPORT, RESULT, StudyFolder};
 use catchment::report::set::Kind;
 use catchment::report::write;
-use catchment::report::{self, Target};
+use catchment::report::{self, Report, Target};
 use catchment::run::Answer;
 use catchment::terminal::shown;
 use clap::Args;
@@ -17,12 +19,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
     /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group; NAME.vti, .vtp or .csv: only the set, for
-    /// ParaView or as a table (see `export`)
-    #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
+    /// ParaView or as a table (see `export`); NAME.json, .md, .html or .txt: only the report
+    #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
     pub(in crate::command) output: Option<PathBuf>,
     /// Write only the pictures into this folder
-    #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
+    #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
     figures: Option<PathBuf>,
+    /// Replace a report that exists
+    #[arg(long, requires = "output", help_heading = "Output")]
+    force: bool,
 }
 
 /// Where a path leads, however it is written; its end need not exist.
@@ -36,7 +41,11 @@ fn real(path: &Path) -> Result<PathBuf, Failure> {
 }
 
 /// Places that can be written, as far as can be known beforehand.
-pub(super) struct Targets<'a>(Vec<Target<'a>>);
+pub(super) struct Targets<'a> {
+    all: Vec<Target<'a>>,
+    /// A file for the report alone, and whether it may replace one.
+    report: Option<(&'a Path, result_args::Kind, bool)>,
+}
 
 impl PlaceArgs {
     /// Refuses places that cannot be written, before anything is computed.
@@ -51,14 +60,22 @@ impl PlaceArgs {
                 return Err(Failure::with_help(message.to_owned(), help));
             }
         }
-        let output = output.map(|path| match Kind::of(path) {
+        let report = output.and_then(|path| Some((path, result_args::Kind::of_text(path)?, self.force)));
+        if let Some((path, ..)) = report {
+            check_place(path, self.force)?;
+        } else if self.force {
+            let help =
+                "leave it out: a folder that this command wrote is replaced without it, and no other is";
+            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
+        }
+        let output = output.filter(|_| report.is_none()).map(|path| match Kind::of(path) {
             Some(kind) => Target::Set(path, kind),
             None if is_group(path) => Target::Group(path),
             None => Target::Folder(path),
         });
         let targets: Vec<Target> = figures.map(Target::Pictures).into_iter().chain(output).collect();
         targets.iter().try_for_each(|target| target.check(&Exec::new()))?;
-        Ok(Targets(targets))
+        Ok(Targets { all: targets, report })
     }
 
     /// Whether pictures alone are wanted.
@@ -77,7 +94,7 @@ impl PlaceArgs {
 impl Targets<'_> {
     /// Whether pictures are drawn.
     pub(super) fn draw(&self) -> bool {
-        self.0.iter().any(|target| !matches!(target, Target::Group(_) | Target::Set(..)))
+        self.all.iter().any(|target| !matches!(target, Target::Group(_) | Target::Set(..)))
     }
 
     /// Whether something is written that only a grid has.
@@ -86,19 +103,27 @@ impl Targets<'_> {
             Target::Group(_) | Target::Set(_, Kind::Image | Kind::Border) => true,
             Target::Folder(_) | Target::Pictures(_) | Target::Set(_, Kind::Table) => false,
         };
-        self.0.iter().any(needs)
+        self.all.iter().any(needs)
     }
 
     /// Whether the heights over the grid are written.
     pub(super) fn want_heights(&self) -> bool {
-        self.0.iter().any(|target| !matches!(target, Target::Pictures(_)))
+        self.all.iter().any(|target| !matches!(target, Target::Pictures(_)))
     }
 
     /// Writes everything and says what was written.
-    pub(super) fn write(&self, answer: &Answer, exec: &Exec) -> Result<Vec<String>, Failure> {
+    pub(super) fn write(
+        &self,
+        answer: &Answer,
+        report: &Report,
+        exec: &Exec,
+    ) -> Result<Vec<String>, Failure> {
         let drawn = if self.draw() { Drawn::of(answer, exec)? } else { Drawn::default() };
         let mut notes = drawn.left_out.clone();
-        for target in &self.0 {
+        if let Some((path, kind, replace)) = self.report {
+            write_file(path, &rendered(kind, report, &report.described_with(advice::flags))?, replace)?;
+        }
+        for target in &self.all {
             notes.push(match target {
                 Target::Pictures(path) => {
                     let saved = report::save_pictures(path, &drawn, exec)?;

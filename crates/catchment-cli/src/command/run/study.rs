@@ -111,6 +111,6 @@ impl Told {
             written(folder.path);
         }
         drop(running);
-        tell(if args.json { &self.json } else { &self.table }, &notes)
+        tell(if args.print.json { &self.json } else { &self.table }, &notes)
     }
 }

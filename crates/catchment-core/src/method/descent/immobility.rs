@@ -77,18 +77,20 @@ impl Order {
     }
 }
 
-/// How a rest is held.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// By which order a rest is held (Rimon and Burdick).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Immobility {
-    /// By which order.
+    /// `first`, `second`, `neutral` or `unstable`.
     pub order: Order,
-    /// From where to where the least slope lies, D per D: equal where it is exact; 0 where first order does not hold.
+    /// From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion; 0 where first order does not hold.
     pub slope: [f64; 2],
-    /// Independent directions that first order leaves free.
+    /// Independent directions that are free to first order.
     pub free: usize,
-    /// The least curvature of the height among them, per D: pushed by s it rises by half of it times s². None where none is free.
+    /// The least curvature of the height among them, per D: pushed by s it rises by half of it times s². Null where none is free.
+    #[serde(rename = "curvature_per_d")]
     pub curvature: Option<f64>,
-    /// The direction of that, as D and radians; nothing where none is free.
+    /// The direction of that: offsets in D and turns in radians; 0 where none is free.
     pub weakest: PoseError,
 }
 

@@ -24,15 +24,17 @@ use super::{MOST_FRICTION as MOST, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Pair};
 use crate::pose::PoseError;
+use serde::{Deserialize, Serialize};
 
-/// The friction from which on a half sticks where it touches.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// From which friction on a half may stick where it touches, by Coulomb's law.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sticking {
-    /// From this friction on some force holds it; `None`: at none.
+    /// From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
     pub holds_from: Option<f64>,
-    /// Up to this friction there is a way to slip; `None`: at any.
+    /// Up to this friction there is a way to slip; null: at any.
     pub slips_until: Option<f64>,
-    /// From this friction on it wedges: some force would hold it against a pull straight out as well; `None`: at none.
+    /// From this friction on it wedges, and may hold against a pull straight out as well; null: at none.
     pub wedges_from: Option<f64>,
 }
 

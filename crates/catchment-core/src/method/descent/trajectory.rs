@@ -3,13 +3,18 @@
 use crate::acceptance::Outcome;
 use crate::pose::PoseError;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// A point where the halves touch.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Touch {
     /// Where, in the world frame, in D.
+    #[serde(rename = "point_d")]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub point: DVec3,
     /// Unit normal, from the fixed half to the moving one.
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub normal: DVec3,
 }
 

@@ -3,7 +3,7 @@
 //! On a grid: how high water must stand above a rest to run over into any other basin. Passes go from centre to centre of neighbouring cells, so that such a depth is a
 //! bound from neither side: it comes near as the grid becomes finer, and sees every way, also bent ones. By boxes ([`crate::method::certified`]): a bound that holds for all ways.
 
-use super::Jam;
+use super::RestGroup;
 use crate::exec::Exec;
 use crate::landscape::{Landscape, Resolution, ResolutionError};
 use crate::method::certified::{self, CertifiedError};
@@ -40,7 +40,7 @@ pub(in crate::run) fn check(problem: &Problem, certified: bool, friction: f64) -
 /// Tells places of rest the depths that are asked for: of all by a grid, of those that were examined at least.
 pub(in crate::run) fn tell(
     problem: &Problem,
-    mut places: Vec<&mut Jam>,
+    mut places: Vec<&mut RestGroup>,
     resolution: Option<&Resolution>,
     certified: bool,
     exec: &Exec,
@@ -58,7 +58,7 @@ pub(in crate::run) fn tell(
 }
 
 /// Pose errors and heights of places of rest.
-fn at(places: &[&mut Jam]) -> Vec<(PoseError, f64)> {
+fn at(places: &[&mut RestGroup]) -> Vec<(PoseError, f64)> {
     places.iter().map(|place| (place.pose, place.height)).collect()
 }
 

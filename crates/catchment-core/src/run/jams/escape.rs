@@ -19,6 +19,7 @@ use crate::method::descent::{self, Follower};
 use crate::pose::{CorPose, PoseError, angle_between, step_length};
 use crate::tolerance;
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 /// How closely a way is looked at, in the metric of the motion, in D.
 const STEP: f64 = 0.02;
@@ -40,15 +41,18 @@ const OPEN: f64 = tolerance::TOUCHING;
 const LOWER: f64 = 1e-5;
 
 /// A way out of a jam.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WayOut {
-    /// How far it climbs above the rest, in D: at most so much is needed to get out.
+    /// How far the half must be lifted to get out, at most, in D.
+    #[serde(rename = "climb_at_most_d")]
     pub climb: f64,
-    /// What becomes of the half beyond: docked, off, or a rest that is lower.
+    /// Its outcome then: docked, off, or a rest that is lower.
     pub to: Outcome,
     /// The pose error from which motion leads there.
     pub over: PoseError,
     /// Where that ends.
+    #[serde(skip)]
     pub end: PoseError,
 }
 

@@ -58,13 +58,13 @@ impl Firmness {
 
 /// How firmly a half rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Held {
+pub(in crate::run) struct Held {
     /// In a word.
-    pub firmness: Firmness,
+    pub(in crate::run) firmness: Firmness,
     /// Least rise found of the COR when pushed by [`PUSH`], in D; none where walls stop it all around.
-    pub rise: Option<f64>,
+    pub(in crate::run) rise: Option<f64>,
     /// The direction of that push: offset of the COR in D and turns in radians, per error; 0 where walls stop it.
-    pub weakest: PoseError,
+    pub(in crate::run) weakest: PoseError,
 }
 
 /// What becomes of the height aside of a rest.

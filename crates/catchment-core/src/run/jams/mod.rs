@@ -25,22 +25,26 @@ mod draw;
 pub(super) mod escape;
 mod firmness;
 pub(super) mod images;
+mod report;
 pub(super) mod rests;
 #[cfg(test)]
 mod tests;
+pub(super) mod words;
 
 pub use depth::DepthError;
 pub use escape::WayOut;
-pub use firmness::{Firmness, Held};
+pub use firmness::Firmness;
+pub use words::{contacts_in_words, lifted};
 
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Side;
 use crate::contact::{FeatureKind, Features};
+use crate::document::Share;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Resolution;
 use crate::method::Decide;
 use crate::method::descent::{self, FrictionOutOfRange, Immobility, Sticking};
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use crate::poses::{Distribution, Spread};
 use crate::problem::Problem;
 use clusters::Cluster;
@@ -89,59 +93,82 @@ impl Default for Settings {
 /// How far a half is pushed aside to see how much it rises, in the metric of the motion, in D.
 pub const PUSH: f64 = 0.01;
 
-/// The jams of a problem.
-#[derive(Debug, Clone, PartialEq)]
+/// Where motions rest that do not dock.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Jams {
-    /// How it was asked for, everything filled in.
+    /// The settings, everything filled in.
     pub settings: Settings,
-    /// Random poses of the error box by their outcomes, in the order of [`Outcome::ALL`].
-    pub counts: [usize; 4],
-    /// The same of poses drawn from the errors that a robot makes.
-    pub expected: Option<[usize; 4]>,
-    /// The table that those come from, where they were measured.
+    /// Random poses of the error box that were followed.
+    pub motions: usize,
+    /// Their outcomes.
+    pub outcomes: BTreeMap<Outcome, Share>,
+    /// The same of poses drawn from the errors that a robot makes; null where none were given.
+    pub expected: Option<BTreeMap<Outcome, Share>>,
+    /// The table that those poses come from; null where they were not measured.
+    #[serde(default)]
     pub measured: Option<String>,
-    /// Where they jam, the jam with most of them first.
+    /// The jams, the one with most of the poses first.
     pub jams: Vec<Jam>,
     /// Which pairs of features touch in jams, the one that does so most often first.
-    pub pairs: Vec<Touching>,
+    pub features: Vec<JammingPair>,
 }
 
 /// A place, or places alike, where halves come to rest that do not dock.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Jam {
-    /// Random poses of the error box that end here.
-    pub count: usize,
-    /// Poses drawn from the errors that a robot makes that end here.
-    pub expected: Option<usize>,
-    /// The rest in its middle: the pose error.
+    /// How many poses of the error box end here, and which share that is.
+    pub of_box: Share,
+    /// Their share of the poses that jam.
+    pub of_jams: f64,
+    /// Their share of the poses that do not dock.
+    pub of_failures: f64,
+    /// The same of the errors that a robot makes; null where none were given.
+    pub expected: Option<Share>,
+    /// The pose error of the rest in its middle.
     pub pose: PoseError,
-    /// z of the COR there, in D.
-    pub height: f64,
-    /// How far that is above the mated pose, in D.
-    pub above: f64,
-    /// From where to where its rests lie, per error, in the order of [`Dof::ALL`]; images by symmetry laid upon each other.
-    pub extent: [[f64; 2]; 5],
-    /// At how many places that are images of each other rests were seen; 1 where they lie all over.
+    /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
+    pub extent: Vec<Extent>,
+    /// At how many places that are images of each other rests were seen.
     pub places: usize,
-    /// It is the mated pose turned by a symmetry of the halves, of this order: with that `symmetry` in the design it counts as docked.
-    pub symmetry: Option<u32>,
+    /// z of the COR in the world frame, in D.
+    pub height_d: f64,
+    /// How far it is above the mated pose, in D.
+    pub above_mated_d: f64,
+    /// It is the mated pose turned by a symmetry of the halves, and counts as docked where the design has `symmetry` of this; null where it is not.
+    #[serde(default)]
+    pub docked_with_symmetry: Option<u32>,
     /// What touches.
-    pub contacts: Vec<Touched>,
-    /// What was found out about it; none of those beyond those that are examined.
+    pub contacts: Vec<FeatureContact>,
+    /// What was found out about it; null of jams that were not examined.
     pub examined: Option<Examined>,
-    /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
-    pub depth_on_grid: Option<f64>,
-    /// How far it must be lifted at least before it may come to rest anywhere else, in D; none where that was not asked for or is not known.
-    pub depth_at_least: Option<f64>,
+    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    pub depth_on_grid_d: Option<f64>,
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    pub depth_at_least_d: Option<f64>,
+}
+
+/// From where to where rests lie along an error, in D or radians.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Extent {
+    /// Which error.
+    pub axis: Dof,
+    /// From here.
+    pub from: f64,
+    /// To here.
+    pub to: f64,
 }
 
 /// Two features that touch, and where.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Touched {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FeatureContact {
     /// Where, in the world frame, in D: the places where it carries.
-    pub points: Vec<DVec3>,
+    pub points_d: Vec<[f64; 3]>,
     /// Unit normal at the first of them, from the fixed half to the moving one.
-    pub normal: DVec3,
+    pub normal: [f64; 3],
     /// The feature of the fixed half.
     pub fixed: NamedFeature,
     /// The feature of the moving half.
@@ -162,10 +189,26 @@ pub struct NamedFeature {
     pub drawn_d: [f64; 3],
 }
 
-/// A pair of features, and in how many jams it touches.
+/// A pair of features, and how often it touches where halves jam.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct JammingPair {
+    /// Poses of the error box that jam on it.
+    pub count: usize,
+    /// Their share of the poses that jam.
+    pub of_jams: f64,
+    /// Their share of the poses that do not dock.
+    pub of_failures: f64,
+    /// The feature of the fixed half.
+    pub fixed: NamedFeature,
+    /// The feature of the moving half.
+    pub moving: NamedFeature,
+}
+
+/// A pair of features, and in how many rests it touches.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Touching {
-    /// Random poses of the error box that end in a jam in which it touches.
+pub struct TouchingPair {
+    /// In so many.
     pub count: usize,
     /// The feature of the fixed half, where it was met first; all of its name count as one.
     pub fixed: NamedFeature,
@@ -173,22 +216,52 @@ pub struct Touching {
     pub moving: NamedFeature,
 }
 
-/// What is known of a jam beyond its rests.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What was found out about a place of rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Examined {
-    /// How firmly it holds.
-    pub held: Held,
-    /// By which order contacts alone hold it; none where they do not hold the load, as where friction does.
+    /// `sharp`, `rounded`, `level` or `ridge`.
+    pub firmness: Firmness,
+    /// By how much it is pushed aside, in the metric of the motion, in D.
+    pub push_d: f64,
+    /// The least rise found, in D: the true least is at most that. Null where walls stop it all around.
+    pub rise_at_most_d: Option<f64>,
+    /// The direction of that push: offsets in D and turns in radians.
+    pub weakest: PoseError,
+    /// By which order contacts alone hold it; null where they do not hold the load, as where friction does.
     pub immobility: Option<Immobility>,
-    /// From which friction on it may stick, and until which it slips: nothing where contacts alone hold it; none where it touches
-    /// nothing.
-    pub sticking: Option<Sticking>,
-    /// The lowest way out that was found; none where none was.
+    /// From which friction on it may stick; null where it touches nothing.
+    #[serde(default)]
+    pub sticks: Option<Sticking>,
+    /// The lowest way out that was found; null where none was.
     pub way_out: Option<WayOut>,
-    /// Poses a little off, all around, that were followed.
+    /// Poses a little off that were followed.
     pub pushed: usize,
     /// How many of them came back.
     pub back: usize,
+}
+
+/// A group of rests that are one place, or places alike, before it is a share of anything.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RestGroup {
+    /// Random poses of the error box that end here.
+    pub(super) count: usize,
+    /// Poses drawn from the errors that a robot makes that end here.
+    expected: Option<usize>,
+    /// The pose error of the rest in its middle.
+    pub(super) pose: PoseError,
+    /// z of the COR there, in D.
+    pub(super) height: f64,
+    /// How far that is above the mated pose, in D.
+    pub(super) above: f64,
+    /// Per error, in the order of [`Dof::ALL`].
+    extent: [[f64; 2]; 5],
+    pub(super) places: usize,
+    symmetry: Option<u32>,
+    pub(super) contacts: Vec<FeatureContact>,
+    pub(super) examined: Option<Examined>,
+    pub(super) depth_on_grid: Option<f64>,
+    pub(super) depth_at_least: Option<f64>,
 }
 
 /// Why no jams can be told.
@@ -324,10 +397,10 @@ fn of(
     let images = Images::of(&features, problem.alignment());
     let found = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
     let jam = |cluster: &Cluster| {
-        let found = Jam::of(problem, &features, &rests, own, expected.is_some(), cluster);
-        Jam { symmetry: images.symmetry(&rests[cluster.middle].pose, found.above), ..found }
+        let found = RestGroup::of(problem, &features, &rests, own, expected.is_some(), cluster);
+        RestGroup { symmetry: images.symmetry(&rests[cluster.middle].pose, found.above), ..found }
     };
-    let mut jams: Vec<Jam> = found.iter().map(jam).collect();
+    let mut groups: Vec<RestGroup> = found.iter().map(jam).collect();
     let seen = exec.install(|| {
         let examine = |(k, cluster): (usize, &Cluster)| {
             exec.check()?;
@@ -337,12 +410,53 @@ fn of(
         let looked: Vec<(usize, &Cluster)> = found.iter().enumerate().take(settings.examined).collect();
         looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>()
     })?;
-    for (jam, examined) in jams.iter_mut().zip(seen) {
-        jam.examined = Some(examined);
+    for (group, examined) in groups.iter_mut().zip(seen) {
+        group.examined = Some(examined);
     }
-    depth::tell(problem, jams.iter_mut().collect(), settings.resolution.as_ref(), settings.certified, exec)?;
-    let pairs = touching(problem, &features, &rests[..own]).into_iter().map(|(pair, _)| pair).collect();
-    Ok(Jams { settings, counts, expected, measured: None, jams, pairs })
+    let depths = groups.iter_mut().collect();
+    depth::tell(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
+    let (jammed, failed) = (groups.iter().map(|group| group.count).sum(), motions - counts[0]);
+    let drawn = expected.map_or(0, |counts| counts.iter().sum());
+    let free = problem.alignment().free;
+    let pair = |(pair, _): (TouchingPair, Vec<usize>)| JammingPair {
+        count: pair.count,
+        of_jams: Share::of(pair.count, jammed).share,
+        of_failures: Share::of(pair.count, failed).share,
+        fixed: pair.fixed,
+        moving: pair.moving,
+    };
+    let features = touching(problem, &features, &rests[..own]).into_iter().map(pair).collect();
+    let jam = |group: RestGroup| Jam {
+        of_box: Share::of(group.count, motions),
+        of_jams: Share::of(group.count, jammed).share,
+        of_failures: Share::of(group.count, failed).share,
+        expected: group.expected.map(|count| Share::of(count, drawn)),
+        pose: group.pose,
+        extent: group.extent(free),
+        places: group.places,
+        height_d: group.height,
+        above_mated_d: group.above,
+        docked_with_symmetry: group.symmetry,
+        contacts: group.contacts,
+        examined: group.examined,
+        depth_on_grid_d: group.depth_on_grid,
+        depth_at_least_d: group.depth_at_least,
+    };
+    Ok(Jams {
+        settings,
+        motions,
+        outcomes: shares(counts),
+        expected: expected.map(shares),
+        measured: None,
+        jams: groups.into_iter().map(jam).collect(),
+        features,
+    })
+}
+
+/// Counts in the order of [`Outcome::ALL`] as shares by outcome.
+pub(super) fn shares(counts: [usize; 4]) -> BTreeMap<Outcome, Share> {
+    let all = counts.iter().sum();
+    Outcome::ALL.into_iter().zip(counts.map(|count| Share::of(count, all))).collect()
 }
 
 fn count(ends: &[(Outcome, Option<Rested>)]) -> [usize; 4] {
@@ -350,30 +464,22 @@ fn count(ends: &[(Outcome, Option<Rested>)]) -> [usize; 4] {
 }
 
 impl Jams {
-    /// With every place that the jams of a problem have, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(settings: &Settings) -> Self {
-        let expected = settings.errors.as_ref().map(|_| [0; 4]);
-        let (jams, pairs) = (Vec::new(), Vec::new());
-        Self { settings: settings.clone(), counts: [0; 4], expected, measured: None, jams, pairs }
-    }
-
-    /// How many random poses of the error box were followed.
-    pub fn motions(&self) -> usize {
-        self.counts.iter().sum()
-    }
-
-    /// How many of them jam.
+    /// How many of the poses of the error box jam.
     pub fn jammed(&self) -> usize {
-        self.jams.iter().map(|jam| jam.count).sum()
-    }
-
-    /// How many of them do not dock.
-    pub fn failed(&self) -> usize {
-        self.motions() - self.counts[0]
+        self.jams.iter().map(|jam| jam.of_box.count).sum()
     }
 }
 
-impl Jam {
+impl RestGroup {
+    /// From where to where its rests lie, along free errors.
+    pub(super) fn extent(&self, free: DofSet) -> Vec<Extent> {
+        let of = |axis: Dof| {
+            let [from, to] = self.extent[axis.index()];
+            Extent { axis, from, to }
+        };
+        free.iter().map(of).collect()
+    }
+
     pub(super) fn of(
         problem: &Problem,
         features: &Features,
@@ -405,7 +511,7 @@ impl Jam {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sticks {
     /// The pair, and on how many poses it touches.
-    pub touching: Touching,
+    pub touching: TouchingPair,
     /// The critical frictions of these poses, ascending.
     pub critical: Vec<f64>,
 }
@@ -438,13 +544,13 @@ pub fn what_sticks(
 
 /// The pairs of features that touch in rests and the numbers of these rests, by their names, in the order of how many do: a person changes all features of
 /// a name, or none.
-fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(Touching, Vec<usize>)> {
-    let mut pairs: BTreeMap<[String; 2], (Touching, Vec<usize>)> = BTreeMap::new();
+fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(TouchingPair, Vec<usize>)> {
+    let mut pairs: BTreeMap<[String; 2], (TouchingPair, Vec<usize>)> = BTreeMap::new();
     for (number, rest) in rests.iter().enumerate() {
         for met in &rest.met {
             let touching = || {
-                let Touched { fixed, moving, .. } = rest.name(problem, features, met);
-                (Touching { count: 0, fixed, moving }, Vec::new())
+                let FeatureContact { fixed, moving, .. } = rest.name(problem, features, met);
+                (TouchingPair { count: 0, fixed, moving }, Vec::new())
             };
             let (pair, at) = pairs.entry(Rested::names(features, met)).or_insert_with(touching);
             if at.last() != Some(&number) {
@@ -453,7 +559,7 @@ fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(To
             }
         }
     }
-    let mut pairs: Vec<(Touching, Vec<usize>)> = pairs.into_values().collect();
+    let mut pairs: Vec<(TouchingPair, Vec<usize>)> = pairs.into_values().collect();
     // Stable: of equals the one whose name comes first.
     pairs.sort_by_key(|(pair, _)| std::cmp::Reverse(pair.count));
     pairs

@@ -2,7 +2,7 @@
 
 use super::escape::Leaving;
 use super::firmness::{Firmness, Space};
-use super::{Cluster, Examined, NamedFeature, Touched, escape, firmness, part_of};
+use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness, part_of};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
@@ -168,13 +168,23 @@ impl Follow<'_> {
             None => holding.as_mut().map(Holding::sticking),
         };
         let way_out = escape::way_out(pair, rest, self.motions, leaving, seed);
-        Examined { held, immobility, sticking, way_out, pushed, back }
+        Examined {
+            firmness: held.firmness,
+            push_d: PUSH,
+            rise_at_most_d: held.rise,
+            weakest: held.weakest,
+            immobility,
+            sticks: sticking,
+            way_out,
+            pushed,
+            back,
+        }
     }
 }
 
 impl Rested {
     /// Everything that touches, named.
-    pub(in crate::run) fn touched(&self, problem: &Problem, features: &Features) -> Vec<Touched> {
+    pub(in crate::run) fn touched(&self, problem: &Problem, features: &Features) -> Vec<FeatureContact> {
         self.met.iter().map(|met| self.name(problem, features, met)).collect()
     }
 
@@ -185,13 +195,12 @@ impl Rested {
     }
 
     /// Two features that touch, named.
-    pub(in crate::run) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> Touched {
+    pub(in crate::run) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> FeatureContact {
         let face = {
             let cor = self.pose.lateral.extend(self.height);
             cor + face_from_cor(&self.pose.rotation, problem.alignment().center_of_rotation)
         };
-        let points: Vec<DVec3> = met.contacts.iter().map(|contact| contact.point).collect();
-        let first = points.first().copied().unwrap_or_default();
+        let first = met.contacts.first().map_or(DVec3::ZERO, |contact| contact.point);
         let named = |side, number: u32, in_frame: DVec3| {
             let feature = features.get(side, number);
             let part = part_of(problem, side, in_frame);
@@ -203,11 +212,11 @@ impl Rested {
             }
         };
         let [fixed, moving] = met.features;
-        Touched {
-            normal: met.contacts.first().map_or(DVec3::Z, |contact| contact.normal),
+        FeatureContact {
+            normal: met.contacts.first().map_or(DVec3::Z, |contact| contact.normal).to_array(),
             fixed: named(Side::Fixed, fixed, first),
             moving: named(Side::Moving, moving, self.pose.rotation.transpose() * (first - face)),
-            points,
+            points_d: met.contacts.iter().map(|contact| contact.point.to_array()).collect(),
         }
     }
 }

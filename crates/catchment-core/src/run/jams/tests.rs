@@ -15,6 +15,11 @@ fn v_face() -> Problem {
     problem("[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n")
 }
 
+/// Counts in the order of [`Outcome::ALL`].
+fn by_outcome(of: &BTreeMap<Outcome, Share>) -> [usize; 4] {
+    Outcome::ALL.map(|outcome| of[&outcome].count)
+}
+
 fn found(problem: &Problem, motions: usize) -> Jams {
     run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
 }
@@ -27,12 +32,16 @@ fn every_pose_is_in_one_outcome_and_every_jammed_one_in_one_jam() {
     };
     let settings = Settings { motions: Some(1500), errors: Some(errors), ..Settings::default() };
     let found = run(&v_face(), &settings, &Exec::new()).unwrap();
-    assert_eq!(found.counts.iter().sum::<usize>(), 1500);
-    assert_eq!(found.jammed(), found.counts[1]);
-    let expected = found.expected.unwrap();
+    assert_eq!(by_outcome(&found.outcomes).iter().sum::<usize>(), 1500);
+    assert_eq!(found.jammed(), by_outcome(&found.outcomes)[1]);
+    let expected = by_outcome(found.expected.as_ref().unwrap());
     assert_eq!(expected.iter().sum::<usize>(), 1500);
-    assert_eq!(found.jams.iter().map(|jam| jam.expected.unwrap()).sum::<usize>(), expected[1]);
-    assert!(found.jams.is_sorted_by_key(|jam| { std::cmp::Reverse(jam.count + jam.expected.unwrap()) }));
+    assert_eq!(found.jams.iter().map(|jam| jam.expected.unwrap().count).sum::<usize>(), expected[1]);
+    assert!(
+        found
+            .jams
+            .is_sorted_by_key(|jam| { std::cmp::Reverse(jam.of_box.count + jam.expected.unwrap().count) })
+    );
 }
 
 /// The tip lies on its side in the notch, to either side: images of each other, both found, one jam.
@@ -42,14 +51,14 @@ fn a_tip_on_its_side_is_one_jam_at_two_places() {
     let found = found(&problem, 2000);
     let jam = &found.jams[0];
     assert_eq!(jam.places, 2, "{jam:#?}");
-    assert!(jam.count * 10 > found.jammed() * 9, "{found:#?}");
+    assert!(jam.of_box.count * 10 > found.jammed() * 9, "{found:#?}");
     // Laid upon each other they are one place: pitches of opposite sign do not add up to an extent.
-    assert!(jam.extent.iter().all(|[from, to]| to - from < 0.05), "{:?}", jam.extent);
+    assert!(jam.extent.iter().all(|side| side.to - side.from < 0.05), "{:?}", jam.extent);
     // Its base lies flush on a flank of slope 2: turned by a right angle and what is left of one. The motion ends within a step's rounding.
-    assert!((jam.pose.pitch.abs() - (PI - 2f64.atan())).abs() < 1e-3 && jam.above > 0.1, "{jam:#?}");
+    assert!((jam.pose.pitch.abs() - (PI - 2f64.atan())).abs() < 1e-3 && jam.above_mated_d > 0.1, "{jam:#?}");
     let examined = jam.examined.unwrap();
     assert_eq!(examined.back, examined.pushed, "{examined:?}");
-    assert!(matches!(examined.held.firmness, Firmness::Sharp | Firmness::Rounded));
+    assert!(matches!(examined.firmness, Firmness::Sharp | Firmness::Rounded));
     // Out of a rest it is a climb, and no farther than over the rim of the notch.
     let way = examined.way_out.unwrap();
     assert!(way.climb > 0.0 && way.climb < 1.0, "{way:?}");
@@ -81,9 +90,12 @@ fn the_two_rests_are_mirror_images() {
     };
     assert!(within(sides[0], sides[0] + sides[1], 0.5), "{sides:?}");
     let found = found(&problem, 3000);
-    assert_eq!(found.counts[0] + found.counts[2] + found.jammed(), found.motions());
-    for (count, other) in counts.iter().zip(found.counts) {
-        assert!(within(*count, 1500, other as f64 / 3000.0), "{counts:?} {:?}", found.counts);
+    assert_eq!(
+        by_outcome(&found.outcomes)[0] + by_outcome(&found.outcomes)[2] + found.jammed(),
+        found.motions
+    );
+    for (count, other) in counts.iter().zip(by_outcome(&found.outcomes)) {
+        assert!(within(*count, 1500, other as f64 / 3000.0), "{counts:?} {:?}", by_outcome(&found.outcomes));
     }
 }
 
@@ -96,7 +108,7 @@ fn a_rigid_body_stays_where_it_jams() {
     let drop = "drop".parse().unwrap();
     for jam in &found.jams {
         // Level ones stay anywhere on their level.
-        let is_level = jam.examined.unwrap().held.firmness == Firmness::Level;
+        let is_level = jam.examined.unwrap().firmness == Firmness::Level;
         let aside = if is_level { 0.0 } else { 0.01 };
         for side in [1.0, -1.0] {
             let rest = PoseError { x: side * jam.pose.x, pitch: side * jam.pose.pitch, ..jam.pose };
@@ -119,15 +131,15 @@ fn a_peg_beside_its_hole_rests_on_level_ground() {
                 chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
     let found = found(&problem(text), 300);
     let jam = &found.jams[0];
-    assert_eq!((found.jams.len(), jam.count), (1, found.counts[1]));
+    assert_eq!((found.jams.len(), jam.of_box.count), (1, by_outcome(&found.outcomes)[1]));
     let [contact] = jam.contacts.as_slice() else { panic!("{jam:#?}") };
     assert_eq!((contact.fixed.name.as_str(), contact.moving.name.as_str()), ("top", "top"));
     let examined = jam.examined.unwrap();
-    assert_eq!(examined.held.firmness, Firmness::Level);
+    assert_eq!(examined.firmness, Firmness::Level);
     // It slides into its hole without being lifted.
     let way = examined.way_out.unwrap();
     assert!(way.climb < 1e-6, "{way:?}");
-    assert_eq!(found.pairs.len(), 1);
+    assert_eq!(found.features.len(), 1);
 }
 
 #[test]
@@ -186,10 +198,18 @@ fn friction_above_the_slope_jams_all_over_it() {
         let settings = Settings { motions: Some(300), friction, ..Settings::default() };
         run(&problem, &settings, &Exec::new()).unwrap()
     };
-    assert_eq!(with(0.1).counts, with(0.0).counts);
+    assert_eq!(with(0.1).outcomes, with(0.0).outcomes);
     let stuck = with(0.3);
-    assert!(stuck.counts[0] < 15 && stuck.counts[1] > 130, "{:?}", stuck.counts);
-    assert!(stuck.pairs.iter().any(|pair| pair.fixed.name.contains("slope of 11")), "{:?}", stuck.pairs);
+    assert!(
+        by_outcome(&stuck.outcomes)[0] < 15 && by_outcome(&stuck.outcomes)[1] > 130,
+        "{:?}",
+        stuck.outcomes
+    );
+    assert!(
+        stuck.features.iter().any(|pair| pair.fixed.name.contains("slope of 11")),
+        "{:?}",
+        stuck.features
+    );
 }
 
 /// A V-Face of AR ½ on its side, one slope flush on another: held by contacts alone, and as deep on a grid as its way out climbs, to a cell.
@@ -206,7 +226,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
     let held = examined.immobility.unwrap();
     assert_eq!(held.order, crate::method::descent::Order::First);
     assert!(held.slope[0] > 0.1);
-    let (climb, on_grid) = (examined.way_out.unwrap().climb, jam.depth_on_grid.unwrap());
+    let (climb, on_grid) = (examined.way_out.unwrap().climb, jam.depth_on_grid_d.unwrap());
     assert!((on_grid - climb).abs() < 0.02, "{on_grid} {climb}");
 }
 
@@ -217,10 +237,10 @@ fn a_jam_is_as_deep_as_is_certain() {
     let settings = Settings { motions: Some(600), certified: true, ..Settings::default() };
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     for jam in &found.jams {
-        let (at_least, examined) = (jam.depth_at_least.unwrap(), jam.examined.unwrap());
+        let (at_least, examined) = (jam.depth_at_least_d.unwrap(), jam.examined.unwrap());
         let climb = examined.way_out.unwrap().climb;
         assert!(at_least <= climb + 1e-6, "{at_least} {climb}");
-        if examined.held.firmness == Firmness::Level {
+        if examined.firmness == Firmness::Level {
             assert!(at_least < 0.01, "{at_least}");
         } else {
             assert!(at_least > 0.5 * climb, "{at_least} {climb}");
@@ -239,7 +259,7 @@ fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     assert!(!found.jams.is_empty());
     for examined in found.jams.iter().filter_map(|jam| jam.examined) {
-        let Sticking { holds_from, slips_until, wedges_from } = examined.sticking.unwrap();
+        let Sticking { holds_from, slips_until, wedges_from } = examined.sticks.unwrap();
         assert!((holds_from.unwrap() - 0.2).abs() < 1e-6, "{holds_from:?}");
         assert!((slips_until.unwrap() - 0.2).abs() < 1e-3, "{slips_until:?}");
         assert_eq!(wedges_from, None);

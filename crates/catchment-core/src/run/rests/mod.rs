@@ -19,23 +19,26 @@
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
 //! in radians.
 
+mod report;
 #[cfg(test)]
 mod tests;
 
 use super::jams::clusters::{self, Cluster};
 use super::jams::images::Images;
 use super::jams::rests::{Follow, Rested, Which};
-use super::jams::{DepthError, Examined, Jam, WayOut, depth};
+use super::jams::{DepthError, Examined, Extent, FeatureContact, RestGroup, WayOut, depth, shares};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Features;
+use crate::document::Share;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Resolution;
 use crate::method::Decide;
 use crate::method::descent;
-use crate::pose::CorPose;
+use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -60,26 +63,50 @@ impl Default for Settings {
     }
 }
 
-/// The rests of a pair.
-#[derive(Debug, Clone, PartialEq)]
+/// Where halves come to rest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rests {
-    /// How it was asked for, everything filled in.
+    /// The settings, everything filled in.
     pub settings: Settings,
-    /// Random poses of the error box by their outcomes, in the order of [`Outcome::ALL`].
-    pub counts: [usize; 4],
-    /// Where they rest, the place with most of them first.
-    pub rests: Vec<Place>,
+    /// Random poses of the error box that were followed.
+    pub motions: usize,
+    /// Their outcomes.
+    pub outcomes: BTreeMap<Outcome, Share>,
+    /// The rests, the one with most of the poses first.
+    pub rests: Vec<RestPlace>,
 }
 
-/// A place, or places alike, where halves come to rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Place {
-    /// Where, how many poses end there, what touches, how firmly it holds and the lowest way out.
-    pub found: Jam,
-    /// How many of its poses count as docked.
+/// A place of rest, or places alike.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RestPlace {
+    /// How many poses of the error box end here: its basin.
+    pub of_box: Share,
+    /// How many of them count as docked.
     pub docked: usize,
-    /// The rest to which the way out leads, from 0; none where it leads off, or nowhere known.
+    /// The pose error of the rest in its middle.
+    pub pose: PoseError,
+    /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
+    pub extent: Vec<Extent>,
+    /// At how many places that are images of each other rests were seen.
+    pub places: usize,
+    /// z of the centre of rotation in the world frame, in D: the energy per unit of weight.
+    pub height_d: f64,
+    /// How far it is above the mated pose, in D.
+    pub above_mated_d: f64,
+    /// At most so far it must be lifted to leave, in D; null where no way out was found, or it was not examined.
+    pub depth_at_most_d: Option<f64>,
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    pub depth_at_least_d: Option<f64>,
+    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    pub depth_on_grid_d: Option<f64>,
+    /// The rest to which that way leads, from 0 in this list; null where it leads off.
     pub leads_to: Option<usize>,
+    /// What touches.
+    pub contacts: Vec<FeatureContact>,
+    /// What was found out about it; null of rests that were not examined.
+    pub examined: Option<Examined>,
 }
 
 /// Why no rests can be told.
@@ -139,14 +166,9 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
     let rests: Vec<Rested> = ends.into_iter().filter_map(|(_, rested)| rested).collect();
     let images = Images::of(&features, problem.alignment());
     let clusters = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
-    let mut places: Vec<Place> = clusters
+    let mut groups: Vec<RestGroup> = clusters
         .iter()
-        .map(|cluster| {
-            let found = Jam::of(problem, &features, &rests, rests.len(), false, cluster);
-            let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
-            let docked = cluster.members.iter().filter(is_docked).count();
-            Place { found, docked, leads_to: None }
-        })
+        .map(|cluster| RestGroup::of(problem, &features, &rests, rests.len(), false, cluster))
         .collect();
     let examine = |(k, cluster): (usize, &Cluster)| {
         exec.check()?;
@@ -157,13 +179,33 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
     let seen =
         exec.install(|| looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>())?;
     let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
-    for (place, examined) in places.iter_mut().zip(seen) {
-        place.leads_to = examined.way_out.and_then(|way| leads_to(problem, &images, &middles, &way));
-        place.found.examined = Some(examined);
+    for (group, examined) in groups.iter_mut().zip(seen) {
+        group.examined = Some(examined);
     }
-    let found = places.iter_mut().map(|place| &mut place.found).collect();
-    depth::tell(problem, found, settings.resolution.as_ref(), settings.certified, exec)?;
-    Ok(Rests { settings, counts, rests: places })
+    let depths = groups.iter_mut().collect();
+    depth::tell(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
+    let free = problem.alignment().free;
+    let place = |(group, cluster): (RestGroup, &Cluster)| {
+        let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
+        let way = group.examined.and_then(|examined| examined.way_out);
+        RestPlace {
+            of_box: Share::of(group.count, motions),
+            docked: cluster.members.iter().filter(is_docked).count(),
+            pose: group.pose,
+            extent: group.extent(free),
+            places: group.places,
+            height_d: group.height,
+            above_mated_d: group.above,
+            depth_at_most_d: way.map(|way| way.climb),
+            depth_at_least_d: group.depth_at_least,
+            depth_on_grid_d: group.depth_on_grid,
+            leads_to: way.and_then(|way| leads_to(problem, &images, &middles, &way)),
+            contacts: group.contacts,
+            examined: group.examined,
+        }
+    };
+    let rests = groups.into_iter().zip(&clusters).map(place).collect();
+    Ok(Rests { settings, motions, outcomes: shares(counts), rests })
 }
 
 /// The rest that is nearest to the end of a way out.
@@ -177,9 +219,9 @@ fn leads_to(problem: &Problem, images: &Images, middles: &[CorPose], way: &WayOu
     far.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance <= THERE).map(|(k, _)| k)
 }
 
-impl Rests {
-    /// How many random poses of the error box were followed.
-    pub fn motions(&self) -> usize {
-        self.counts.iter().sum()
+impl RestPlace {
+    /// Whether most of its poses count as docked.
+    pub const fn is_docked(&self) -> bool {
+        2 * self.docked > self.of_box.count
     }
 }

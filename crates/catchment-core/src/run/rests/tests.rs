@@ -15,8 +15,8 @@ fn found(problem: &Problem, motions: usize) -> Rests {
     run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
 }
 
-fn depth(place: &Place) -> f64 {
-    place.found.examined.unwrap().way_out.unwrap().climb
+fn depth(place: &RestPlace) -> f64 {
+    place.examined.unwrap().way_out.unwrap().climb
 }
 
 /// Its centre of rotation in its middle; `errors` far enough to fall on its sides.
@@ -28,19 +28,19 @@ const CUBE: &str = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [
 #[test]
 fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
     let found = found(&problem(CUBE), 600);
-    assert!(!found.rests.is_empty() && found.counts[2] == 0, "{found:?}");
+    assert!(!found.rests.is_empty() && found.outcomes[&Outcome::Missed].count == 0, "{found:?}");
     for place in &found.rests {
-        let turn = place.found.pose.pitch / FRAC_PI_2;
+        let turn = place.pose.pitch / FRAC_PI_2;
         assert!((turn - turn.round()).abs() < 1e-3, "{place:?}");
         // Motions end within 10⁻⁵ of a turn, over half a width.
-        assert!((place.found.height - 0.5).abs() < 1e-5, "{place:?}");
-        assert_eq!(place.found.examined.unwrap().held.firmness, crate::run::jams::Firmness::Sharp);
+        assert!((place.height_d - 0.5).abs() < 1e-5, "{place:?}");
+        assert_eq!(place.examined.unwrap().firmness, crate::run::jams::Firmness::Sharp);
         assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
-        let held = place.found.examined.unwrap().immobility.unwrap();
+        let held = place.examined.unwrap().immobility.unwrap();
         assert_eq!(held.order, descent::Order::First, "{place:?}");
         assert!(held.slope.iter().all(|slope| (slope - 1.0).abs() < 1e-3), "{place:?}");
     }
-    assert_eq!(found.rests.iter().map(|place| place.found.count).sum::<usize>(), 600);
+    assert_eq!(found.rests.iter().map(|place| place.of_box.count).sum::<usize>(), 600);
 }
 
 /// A cube let go of a little aside falls back, beyond half a right angle on its side: as a trial by rigid bodies does.
@@ -74,11 +74,11 @@ fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
         for seed in 1..=3 {
             let settings = Settings { motions: Some(120), seed, ..Settings::default() };
             let found = run(&problem, &settings, &Exec::new()).unwrap();
-            let held = found.rests[0].found.examined.unwrap();
+            let held = found.rests[0].examined.unwrap();
             let immobility = held.immobility.unwrap();
             assert_eq!(immobility.order, descent::Order::First, "{family} {held:?}");
             assert!((immobility.slope[0] - slope).abs() < 2e-4, "{family} {immobility:?}");
-            assert_eq!(held.sticking.unwrap().holds_from, Some(0.0));
+            assert_eq!(held.sticks.unwrap().holds_from, Some(0.0));
         }
     }
 }
@@ -120,7 +120,7 @@ fn a_ball_in_a_cone_leaves_over_its_rim() {
     let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
     // The ball is a chord error too small, and its facets shift where it touches by as much.
     assert!((depth(place) - expected).abs() < 4e-3, "{expected} {place:?}");
-    assert_eq!(place.found.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
+    assert_eq!(place.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
 }
 
 /// A round peg with play in a chamfered hole.
@@ -167,7 +167,7 @@ fn a_rigid_body_comes_back_to_every_kind_of_rest() {
     ] {
         let problem = problem(&text);
         let found = found(&problem, 60);
-        let rest = found.rests.iter().find(|place| place.docked > 0).unwrap().found.pose.to_array();
+        let rest = found.rests.iter().find(|place| place.docked > 0).unwrap().pose.to_array();
         let beside = pushes.map(|push| PoseError::from_array(std::array::from_fn(|k| rest[k] + push[k])));
         let (_, ends) = problem.follow_by(&"drop".parse().unwrap(), &beside, &Exec::new()).unwrap();
         for (end, from) in ends.iter().zip(&beside) {
@@ -183,13 +183,13 @@ fn certified_depths_are_below_those_of_ways_and_near_them() {
     let settings = Settings { motions: Some(200), certified: true, ..Settings::default() };
     let exec = Exec::new();
     for place in &run(&problem(CUBE), &settings, &exec).unwrap().rests {
-        let at_least = place.found.depth_at_least.unwrap();
+        let at_least = place.depth_at_least_d.unwrap();
         assert!(at_least <= depth(place) + 1e-6 && at_least > 0.99 * depth(place), "{at_least} {place:?}");
     }
     let pyramid =
         "[connector]\nfamily = \"pyramid\"\naspect_ratio = 0.5\n[alignment]\nfree = [\"x\", \"y\"]\n";
     for place in &run(&problem(pyramid), &settings, &exec).unwrap().rests {
-        let at_least = place.found.depth_at_least.unwrap();
+        let at_least = place.depth_at_least_d.unwrap();
         assert!(at_least <= depth(place) + 1e-6 && at_least >= 0.9 * depth(place), "{at_least} {place:?}");
     }
 }
@@ -200,8 +200,8 @@ fn a_peg_is_as_deep_as_its_hole() {
     let found = found(&problem(PEG), 300);
     let [home, ground] =
         [true, false].map(|docked| found.rests.iter().find(|place| (place.docked > 0) == docked).unwrap());
-    assert!((depth(home) - ground.found.above).abs() < 1e-4, "{home:?} {ground:?}");
-    assert!(home.found.examined.unwrap().way_out.unwrap().climb > 0.05);
+    assert!((depth(home) - ground.above_mated_d).abs() < 1e-4, "{home:?} {ground:?}");
+    assert!(home.examined.unwrap().way_out.unwrap().climb > 0.05);
 }
 
 /// The merge tree of a fine grid says the same, over an edge of a cube.
@@ -212,7 +212,7 @@ fn the_merge_tree_agrees() {
     let found = run(&problem(CUBE), &settings, &Exec::new()).unwrap();
     // Heights differ by at most ½ per radian from cell to cell, 0.3° here.
     for place in &found.rests {
-        let on_grid = place.found.depth_on_grid.unwrap();
+        let on_grid = place.depth_on_grid_d.unwrap();
         assert!((on_grid - depth(place)).abs() < 0.003, "{on_grid} {place:?}");
     }
 }
@@ -227,11 +227,11 @@ fn curvature_is_the_rise_of_a_push() {
                 [errors]\nx = 0.05\npitch = \"10 deg\"\n";
     let found = found(&problem(text), 100);
     let place = &found.rests[0];
-    let examined = place.found.examined.unwrap();
+    let examined = place.examined.unwrap();
     let held = examined.immobility.unwrap();
     assert_eq!(held.order, descent::Order::Second, "{place:?}");
     let expected = 0.5 * held.curvature.unwrap() * crate::run::jams::PUSH.powi(2);
-    let rise = examined.held.rise.unwrap();
+    let rise = examined.rise_at_most_d.unwrap();
     assert!((rise / expected - 1.0).abs() < 0.05, "{rise} {expected} {place:?}");
 }
 
@@ -245,8 +245,14 @@ fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
     assert_eq!(one, with(2));
     assert_eq!(one, with(4));
     // Every pose that rests is in one rest.
-    assert_eq!(one.rests.iter().map(|place| place.found.count).sum::<usize>(), one.counts[0] + one.counts[1]);
-    assert_eq!(one.rests.iter().map(|place| place.docked).sum::<usize>(), one.counts[0]);
+    assert_eq!(
+        one.rests.iter().map(|place| place.of_box.count).sum::<usize>(),
+        one.outcomes[&Outcome::Aligned].count + one.outcomes[&Outcome::Jammed].count
+    );
+    assert_eq!(
+        one.rests.iter().map(|place| place.docked).sum::<usize>(),
+        one.outcomes[&Outcome::Aligned].count
+    );
     let none = Settings { motions: Some(0), ..Settings::default() };
     assert_eq!(run(&problem, &none, &Exec::new()).unwrap_err(), RestsError::Nothing);
     let exec = Exec::new();

@@ -21,6 +21,7 @@
 //! Lengths in D, angles in radians.
 
 mod cube;
+mod report;
 mod search;
 mod space;
 #[cfg(test)]
@@ -36,8 +37,12 @@ use crate::method::{affordable, motions_in, seconds_per_motion};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 use search::{Search, Shrunk, WINDOWS};
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use space::Space;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Deref;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,69 +68,93 @@ impl Default for Settings {
 }
 
 /// The largest box of errors around zero that all dock, as far as exact motions show.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Window {
-    /// How it was asked for, everything filled in.
+    /// ± so much of every free error, by its name, in D and radians.
+    pub window: HalfWidths,
+    /// The settings of the search and everything else that it found.
+    #[serde(flatten)]
+    pub found: WindowDetails,
+}
+
+/// ± so much of every free error, in D and radians.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct HalfWidths(pub BTreeMap<Dof, f64>);
+
+/// A window beside its half-widths.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WindowDetails {
+    /// The settings, everything filled in.
     pub settings: Settings,
-    /// Per free error.
-    pub axes: Vec<Side>,
-    /// s: the half-widths that were not given are so many times their proportions.
+    /// Every free error.
+    pub sides: Vec<Side>,
+    /// Half-widths that were not given are so many times their proportions.
     pub scale: f64,
-    /// The pose that ends it; none where it reaches the error box.
-    pub worst: Option<Worst>,
-    /// The error that is nearest to its limit while all others are anywhere within the window; none where all reach the error box.
+    /// The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
     pub tightest: Option<Dof>,
-    /// What random poses all over it show.
+    /// The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
+    pub worst: Option<Worst>,
+    /// The evidence of random poses.
     pub certificate: Certificate,
-    /// Motions that were followed in all.
+    /// Exact motions in all.
     pub motions: usize,
 }
 
-/// One error of a window. Lengths in D, angles in radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// One error of a window, in D or radians.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Side {
-    /// Which.
+    /// Which error.
     pub axis: Dof,
     /// ± so much is in the window.
     pub half_width: f64,
     /// Whether that was given.
     pub given: bool,
-    /// How far it may go with all others 0.
-    pub alone: Reach,
-    /// How far it may go with all others anywhere within their half-widths.
-    pub beside: Reach,
+    /// ± so far with all others 0.
+    pub alone: f64,
+    /// The error box ends there.
+    pub alone_reaches_border: bool,
+    /// ± so far with all others anywhere within their half-widths.
+    pub beside: f64,
+    /// The error box ends there.
+    pub beside_reaches_border: bool,
 }
 
 /// How far one error may go, either way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+struct Reach {
     /// ± so far, in D or radians.
-    pub to: f64,
+    to: f64,
     /// The error box ends there: perhaps further.
-    pub is_border: bool,
+    is_border: bool,
 }
 
 /// The pose nearest to zero, in proportions, that does not dock.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Worst {
     /// The pose error.
     pub error: PoseError,
-    /// What becomes of it.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Where it ends.
     pub end: PoseError,
-    /// What touches there; empty where the halves never meet.
+    /// What touches there, in the world frame of the fixed face centre, in D, with the normal towards the moving half; empty where the halves never meet.
     pub touches: Vec<Touch>,
 }
 
-/// What random poses of the window show: none of them failed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The evidence of random poses of the window: none of them failed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
     /// How many poses.
     pub motions: usize,
     /// At most this share of the window fails, with 95 % confidence; 1 if nothing was tried.
     pub failing_at_most: f64,
-    /// How often a window was drawn before this one, and some pose failed.
+    /// Windows before this one in which some random pose failed.
     pub redrawn: usize,
 }
 
@@ -205,25 +234,59 @@ impl Window {
     pub(super) fn cube(&self) -> CenteredBox {
         CenteredBox {
             scale: self.scale,
-            half_widths: self.axes.iter().map(|side| (side.axis, side.half_width)).collect(),
+            half_widths: self.sides.iter().map(|side| (side.axis, side.half_width)).collect(),
             reaches_border: self.worst.is_none(),
             sampled: Some(self.certificate.motions),
         }
     }
+}
 
-    /// With every place that the window of a problem has, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(problem: &Problem) -> Self {
-        let none = Reach { to: 0.0, is_border: false };
-        let side = |axis| Side { axis, half_width: 0.0, given: false, alone: none, beside: none };
-        Self {
-            settings: Settings::default(),
-            axes: problem.alignment().free.iter().map(side).collect(),
-            scale: 0.0,
-            worst: None,
-            tightest: None,
-            certificate: Certificate { motions: 0, failing_at_most: 1.0, redrawn: 0 },
-            motions: 0,
+impl Deref for Window {
+    type Target = WindowDetails;
+
+    fn deref(&self) -> &WindowDetails {
+        &self.found
+    }
+}
+
+/// Names of other things than errors are left to others.
+impl<'de> Deserialize<'de> for HalfWidths {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Named;
+        impl<'de> Visitor<'de> for Named {
+            type Value = HalfWidths;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("half-widths by the names of errors")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<HalfWidths, A::Error> {
+                let mut found = BTreeMap::new();
+                while let Some(name) = map.next_key::<String>()? {
+                    if let Ok(axis) = name.parse::<Dof>() {
+                        found.insert(axis, map.next_value()?);
+                    } else {
+                        map.next_value::<IgnoredAny>()?;
+                    }
+                }
+                Ok(HalfWidths(found))
+            }
         }
+        deserializer.deserialize_map(Named)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for HalfWidths {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "HalfWidths".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let number = || serde_json::json!({ "type": "number" });
+        let properties: serde_json::Map<String, serde_json::Value> =
+            Dof::ALL.iter().map(|dof| (dof.name().to_owned(), number())).collect();
+        schemars::json_schema!({ "type": "object", "properties": properties })
     }
 }
 
@@ -278,7 +341,7 @@ const OF_WINDOW: f64 = 0.4;
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
 /// let found = window::run(&problem, &Settings { motions: Some(1000), ..Settings::default() }, &Exec::new())?;
 /// // Without rotations a pyramid corrects offsets up to D/2 along both axes at once.
-/// assert!((found.axes[0].half_width - 0.5).abs() < 0.002);
+/// assert!((found.sides[0].half_width - 0.5).abs() < 0.002);
 /// # Ok(())
 /// # }
 /// ```
@@ -320,7 +383,7 @@ pub(super) fn by(
     let mut followed = search.followed();
     let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
     let beyond = beyond(motions);
-    let mut axes = Vec::new();
+    let mut sides = Vec::new();
     let free = problem.alignment().free;
     for (number, axis) in free.iter().enumerate() {
         let at = |number: usize| OF_WINDOW + (1.0 - OF_WINDOW) * number as f64 / free.len() as f64;
@@ -339,13 +402,32 @@ pub(super) fn by(
         // Alone it goes no less far than in company.
         let alone = if beside.to > alone.to { beside } else { alone };
         let given = settings.fixed[axis.index()].is_some();
-        axes.push(Side { axis, half_width, given, alone, beside });
+        sides.push(Side {
+            axis,
+            half_width,
+            given,
+            alone: alone.to,
+            alone_reaches_border: alone.is_border,
+            beside: beside.to,
+            beside_reaches_border: beside.is_border,
+        });
     }
-    let spare = |side: &&Side| side.beside.to / side.half_width;
-    let tightest = axes.iter().filter(|side| side.half_width > 0.0 && !side.beside.is_border);
+    let spare = |side: &&Side| side.beside / side.half_width;
+    let tightest = sides.iter().filter(|side| side.half_width > 0.0 && !side.beside_reaches_border);
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
     let worst = search.worst().map(|error| Worst::of(problem, error, motions_by));
-    Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
+    Ok(Window {
+        window: HalfWidths(sides.iter().map(|side| (side.axis, side.half_width)).collect()),
+        found: WindowDetails {
+            settings: settings.clone(),
+            sides,
+            scale,
+            tightest,
+            worst,
+            certificate,
+            motions: followed,
+        },
+    })
 }
 
 /// Random poses beyond a window of which so many were drawn in it.

@@ -17,11 +17,11 @@ fn quick() -> Settings {
 #[test]
 fn of_one_offset_it_is_the_closed_form() {
     let found = run(&problem(Family::VFace, free(&[Dof::X])), &quick(), &Exec::new()).unwrap();
-    let [side] = &found.axes[..] else { panic!("{found:?}") };
+    let [side] = &found.sides[..] else { panic!("{found:?}") };
     assert!((side.half_width - 0.5).abs() < 1e-3 && side.half_width < 0.5, "{side:?}");
-    assert!((0.4998..=0.5).contains(&side.alone.to) && !side.alone.is_border);
+    assert!((0.4998..=0.5).contains(&side.alone) && !side.alone_reaches_border);
     assert_eq!(found.tightest, Some(Dof::X));
-    let worst = found.worst.unwrap();
+    let worst = found.worst.clone().unwrap();
     assert!(worst.outcome != Outcome::Aligned && (worst.error.x.abs() - 0.5).abs() < 2e-4);
 }
 
@@ -50,11 +50,11 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
     ];
     for (problem, settings) in cases {
         let found = run(&problem, &settings, &exec).unwrap();
-        let widths: Vec<f64> = found.axes.iter().map(|side| side.half_width).collect();
+        let widths: Vec<f64> = found.sides.iter().map(|side| side.half_width).collect();
         let stream = crate::acceptance::Stream::new(77);
         let inside = |k: u64| {
             let mut error = [0.0; 5];
-            for (j, side) in found.axes.iter().enumerate() {
+            for (j, side) in found.sides.iter().enumerate() {
                 error[side.axis.index()] = side.half_width * (2.0 * stream.uniform(5 * k + j as u64) - 1.0);
             }
             PoseError::from_array(error)
@@ -63,26 +63,26 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
         let (motions, _) = descent::run(problem.pair(), drawn, &descent::Settings::default(), &exec).unwrap();
         let docked = motions.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count();
         assert!(1000 * docked as u64 >= 999 * POSES, "{docked} of {POSES} in ±{widths:?}");
-        let tight = found.axes.iter().find(|side| Some(side.axis) == found.tightest).unwrap();
-        assert!(tight.beside.to <= 1.02 * tight.half_width, "{found:?}");
-        for side in &found.axes {
-            assert!(side.half_width <= side.beside.to + 1e-12 && side.beside.to <= side.alone.to + 1e-12);
+        let tight = found.sides.iter().find(|side| Some(side.axis) == found.tightest).unwrap();
+        assert!(tight.beside <= 1.02 * tight.half_width, "{found:?}");
+        for side in &found.sides {
+            assert!(side.half_width <= side.beside + 1e-12 && side.beside <= side.alone + 1e-12);
             assert_eq!(side.given, settings.fixed[side.axis.index()].is_some());
         }
-        let worst = found.worst.unwrap();
+        let worst = found.worst.clone().unwrap();
         assert_ne!(problem.follow(&worst.error).outcome, Outcome::Aligned);
-        for (one, side) in found.axes.iter().enumerate() {
+        for (one, side) in found.sides.iter().enumerate() {
             let fails = |k: u64| {
                 let mut error = [0.0; 5];
-                for (j, other) in found.axes.iter().enumerate() {
-                    let most = if j == one { side.beside.to } else { other.half_width };
+                for (j, other) in found.sides.iter().enumerate() {
+                    let most = if j == one { side.beside } else { other.half_width };
                     error[other.axis.index()] = most * (2.0 * stream.uniform(5 * k + j as u64) - 1.0);
                 }
                 problem.follow(&PoseError::from_array(error)).outcome != Outcome::Aligned
             };
             let failed = (0..1000).filter(|k| fails(*k)).count();
             // Of 2000 that were tried beyond the window none was left that fails.
-            assert!(failed <= 3, "{failed} of 1000 with {} up to {}", side.axis.name(), side.beside.to);
+            assert!(failed <= 3, "{failed} of 1000 with {} up to {}", side.axis.name(), side.beside);
         }
     }
 }
@@ -106,9 +106,9 @@ fn what_is_given_stays_and_the_others_grow() {
         run(&problem, &settings, &exec).unwrap()
     };
     let (small, large) = (with(0.05), with(0.3));
-    let pitch = |found: &Window| found.axes[1].half_width;
+    let pitch = |found: &Window| found.sides[1].half_width;
     assert!(pitch(&small) > 1.1 * pitch(&large), "{small:?} {large:?}");
-    assert_eq!((large.axes[0].half_width, large.axes[0].given), (0.3, true));
+    assert_eq!((large.sides[0].half_width, large.sides[0].given), (0.3, true));
     let too_much = Settings { fixed: [Some(0.9), None, None, None, None], ..quick() };
     assert!(matches!(run(&problem, &too_much, &exec), Err(WindowError::GivenFails { .. })));
 }

@@ -1,10 +1,10 @@
 //! The same of the parts that only some methods have: basins, a partition, a sample.
 
 use super::{UnsoundError, hold, not_negative, share};
-use crate::schema::{BasinsReport, RunBody};
-use crate::{JamsFound, WindowSection};
+use crate::schema::{BasinsReport, RunBody, WindowSection};
 use catchment_core::method::certified::Certificate;
 use catchment_core::method::flood::Reason;
+use catchment_core::run::jams::Jams;
 
 impl RunBody {
     /// What must hold of the parts that are there.
@@ -83,7 +83,7 @@ fn check_window(found: &WindowSection) -> Result<(), UnsoundError> {
     share(found.found.certificate.failing_at_most, "window.certificate.failing_at_most")
 }
 
-fn check_jams(found: &JamsFound) -> Result<(), UnsoundError> {
+fn check_jams(found: &Jams) -> Result<(), UnsoundError> {
     let followed: Option<usize> =
         found.outcomes.values().try_fold(0usize, |sum, share| sum.checked_add(share.count));
     hold(followed == Some(found.motions), "jams.motions", "must be those of jams.outcomes")?;
@@ -147,8 +147,8 @@ fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError>
 
 #[cfg(test)]
 mod tests {
-    use crate::schema::{PartitionReport, RunBody, SampleReport, basins};
-    use crate::{JamsFound, Report, WindowSection};
+    use crate::Report;
+    use crate::schema::{PartitionReport, RunBody, SampleReport, WindowSection, basins};
     use catchment_core::exec::Exec;
     use catchment_core::method::certified::Certificate;
     use catchment_core::method::confluence::Joined;
@@ -170,7 +170,7 @@ mod tests {
         let problem = Problem::of(design.clone()).unwrap();
         let asked = jams::Settings { motions: Some(300), ..jams::Settings::default() };
         let found = jams::run(&problem, &asked, &Exec::new()).unwrap();
-        body.jams = Some(JamsFound::new(&design, &found));
+        body.jams = Some(found);
         let asked = window::Settings { motions: Some(100), ..window::Settings::default() };
         let found = window::run(&problem, &asked, &Exec::new()).unwrap();
         body.window = Some(WindowSection::from(&found));

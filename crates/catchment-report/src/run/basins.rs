@@ -1,20 +1,25 @@
-//! The basins as text: the largest of them, and what the depth tolerance decides.
+//! The basins: the largest of them, and what the depth tolerance decides.
 
-use crate::schema::{BasinsReport, Report};
-use crate::text::{grouped, line, percent, rounded, significant, wrapped};
+use crate::schema::{BasinsReport, RunBody};
+use catchment_core::document::{Column, Document, Format, Table, grouped, percent, rounded, significant};
 use catchment_core::method::flood::Reason;
 
-/// How many basins a person wants to see.
+/// Basins that are shown.
 const SHOWN: usize = 6;
-/// How many steps.
+/// Steps that are shown.
 const STEPS: usize = 8;
 
-/// Writes the basins of a report.
-pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
-    let axes: Vec<_> = report.axes.iter().map(|axis| axis.axis).collect();
+/// Describes the basins of a run.
+pub(super) fn describe(document: &mut Document, basins: &BasinsReport, run: &RunBody) {
+    let axes = super::axes(run);
     let names: Vec<&str> = axes.iter().map(|dof| dof.name()).collect();
-    let at = format!("lowest at {} [D, °]", names.join(", "));
-    line(text, &format!("  {:<10}{:>9}{:>9}{:>9}   {at}", "basin", "share", "depth", "escape"));
+    let mut table = Table::new([
+        Column::new("basin").left(),
+        Column::new("share").format(Format::Percent),
+        Column::new("depth"),
+        Column::new("escape"),
+        Column::new(format!("lowest at {} [D, °]", names.join(", "))).left(),
+    ]);
     for basin in basins.largest.iter().take(SHOWN) {
         let depth = |depth: Option<f64>| depth.map_or_else(|| "∞".to_owned(), significant);
         let pose = basin.minimum.to_array();
@@ -27,19 +32,17 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
             .collect();
         // Where nothing touches there is no lowest place.
         let place = basin.height.map_or_else(|| "no contact".to_owned(), |_| place.join(", "));
-        line(
-            text,
-            &format!(
-                "  {:<10}{:>9}{:>9}{:>9}   {place}",
-                basin.outcome.name(),
-                percent(basin.fraction),
-                depth(basin.depth),
-                depth(basin.escape),
-            ),
-        );
+        table.push([
+            basin.outcome.name().into(),
+            basin.fraction.into(),
+            depth(basin.depth).into(),
+            depth(basin.escape).into(),
+            place.into(),
+        ]);
     }
+    document.table(table);
     if basins.merged > SHOWN {
-        line(text, &format!("  and {} more", grouped(basins.merged - SHOWN)));
+        document.paragraph(format!("and {} more", grouped(basins.merged - SHOWN)));
     }
     let used = significant(basins.tolerance.depth);
     let why = match basins.tolerance.reason {
@@ -49,8 +52,10 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
         }
     };
     let (minima, merged) = (grouped(basins.minima), grouped(basins.merged));
-    let what = format!("basins shallower than {used} D; {why}. {minima} minima became {merged} basins.");
-    wrapped(text, "  merged    ", &what);
+    document.row(
+        "merged",
+        format!("basins shallower than {used} D; {why}. {minima} minima became {merged} basins."),
+    );
     let mut steps: Vec<String> = Vec::new();
     for step in basins.staircase.iter().take(STEPS) {
         let share = if step.cells == 0 { "nothing".to_owned() } else { percent(step.fraction) };
@@ -64,22 +69,22 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
         steps.push("…".to_owned());
     }
     if !steps.is_empty() {
-        wrapped(text, "  accepted by tolerance: ", &steps.join(", "));
+        document.paragraph(format!("accepted by tolerance: {}", steps.join(", ")));
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::Report;
     use crate::schema::basins::tests::flooded;
-    use crate::{Report, table};
     use catchment_core::exec::Exec;
     use catchment_core::method::flood::Flooding;
 
     #[test]
-    fn basins_and_tolerance_are_told_in_eighty_columns() {
+    fn basins_and_tolerance_fit_in_eighty_columns() {
         let (design, Flooding { acceptance, hierarchy, .. }) = flooded();
         let report = Report::new(&design, &acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap();
-        let text = table(&report.with_basins(&acceptance, &hierarchy));
+        let text = report.with_basins(&acceptance, &hierarchy).table();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         for word in ["aligned", "no contact", "no depth lies between", "accepted by tolerance"] {
             assert!(text.contains(word), "{word} is missing in\n{text}");

@@ -1,0 +1,244 @@
+//! Places of rest in words: where they are, how they are held, how high the way out is, what touches.
+
+use super::{Examined, Extent, FeatureContact, Firmness, NamedFeature};
+use crate::design::Design;
+use crate::document::{Document, Units, rounded_down, significant};
+use crate::method::descent::{Immobility, Order, Sticking};
+use crate::pose::{Dof, PoseError};
+
+/// Cosine of a pitch at which roll and yaw can no longer be told apart: 89°.
+const ON_ITS_SIDE: f64 = 0.0175;
+/// Heights below this are nothing, in D: rounding.
+const NOTHING: f64 = 1e-8;
+/// Heights nearer than this are one, in D.
+const ONE_HEIGHT: f64 = 1e-4;
+/// Contacts whose places are shown.
+const MOST_CONTACTS: usize = 4;
+/// Rests within this are at one place, in D or radians.
+const ONE_PLACE: f64 = 0.01;
+/// Dry halves have no more friction than this, mostly: wedging beyond it is not shown.
+const MOST_COMMON: f64 = 1.0;
+
+impl Immobility {
+    /// By which order it is held, in words.
+    pub fn words(&self) -> String {
+        let slope = match self.slope {
+            [from, to] if from == to => significant(to),
+            [from, to] => format!("{} to {}", significant(from), significant(to)),
+        };
+        let ways = if self.free == 1 { "one direction" } else { "some directions" };
+        let bends = self.curvature.map_or_else(String::new, |curvature| {
+            format!(", curvature {} per D", significant(curvature).replace('-', "−"))
+        });
+        match self.order {
+            Order::First => format!("first-order immobile (smallest slope {slope})"),
+            Order::Second => format!("second-order immobile: {ways} free to first order{bends}"),
+            Order::Neutral if self.free == 0 => "held, but hardly: its smallest slope is almost 0".to_owned(),
+            Order::Neutral => format!("neutral: {ways} free to first and second order"),
+            Order::Unstable => format!("unstable: {ways} free to first order{bends}"),
+        }
+    }
+}
+
+impl Sticking {
+    /// From which friction it sticks, in words.
+    pub fn words(&self) -> String {
+        let held = match (self.holds_from, self.slips_until) {
+            (None, _) => "slips at any friction".to_owned(),
+            (Some(0.0), _) => "contacts alone hold it, without friction".to_owned(),
+            (Some(from), None) => format!("may stick from {from:.3} on, and may slip at any friction"),
+            (Some(from), Some(until)) => format!("may stick from {from:.3} on, slips until {until:.3}"),
+        };
+        match self.wedges_from.filter(|from| *from <= MOST_COMMON) {
+            Some(from) => format!("{held}; wedges from {from:.3} on, and may then hold against a pull out"),
+            None => held,
+        }
+    }
+}
+
+impl Examined {
+    /// Whether nothing but so much friction holds it.
+    pub fn is_held_by_friction(&self, friction: f64) -> bool {
+        friction > 0.0 && (self.firmness == Firmness::Ridge || self.immobility.is_none())
+    }
+}
+
+/// What touches, in words, the same pairs once: `rim of the moving half on wall of the fixed one, twice`.
+pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
+    let mut pairs: Vec<(String, usize)> = Vec::new();
+    for contact in contacts {
+        let words =
+            format!("{} of the moving half on {} of the fixed one", contact.moving.name, contact.fixed.name);
+        match pairs.iter_mut().find(|(other, _)| *other == words) {
+            Some((_, count)) => *count += 1,
+            None => pairs.push((words, 1)),
+        }
+    }
+    let times = |count: usize| match count {
+        1 => String::new(),
+        2 => ", twice".to_owned(),
+        n => format!(", {n} times"),
+    };
+    pairs.into_iter().map(|(words, count)| words + &times(count)).collect()
+}
+
+/// How far a half must be lifted, in words.
+pub fn lifted(design: &Design, climb: f64) -> String {
+    if climb < NOTHING {
+        "not lifted at all".to_owned()
+    } else {
+        format!("lifted by {} at most", Units::of(design).fine(climb))
+    }
+}
+
+/// Places of rest of a design in words.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::run) struct Places<'a> {
+    units: Units<'a>,
+    friction: f64,
+}
+
+impl<'a> Places<'a> {
+    pub(in crate::run) const fn of(design: &'a Design, friction: f64) -> Self {
+        Self { units: Units::of(design), friction }
+    }
+
+    /// The pose of a rest, and its height above the mated pose.
+    pub(in crate::run) fn pose(
+        self,
+        document: &mut Document,
+        pose: &PoseError,
+        above: f64,
+        extent: &[Extent],
+    ) {
+        document.row("  rests at", format!("{}{}", self.units.pose(pose), self.above(above)));
+        let wide = self.extent(pose, extent);
+        if !wide.is_empty() {
+            document.row("  anywhere in", wide);
+        }
+    }
+
+    /// `, 1.2 mm above the mated pose`; nothing where it is as high.
+    fn above(self, above: f64) -> String {
+        if above.abs() < ONE_HEIGHT {
+            return String::new();
+        }
+        let side = if above < 0.0 { "below" } else { "above" };
+        format!(", {} {side} the mated pose", self.units.length(above.abs()))
+    }
+
+    /// From where to where rests lie where that is more than a place.
+    fn extent(self, pose: &PoseError, extent: &[Extent]) -> String {
+        // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
+        let on_its_side = pose.pitch.cos().abs() < ON_ITS_SIDE;
+        let is_shown = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
+        let wide = extent.iter().filter(|side| is_shown(side.axis) && side.to - side.from > ONE_PLACE);
+        let parts: Vec<String> = wide
+            .map(|side| {
+                if side.axis.is_rotation() {
+                    let [from, to] = [side.from, side.to].map(|value| value.to_degrees() + 0.0);
+                    format!("{} {from:.1} … {to:.1}°", side.axis.name())
+                } else {
+                    let [from, to] = [side.from, side.to].map(|value| self.units.plain(value));
+                    format!("{} {from} … {to} {}", side.axis.name(), self.units.unit())
+                }
+            })
+            .collect();
+        parts.join(", ")
+    }
+
+    /// By which order contacts hold it.
+    pub(in crate::run) fn order(self, document: &mut Document, examined: &Examined) {
+        if let Some(held) = &examined.immobility {
+            document.row("  order", held.words());
+        }
+    }
+
+    /// How firmly it is held, and by how much friction: where friction is asked about, or contacts alone do not hold it.
+    pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
+        document.row("  held", self.firmness(examined));
+        let asked = |_: &Sticking| self.friction > 0.0 || examined.immobility.is_none();
+        if let Some(sticks) = examined.sticks.filter(asked) {
+            document.row("  friction", sticks.words());
+        }
+    }
+
+    fn firmness(self, examined: &Examined) -> String {
+        let push = self.units.length(examined.push_d);
+        let Examined { back, pushed, .. } = examined;
+        if examined.is_held_by_friction(self.friction) {
+            return format!("by friction alone; {back} of {pushed} poses beside it stay or come back");
+        }
+        let rise = match (examined.firmness, examined.rise_at_most_d) {
+            (Firmness::Level, Some(rise)) => {
+                format!(
+                    "near-level: pushed {push} in the weakest direction it rises by only {}",
+                    self.units.fine(rise)
+                )
+            }
+            (Firmness::Ridge, _) => {
+                format!(
+                    "not at all: pushed {push} in the weakest direction it falls; it came to rest on a ridge"
+                )
+            }
+            (firmness, Some(rise)) => {
+                let rise = self.units.fine(rise);
+                format!("{}: pushed {push} in the weakest direction it rises by {rise}", firmness.name())
+            }
+            (firmness, None) => format!("{}: walls all around", firmness.name()),
+        };
+        format!("{rise}; {back} of {pushed} poses beside it come back")
+    }
+
+    /// How far it must be lifted to get out, and where that leads.
+    pub(in crate::run) fn escape(self, climb: f64, to: &str) -> String {
+        if climb < NOTHING {
+            format!("0: it {to}")
+        } else {
+            format!("at most {}: it {to}", self.units.fine(climb))
+        }
+    }
+
+    /// Escape heights beside that of the way that was found: from below, and on a grid, where these were asked for.
+    pub(in crate::run) fn depths(
+        self,
+        document: &mut Document,
+        [certified, grid]: [bool; 2],
+        at_least: Option<f64>,
+        on_grid: Option<f64>,
+    ) {
+        if let Some(depth) = at_least {
+            let depth = if depth < NOTHING { 0.0 } else { depth };
+            let depth = rounded_down(depth * self.units.scale());
+            document.more(format!("at least {depth} {}, certainly", self.units.unit()));
+        } else if certified {
+            document.more("a certain lower bound was not found");
+        }
+        if let Some(depth) = on_grid {
+            document.more(format!("{} by the merge tree of the grid", self.units.fine(depth)));
+        } else if grid {
+            document.more(
+                "not known by the grid: it rests outside the error box, or in the basin of a neighbour",
+            );
+        }
+    }
+
+    /// What touches, and where on either half.
+    pub(in crate::run) fn contacts(self, document: &mut Document, contacts: &[FeatureContact]) {
+        for (k, words) in contacts_in_words(contacts).into_iter().enumerate() {
+            document.row(if k == 0 { "  contact" } else { "" }, words);
+        }
+        for contact in contacts.iter().take(MOST_CONTACTS) {
+            let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
+            document.more(format!("at {fixed} of the fixed, {moving} of the moving half as drawn"));
+        }
+        if contacts.len() > MOST_CONTACTS {
+            document.more(format!("and at {} more", contacts.len() - MOST_CONTACTS));
+        }
+    }
+
+    fn drawn(self, feature: &NamedFeature) -> String {
+        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
+        format!("{}{part}", self.units.point(feature.drawn_d))
+    }
+}

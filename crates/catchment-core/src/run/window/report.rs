@@ -1,0 +1,117 @@
+//! What people read of a window.
+
+use super::{Certificate, Window, WindowDetails};
+use crate::acceptance::Outcome;
+use crate::design::Design;
+use crate::document::{Cell, Column, Document, Subject, Table, Units, grouped};
+
+/// Contacts of the worst pose that are shown.
+const MOST_TOUCHES: usize = 4;
+
+impl Subject for Window {
+    const KIND: &'static str = "window";
+
+    fn document(&self, design: &Design) -> Document {
+        let mut document = Document::default();
+        document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
+        if self.settings.friction > 0.0 {
+            document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
+        }
+        document.section(None);
+        self.describe(&mut document, design);
+        document.section(None);
+        self.describe_worst(&mut document, design);
+        document
+    }
+}
+
+impl WindowDetails {
+    /// The window and its certificate, without the worst pose.
+    pub fn describe(&self, document: &mut Document, design: &Design) {
+        document.table(self.table(design));
+        if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
+            document.paragraph("* the error box ends there: the limit may lie further out");
+        }
+        document.section(None);
+        let Certificate { motions, failing_at_most, redrawn } = self.certificate;
+        if motions == 0 {
+            document.row("certificate", "none: no random poses were asked for");
+            return;
+        }
+        let one_in = grouped((1.0 / failing_at_most).floor() as usize);
+        document.row(
+            "certificate",
+            format!(
+                "0 failures in {} sampled poses of the window: failure rate below 1 in {one_in} (95 % confidence)",
+                grouped(motions)
+            ),
+        );
+        if redrawn > 0 {
+            document.more(format!("{redrawn} larger windows failed it before"));
+        }
+    }
+
+    fn table(&self, design: &Design) -> Table {
+        let units = Units::of(design);
+        let mut table = Table::new([
+            Column::new("error").key("axis").left(),
+            Column::new("window").key("half_width"),
+            Column::data("given"),
+            Column::new("alone").key("alone"),
+            Column::data("alone_reaches_border"),
+            Column::new("others in the window").key("beside"),
+            Column::data("beside_reaches_border"),
+            Column::new("").left(),
+        ]);
+        for side in &self.sides {
+            let reach = |to: f64, is_border: bool| {
+                let star = if is_border { "*" } else { "" };
+                Cell::shown(format!("{}{star}", units.half_width(side.axis, to)), to)
+            };
+            let tightest = if Some(side.axis) == self.tightest { "limits the window" } else { "" };
+            let given = if side.given { "given" } else { tightest };
+            table.push([
+                side.axis.name().into(),
+                reach(side.half_width, false),
+                side.given.into(),
+                reach(side.alone, side.alone_reaches_border),
+                side.alone_reaches_border.into(),
+                reach(side.beside, side.beside_reaches_border),
+                side.beside_reaches_border.into(),
+                given.into(),
+            ]);
+        }
+        table
+    }
+
+    fn describe_worst(&self, document: &mut Document, design: &Design) {
+        let units = Units::of(design);
+        let Some(worst) = &self.worst else {
+            document.row("worst pose", "none was found: the window ends at the error box");
+            return;
+        };
+        document.row("worst pose", format!("{}: {}", units.pose(&worst.error), worst.outcome.name()));
+        if worst.outcome == Outcome::Jammed {
+            document.more(format!("rests at {}", units.pose(&worst.end)));
+        }
+        // Corners, edges and facets that meet at one point are one place.
+        let mut places: Vec<String> = Vec::new();
+        for place in worst.touches.iter().map(|touch| units.point(touch.point.to_array())) {
+            if !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        for place in places.iter().take(MOST_TOUCHES) {
+            document.more(format!("contact at {place}"));
+        }
+        match places.len().saturating_sub(MOST_TOUCHES) {
+            0 => {}
+            1 => {
+                document.more("and at 1 place more");
+            }
+            more => {
+                document.more(format!("and at {more} places more"));
+            }
+        }
+    }
+}

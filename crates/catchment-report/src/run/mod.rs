@@ -1,0 +1,404 @@
+//! What people read of a run.
+
+mod basins;
+mod certificate;
+mod seat;
+
+use super::document::{Printed, Style, heading, lines};
+use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, RunBody, ToleranceReport, UprightReport};
+use catchment_core::design::{ConnectorSpec, Design};
+use catchment_core::document::{
+    Cell, Column, Document, Table, Units, decimals, grouped, percent, significant, tenths, with_error,
+};
+use catchment_core::pose::Dof;
+use catchment_core::run::Upright;
+use catchment_core::run::jams::{Jams, contacts_in_words};
+
+/// Jams that are shown.
+const JAMS: usize = 3;
+
+impl Printed for RunBody {
+    fn title(&self) -> &str {
+        &self.design.name
+    }
+
+    fn document(&self) -> Document {
+        let mut document = heading(&self.design);
+        document.row("method", format!("{}, {}", self.method, self.domain()));
+        let friction = self.friction();
+        if friction > 0.0 {
+            document.row("friction", format!("{friction} between the halves (Coulomb)"));
+        }
+        if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
+            document.row("slope threshold", format!("{slope}: motion ends where the height falls less"));
+        }
+        if let ConnectorSpec::Own(own) = &self.design.connector {
+            for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+                for done in
+                    [half.meshing_told(&self.design), half.repairs_told(&self.design)].into_iter().flatten()
+                {
+                    document.row(name, done);
+                }
+            }
+        }
+        self.describe_limits(&mut document);
+        if let Some(success) = &self.success {
+            let outside = format!("{} of the errors lie outside the error box", percent(success.outside));
+            document.section(None).row("success", format!("{}   ({outside})", percent(success.probability)));
+            let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
+            let what = if success.ci95.is_some() { "95 % CI" } else { "if the border moves by one cell:" };
+            document.more(format!("{what} {lo} … {hi}"));
+        }
+        document.section(None);
+        self.describe_acceptance(&mut document);
+        if let Some(onaa) = &self.onaa {
+            document.row("ONAA edge", edge(onaa));
+        }
+        if let Some(found) = &self.seat {
+            document.section(None);
+            seat::describe(&mut document, found, &self.design);
+        }
+        self.describe_by_products(&mut document);
+        if let Some(found) = &self.window {
+            document.section(None);
+            found.found.describe(&mut document, &self.design);
+        }
+        if let Some(found) = &self.jams {
+            document.section(None);
+            describe_jams(&mut document, found, &self.design);
+        }
+        document
+    }
+}
+
+impl RunBody {
+    /// The by-products of its method.
+    fn describe_by_products(&self, document: &mut Document) {
+        if let Some(found) = &self.basins {
+            document.section(None);
+            basins::describe(document, found, self);
+        }
+        if let Some(found) = &self.watersheds {
+            let [first, merged, dams] =
+                [found.counts.first, found.counts.merged, found.counts.dams].map(grouped);
+            let dams = if found.counts.dams > 0 { format!(" (and {dams} dam cells)") } else { String::new() };
+            document.row("watersheds", format!("{first} first labels{dams}, {merged} after merging"));
+            document.more(format!("{} of the cells joined another", percent(found.moved_share)));
+        }
+        if let Some(found) = &self.joined {
+            let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
+            document.row(
+                "inherited",
+                format!("{joined} of {cells} contact cells inherit a neighbour's outcome;"),
+            );
+            let most = percent(found.wrong_ci95[1]);
+            document.more(match found.tried {
+                0 => "none of them was re-checked".to_owned(),
+                _ => {
+                    format!("{} of {tried} re-checked differ (at most {most} of them)", grouped(found.wrong))
+                }
+            });
+        }
+        if let Some(found) = &self.partition {
+            let counts = found.counts;
+            let [polytopes, cells, parts, rests] =
+                [counts.polytopes, counts.cells, counts.parts, counts.rests].map(grouped);
+            let sum = format!("{:.4} {} accepted, exactly", found.sum, self.acceptance.unit);
+            document.section(None).row("partition", sum);
+            document
+                .more(format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"));
+        }
+        if let Some(found) = &self.certificate {
+            document.section(None);
+            certificate::describe(document, found, self);
+        }
+    }
+
+    /// Its cells or poses.
+    fn domain(&self) -> String {
+        if self.axes.is_empty() {
+            return format!("{} poses", grouped(self.acceptance.cells));
+        }
+        let cells: Vec<String> = self.axes.iter().map(|a| a.cells.to_string()).collect();
+        format!("{} = {} cells", cells.join(" × "), grouped(self.acceptance.cells))
+    }
+
+    fn describe_acceptance(&self, document: &mut Document) {
+        let a = &self.acceptance;
+        let share = match upper_end(a) {
+            Some(_) => "too few sampled poses docked to say more".to_owned(),
+            None => format!("{} of the error box", percent(a.fraction)),
+        };
+        document.row("AA (Sum)", format!("{}   ({share})", sum(a)));
+        if a.sum_ci95.is_some() {
+            let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
+            document.more(format!("95 % CI, {} sampled poses", grouped(poses)));
+        }
+        if let Some([lo, hi]) = a.sum_bracket.map(|ends| ends.map(significant)) {
+            document.more(match (self.certificate.is_some(), a.sample.is_some()) {
+                (true, _) => format!("for certain: {lo} … {hi}"),
+                (_, true) => {
+                    format!("grid: {}; {lo} … {hi} if its border moves by one cell", significant(a.sum_grid))
+                }
+                (_, false) => format!("{lo} … {hi} if its border moves by one cell"),
+            });
+        }
+        if let Some(sample) = &a.sample {
+            let [lo, hi] = sample.differing_ci95.map(percent);
+            let share = percent(sample.differing);
+            document
+                .row("misclassified", format!("{share} of the error box by the grid (95 % CI {lo} … {hi})"));
+        }
+        let share = |n: usize| tenths(if a.cells == 0 { 0.0 } else { n as f64 / a.cells as f64 });
+        let o = &a.outcomes;
+        document.row(
+            "outcomes",
+            format!(
+                "aligned {}  jammed {}  missed {}  undecided {}",
+                share(o.aligned),
+                share(o.jammed),
+                share(o.missed),
+                share(o.undecided)
+            ),
+        );
+    }
+
+    /// The tolerance window, and the limit of each error alone.
+    fn describe_limits(&self, document: &mut Document) {
+        let centered = self.centered.as_ref();
+        if self.tolerances.is_empty() && centered.is_none() {
+            return;
+        }
+        document.section(None);
+        let mut is_open = limits(document, &self.design, centered, &self.tolerances);
+        if let Some(found) = &self.upright {
+            document.paragraph("with roll and pitch locked");
+            is_open |= limits(document, &self.design, Some(&found.window), &found.tolerances);
+        }
+        match centered {
+            Some(found) if found.followed => {
+                let all = found.sampled.map_or_else(
+                    || "every sampled pose docks".to_owned(),
+                    |poses| format!("all of {} sampled poses dock", grouped(poses)),
+                );
+                document.paragraph(format!("window: largest centred box in which {all}"));
+            }
+            Some(_) => {
+                document.paragraph("window: largest centred box of accepted cells");
+            }
+            None => {}
+        }
+        if self.tolerances.iter().all(|t| t.followed) {
+            document.paragraph("single-axis limit: one error, all others zero");
+        } else if self.certificate.is_some() {
+            document.paragraph("single-axis limit: at least, as far as whole cells dock for certain");
+        } else {
+            let half = |t: &ToleranceReport| {
+                if t.axis.is_rotation() {
+                    format!("{} {:.2}°", t.axis.name(), t.half_cell.to_degrees())
+                } else {
+                    format!("{} {:.4} D", t.axis.name(), t.half_cell)
+                }
+            };
+            let half: Vec<String> = self.tolerances.iter().map(half).collect();
+            document.paragraph(format!(
+                "single-axis limit: one error, all others zero, ± half a cell: {}",
+                half.join(", ")
+            ));
+        }
+        if is_open {
+            document.paragraph("* ends at the error box, perhaps larger");
+        }
+    }
+}
+
+/// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`. Where half the interval is more than the Sum, its upper
+/// end alone: too few sampled poses docked to say more.
+pub(super) fn sum(a: &AcceptanceReport) -> String {
+    let sum = match (upper_end(a), a.sum_ci95) {
+        (Some(hi), _) => format!("below {}", significant(hi)),
+        (None, Some(ci95)) => with_error(a.sum, ci95),
+        (None, None) => significant(a.sum),
+    };
+    format!("{sum} {}", a.unit)
+}
+
+/// The upper end of an interval that is wider than twice the Sum.
+pub(super) fn upper_end(a: &AcceptanceReport) -> Option<f64> {
+    a.sum_ci95.and_then(|[lo, hi]| (hi - lo > 2.0 * a.sum).then_some(hi))
+}
+
+fn edge(onaa: &OnaaReport) -> String {
+    if onaa.bounds.is_empty() {
+        return "0   no cell is accepted".to_owned();
+    }
+    format!("{:.4}   of the error box, along every axis", onaa.edge)
+}
+
+/// Where motions rest that do not dock, in short.
+fn describe_jams(document: &mut Document, found: &Jams, design: &Design) {
+    let count = found.jams.len();
+    let places = match count {
+        0 => "none".to_owned(),
+        1 => "one place".to_owned(),
+        count => format!("{} places", grouped(count)),
+    };
+    document.row("jams", format!("{places}, of {} random poses followed exactly", grouped(found.motions)));
+    for (number, jam) in (1..).zip(found.jams.iter().take(JAMS)) {
+        let touching = contacts_in_words(&jam.contacts).join("; ");
+        let [of_box, of_failures] = [jam.of_box.share, jam.of_failures].map(tenths);
+        let place = Units::of(design).pose(&jam.pose);
+        document.row(
+            format!("jam {number}"),
+            format!("{of_box} of the error box, {of_failures} of failures, at {place}: {touching}"),
+        );
+    }
+    if count > JAMS {
+        let poses: usize = found.jams[JAMS..].iter().map(|jam| jam.of_box.count).sum();
+        let share = tenths(poses as f64 / found.motions as f64);
+        document.more(format!("and {} more, {share} of the error box together", grouped(count - JAMS)));
+    }
+}
+
+/// What is known long before the rest of a long run: the tolerances with roll and pitch locked, as lines.
+pub fn first_look(design: &Design, found: &Upright) -> Vec<String> {
+    let UprightReport { window, tolerances } = found.into();
+    let mut document = Document::default();
+    document.section("first look, with roll and pitch locked:");
+    limits(&mut document, design, Some(&window), &tolerances);
+    lines(&document, Style::default())
+}
+
+/// A row per error; says whether the error box ends any of them.
+fn limits(
+    document: &mut Document,
+    design: &Design,
+    window: Option<&CenteredReport>,
+    limits: &[ToleranceReport],
+) -> bool {
+    let mut table = Table::new([
+        Column::new("error").key("axis").left(),
+        Column::new("tolerance window").key("half_width"),
+        Column::new("single-axis limit"),
+        Column::new("D, rad"),
+        Column::data("minus"),
+        Column::data("plus"),
+    ]);
+    let mut is_open = false;
+    for axis in design.alignment.free.iter() {
+        let side = window.and_then(|found| found.bounds.iter().find(|side| side.axis == axis));
+        let limit = limits.iter().find(|limit| limit.axis == axis);
+        if side.is_none() && limit.is_none() {
+            continue;
+        }
+        let box_ends = window.is_some_and(|found| found.reaches_border);
+        is_open |=
+            box_ends || limit.is_some_and(|limit| limit.minus_reaches_border || limit.plus_reaches_border);
+        let star = if box_ends { "*" } else { "" };
+        let half_width = side.map(|side| {
+            Cell::shown(format!("{}{star}", Units::of(design).half_width(axis, side.hi)), side.hi)
+        });
+        let shown = |words: fn(&ToleranceReport, &Design) -> String| limit.map(|limit| words(limit, design));
+        table.push([
+            axis.name().into(),
+            half_width.unwrap_or_default(),
+            shown(in_own_unit).into(),
+            shown(|limit, _| both(limit, 1.0, 4, "")).into(),
+            limit.map(|limit| limit.minus).into(),
+            limit.map(|limit| limit.plus).into(),
+        ]);
+    }
+    document.table(table);
+    is_open
+}
+
+/// A limit in the unit of the design, or in D; angles in degrees.
+fn in_own_unit(limit: &ToleranceReport, design: &Design) -> String {
+    if limit.axis.is_rotation() {
+        return both(limit, 1f64.to_degrees(), 2, "°");
+    }
+    match design.unit {
+        Some(unit) => format!("{} {}", both(limit, design.width, decimals(design.width), ""), unit.symbol()),
+        None => format!("{} D", both(limit, 1.0, 4, "")),
+    }
+}
+
+/// `±0.5` where both sides agree, `−0.5 / +0.3` where they do not; a star where the error box cut it off.
+fn both(t: &ToleranceReport, scale: f64, digits: usize, unit: &str) -> String {
+    let side = |value: f64, is_open: bool| {
+        format!("{:.digits$}{unit}{}", value * scale, if is_open { "*" } else { "" })
+    };
+    let (minus, plus) = (side(t.minus, t.minus_reaches_border), side(t.plus, t.plus_reaches_border));
+    if minus == plus { format!("±{plus}") } else { format!("−{minus} / +{plus}") }
+}
+
+/// Names of the axes of the error grid.
+fn axes(body: &RunBody) -> Vec<Dof> {
+    body.axes.iter().map(|axis| axis.axis).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Report;
+    use crate::schema::testing::*;
+    use catchment_core::acceptance::Warning;
+    use catchment_core::contact::Play;
+    use catchment_core::design::LengthUnit;
+    use catchment_core::exec::Exec;
+    use catchment_core::pose::{Dof, DofSet};
+    use catchment_core::run::{Residual, Seating};
+
+    fn text(free: DofSet, cells: usize) -> String {
+        let design = design(free);
+        let mut blob = blob(&design, cells);
+        blob.warnings.push(Warning::Undecided { cells: 3 });
+        Report::new(&design, &blob, serde_json::Value::Null, None, &Exec::new()).unwrap().table()
+    }
+
+    #[test]
+    fn it_fits_in_eighty_columns_and_names_the_units() {
+        let text = text(DofSet::ALL, 8);
+        for line in text.lines() {
+            assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");
+        }
+        for word in
+            ["pyramid, AR 1/2", "D = 50 mm", "D²·rad³", "32 768 cells", "ONAA", "mm", "°", "warning: "]
+        {
+            assert!(text.contains(word), "{word} is missing in\n{text}");
+        }
+    }
+
+    #[test]
+    fn tolerances_stand_in_every_unit() {
+        // x: aligned while 1.96 x² < 0.7, so to the border of the cell with centre 0.59: 0.6 D = 30 mm.
+        let text = text([Dof::X].into_iter().collect(), 100);
+        let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
+        assert_eq!(
+            row.split_whitespace().collect::<Vec<_>>(),
+            ["x", "±30.000", "mm", "±30.000", "mm", "±0.6000"]
+        );
+    }
+
+    /// A part of 16 mm whose design is in metres: nothing in it is 0.000 m.
+    #[test]
+    fn a_part_in_metres_has_its_digits() {
+        let mut design = design([Dof::X].into_iter().collect());
+        (design.width, design.unit) = (0.016, Some(LengthUnit::M));
+        let blob = blob(&design, 100);
+        let mut report = Report::new(&design, &blob, serde_json::Value::Null, None, &Exec::new()).unwrap();
+        let play = Play { axis: Dof::X, minus: 0.05, plus: 0.05 };
+        let off = Residual { axis: Dof::X, mean: 0.02, p95: 0.04, most: 0.05 };
+        report.seat =
+            Some(Seating { depth: 0.002, play: vec![play], poses: 11, residual: vec![off], deeper: None });
+        let text = report.table();
+        let row = |start: &str| text.lines().find(|l| l.trim_start().starts_with(start)).unwrap();
+        assert_eq!(
+            row("x  ").split_whitespace().collect::<Vec<_>>(),
+            ["x", "±0.00960", "m", "±0.00960", "m", "±0.6000"]
+        );
+        assert!(row("seat").contains("within 0.00003 m of"), "{text}");
+        for told in ["±0.00080 m", "0.00032 m", "0.00064 m"] {
+            assert!(text.contains(told), "{text}");
+        }
+    }
+}
