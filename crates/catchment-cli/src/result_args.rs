@@ -130,6 +130,11 @@ pub(crate) struct Output<'a> {
 }
 
 impl ResultArgs {
+    /// Whether JSON is printed.
+    pub(crate) const fn is_json(&self) -> bool {
+        self.print.json
+    }
+
     /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
     /// picture of it.
     pub(crate) fn check(&self, report: &'static str, drawable: bool) -> Result<Output<'_>, Failure> {
@@ -168,6 +173,20 @@ impl ResultArgs {
 }
 
 impl Output<'_> {
+    /// The same without its pictures, where there is nothing to draw.
+    pub(crate) fn without_picture(self, is_without: bool) -> Self {
+        let kept = |place: &(&Path, Kind)| !is_without || !place.1.is_picture();
+        Self { file: self.file.filter(kept), figure: self.figure.filter(kept), ..self }
+    }
+
+    /// Writes the pictures alone.
+    pub(crate) fn draw(&self, draw: impl Fn() -> Result<Picture, Failure>) -> Result<(), Failure> {
+        for (path, kind) in self.file.iter().chain(&self.figure).filter(|(_, kind)| kind.is_picture()) {
+            write_file(path, &image(&draw()?, kind.ending())?, self.args.force)?;
+        }
+        Ok(())
+    }
+
     /// Whether a picture is to be written.
     pub(crate) fn wants_picture(&self) -> bool {
         self.figure.is_some() || self.file.is_some_and(|(_, kind)| kind.is_picture() || kind == Kind::Folder)

@@ -1,12 +1,13 @@
 //! A design file that was checked: the design as it is understood, or everything that is wrong with it.
 
+use super::document::Printed;
 use super::envelope::{Body, Envelope};
-use super::text::{self, line};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
     ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
 };
 use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
+use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
 use catchment_core::pose::{Dof, DofSet, PoseError};
 use catchment_core::problem::Problem;
 use glam::{DAffine3, DVec3};
@@ -161,22 +162,50 @@ impl CheckReport {
         };
         Self::of(body, Vec::new(), None)
     }
+}
 
-    /// The design as understood, degrees and lengths in its own unit beside D; or the problems, a line each.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
+impl Printed for CheckBody {
+    fn title(&self) -> &str {
+        &self.file
+    }
+
+    /// The design as it was understood, or the table of problems.
+    fn document(&self) -> Document {
+        let mut document = Document::default();
         if let Some(design) = &self.design {
-            line(&mut text, &format!("{}: no problems", self.file));
-            understood(&mut text, design, self.drawing.as_ref(), self.ungendered == Some(true));
+            document.row("problems", "none");
+            understood(&mut document, design, self.drawing.as_ref(), self.ungendered == Some(true));
         }
-        for problem in &self.problems {
-            let place = problem.place.map_or_else(String::new, |p| format!("{}:{}:", p.line, p.column));
-            line(&mut text, &format!("{}:{place} {}", self.file, problem.message));
-        }
+        document.section(None).table(self.table_of_problems());
         if self.omitted > 0 {
-            line(&mut text, &format!("and {} more", self.omitted));
+            document.paragraph(format!("and {} more", self.omitted));
         }
-        text
+        document
+    }
+}
+
+impl CheckBody {
+    /// Shown where there are problems; of a design without any programs read the names of the columns alone.
+    fn table_of_problems(&self) -> Table {
+        let column = |title: &str, key: &str| match self.problems.is_empty() {
+            true => Column::data(key),
+            false => Column::new(title).key(key).left(),
+        };
+        let mut table = Table::new([
+            Column { left: false, ..column("line", "line") },
+            Column { left: false, ..column("column", "column") },
+            column("problem", "message"),
+            column("advice", "help"),
+        ]);
+        for problem in &self.problems {
+            table.push([
+                problem.place.map(|place| place.line).into(),
+                problem.place.map(|place| place.column).into(),
+                problem.message.clone().into(),
+                problem.help.clone().into(),
+            ]);
+        }
+        table
     }
 }
 
@@ -185,13 +214,15 @@ fn shown(source: Option<&SourceText>) -> String {
     source.map_or_else(String::new, |source| source.path.display().to_string())
 }
 
-fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
+fn understood(document: &mut Document, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
     let alignment = &design.alignment;
     let length = |d: f64| match design.unit {
-        Some(unit) => format!("{} D = {} {}", text::rounded(d), rounded(d * design.width), unit.symbol()),
+        Some(unit) => format!("{} D = {} {}", shortened(d), rounded(d * design.width), unit.symbol()),
         None => format!("{d} D"),
     };
-    let mut row = |name: &str, value: &str| line(text, &format!("  {name:<20}{value}"));
+    let mut row = |name: &str, value: &str| {
+        document.row(name, value);
+    };
     row("name", &design.name);
     match &design.connector {
         ConnectorSpec::Family(spec) => {
@@ -239,7 +270,7 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
             let amount = |(dof, off): (Dof, f64)| match design.unit {
                 _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
                 Some(unit) => {
-                    let off = text::length(off * design.width, design.width);
+                    let off = length_in(off * design.width, design.width);
                     format!("{} {off} {}", dof.name(), unit.symbol())
                 }
                 None => format!("{} {off:.5} D", dof.name()),
@@ -372,16 +403,21 @@ mod tests {
     #[test]
     fn names_in_a_check_are_harmless() {
         let text = CheckReport::good(&problem("evil\u{1b}[2J\nname", "a\u{7}.toml")).table();
-        assert!(text.starts_with("a?.toml: no problems\n  name                evil?[2J?name\n"), "{text}");
+        assert!(
+            text.starts_with("a?.toml\n") && text.contains("  name                evil?[2J?name\n"),
+            "{text}"
+        );
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
         assert!(text.contains("  error in pitch      up to 90 deg\n"), "{text}");
     }
 
     #[test]
-    fn problems_are_told_with_their_places() {
+    fn problems_have_their_places() {
         let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\nkey = 4\n"));
         let list = vec![Finding::new("no such key", None).at(Some(18..19)), Finding::new("empty", None)];
         let report = CheckReport::bad(&Findings { source, list, omitted: 2 });
-        assert_eq!(report.table(), "d.toml:3:7: no such key\nd.toml: empty\nand 2 more\n");
+        let text = report.table();
+        assert!(text.contains("     3       7  no such key\n") && text.ends_with("  and 2 more\n"), "{text}");
+        assert_eq!(report.records()[2], ["", "", "empty", ""]);
     }
 }

@@ -1,9 +1,10 @@
 //! A drop test that was written for other engines: what it was, and where it lies.
 
+use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::line;
 use catchment_core::design::Design;
+use catchment_core::document::Document;
 use catchment_core::pose::PoseError;
 use serde::Serialize;
 
@@ -37,13 +38,17 @@ impl ExportReport {
     pub fn new(body: ExportBody, warnings: Vec<WarningReport>) -> Self {
         Self::of(body, warnings, None)
     }
+}
 
-    /// The files, a line each.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        for file in [&self.mjcf, &self.sdf] {
-            line(&mut text, file);
-        }
-        text
+impl Printed for ExportBody {
+    fn title(&self) -> &str {
+        &self.design.name
+    }
+
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        document.row("MJCF", self.mjcf.clone()).row("SDF", self.sdf.clone());
+        document.row("meshes", self.meshes.to_string());
+        document
     }
 }

@@ -4,9 +4,9 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, image, to_stdout};
+use crate::result_args::{ResultArgs, no_picture};
 use catchment::problem::ProblemError;
-use catchment::report::{CheckReport, figure};
+use catchment::report::{Body, CheckBody, CheckReport, figure};
 use clap::Args;
 
 /// Check a design file: all problems at once, with their places
@@ -21,46 +21,43 @@ use clap::Args;
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Print problems, or the design as understood, as JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["svg", "png"])?;
+    let output = args.result.check(CheckBody::KIND, true)?;
     let running = args.exec.start()?;
-    if kind.is_some() {
+    if output.wants_picture() {
         figure::ensure_fits(0, &running.exec)?;
     }
     running.may_be_left();
-    let judged = args.design.draft_on(&running.exec).and_then(|draft| draft.judged_on(&running.exec));
-    // Also of halves that are refused for their mated pose: a picture shows why.
-    let picture = match (kind, &judged) {
-        (Some(kind), Ok((problem, _))) => Some(image(&figure::pair(problem)?, kind)?),
-        _ => None,
-    };
-    let checked = judged.and_then(|(problem, refusal)| match refusal {
-        None => problem.checked(),
-        Some(findings) => Err(findings.into()),
-    });
+    let (checked, problem) =
+        match args.design.draft_on(&running.exec).and_then(|draft| draft.judged_on(&running.exec)) {
+            Ok((problem, None)) => (problem.clone().checked(), Some(problem)),
+            // Also of halves that are refused for their mated pose: a picture shows why.
+            Ok((problem, Some(findings))) => (Err(findings.into()), Some(problem)),
+            Err(error) => (Err(error), None),
+        };
     running.exec.check()?;
     drop(running);
-    if let Some(bytes) = picture {
-        args.file.write(&bytes)?;
-    }
-    if !args.json {
-        to_stdout(&CheckReport::good(&checked?).table())?;
-        return Ok(ExitStatus::Done);
-    }
-    let (report, status) = match checked {
-        Ok(problem) => (CheckReport::good(&problem), ExitStatus::Done),
-        Err(ProblemError::Findings(findings)) => (CheckReport::bad(&findings), ExitStatus::Failed),
-        Err(error @ ProblemError::Load(_)) => return Err(error.into()),
+    let picture = || match &problem {
+        Some(problem) => Ok(figure::pair(problem)?),
+        None => Err(no_picture()),
     };
-    to_stdout(&report.to_json()?)?;
-    Ok(status)
+    match checked {
+        Ok(problem) => output.finish(&CheckReport::good(&problem), picture),
+        Err(ProblemError::Findings(findings)) if args.result.is_json() => {
+            output.without_picture(problem.is_none()).finish(&CheckReport::bad(&findings), picture)?;
+            Ok(ExitStatus::Failed)
+        }
+        Err(error) => {
+            if problem.is_some() {
+                output.draw(picture)?;
+            }
+            Err(error.into())
+        }
+    }
 }

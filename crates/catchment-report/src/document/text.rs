@@ -4,8 +4,9 @@ use super::Described;
 use catchment_core::document::{Cell, Column, Document, Part, Table};
 use catchment_core::terminal::printable;
 
-/// Columns before the value of a row: the indent, and the names.
-const NAMES: usize = 17;
+/// The names of rows take at least so many columns; names that are longer than the most stand out.
+const NAMES: usize = 14;
+const LONGEST_NAME: usize = 19;
 /// The indent of everything below the title.
 const INDENT: &str = "  ";
 /// Between two columns of a table.
@@ -45,7 +46,7 @@ impl Style {
 /// A document as text; ends with a line break.
 pub fn text(described: &Described<'_>, style: Style) -> String {
     let style = Style { columns: style.columns.max(NARROWEST), ..style };
-    let mut page = Page { text: String::new(), style };
+    let mut page = Page { text: String::new(), style, names: NAMES };
     let title = printable(described.title);
     let rule = "─".repeat(title.chars().count().clamp(RULE, style.columns));
     page.text.push_str(&style.painted(BOLD, &title));
@@ -64,7 +65,7 @@ pub fn text(described: &Described<'_>, style: Style) -> String {
 
 /// The lines of a document without title and warnings.
 pub fn lines(document: &Document, style: Style) -> Vec<String> {
-    let mut page = Page { text: String::new(), style };
+    let mut page = Page { text: String::new(), style, names: NAMES };
     page.document(document);
     page.text.lines().map(str::to_owned).collect()
 }
@@ -72,10 +73,18 @@ pub fn lines(document: &Document, style: Style) -> Vec<String> {
 struct Page {
     text: String,
     style: Style,
+    /// Columns of the names of rows.
+    names: usize,
 }
 
 impl Page {
     fn document(&mut self, document: &Document) {
+        let rows =
+            document.sections.iter().flat_map(|section| &section.parts).filter_map(|part| match part {
+                Part::Row { name, .. } => Some(name.chars().count()),
+                _ => None,
+            });
+        self.names = rows.filter(|name| *name <= LONGEST_NAME).max().unwrap_or(0).max(NAMES);
         for (k, section) in document.sections.iter().filter(|section| section.is_shown()).enumerate() {
             if k > 0 {
                 self.text.push('\n');
@@ -102,7 +111,7 @@ impl Page {
 
     /// A name and its value; a space stands between the two, however long the name is.
     fn row(&mut self, name: &str, value: &str) {
-        self.wrapped(&format!("{INDENT}{name:<width$} ", width = NAMES - INDENT.len() - 1), value);
+        self.wrapped(&format!("{INDENT}{name:<width$} ", width = self.names), value);
     }
 
     /// A text after `first`; broken between words where it is too long, later lines indented by the width of `first`.

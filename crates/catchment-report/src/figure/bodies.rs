@@ -1,6 +1,6 @@
 //! The shapes behind the contact space: flat ones as polygons over their axes, solid ones in space, a colour for every piece.
 
-use super::super::solids::{bounds, is_angle, told};
+use super::super::solids::{bounds, in_words, is_angle};
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, CURVES, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
@@ -20,7 +20,7 @@ pub fn bodies(design: &Design, shape: &Solids) -> Result<Picture, FigureError> {
     if shape.solids.is_empty() || lo == hi {
         return Err(FigureError::Empty { what: "the shape has no bodies" });
     }
-    let stories = [told(shape.subject).to_owned(), made_of(shape)];
+    let stories = [in_words(shape.subject).to_owned(), made_of(shape)];
     let width = stories.iter().map(|story| width_of(story, LABEL) + 48.0).fold(560.0, f64::max);
     let rect = Rect { x: 78.0, y: 84.0, w: width - 102.0, h: 420.0 };
     let mut svg = Svg::new(width, rect.y + rect.h + 76.0);

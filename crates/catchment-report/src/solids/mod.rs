@@ -14,10 +14,11 @@ mod vtp;
 pub use obj::obj;
 pub use vtp::vtp;
 
+use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::{grouped, line, row, significant};
 use catchment_core::design::Design;
+use catchment_core::document::{Column, Document, Format, Table, grouped};
 use catchment_core::method::partition::{Settings, Solid, Solids, Subject};
 use glam::DVec3;
 use serde::Serialize;
@@ -80,32 +81,42 @@ impl SolidsReport {
         };
         Self::of(body, warnings, None)
     }
+}
 
-    /// For eyes.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        line(&mut text, &self.design.name);
-        line(&mut text, &format!("  {}", told(self.shape)));
-        row(&mut text, "pieces", &format!("{} fixed, {} moving", self.fixed_pieces, self.moving_pieces));
+impl Printed for SolidsBody {
+    fn title(&self) -> &str {
+        &self.design.name
+    }
+
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        document.row("shape", in_words(self.shape));
+        document.row("pieces", format!("{} fixed, {} moving", self.fixed_pieces, self.moving_pieces));
         if let Some(Settings { slices, strips }) = self.settings {
             let turns = self.axes.iter().any(|axis| is_angle(axis));
             let slices = if turns { format!("{slices} slices, ") } else { String::new() };
-            row(&mut text, "made of", &format!("{slices}{strips} strips per D"));
+            document.row("made of", format!("{slices}{strips} strips per D"));
         }
         let kind = if self.dimension == 2 { "flat bodies" } else { "bodies" };
-        let counts = format!("{} convex {kind}, {} faces", grouped(self.bodies), grouped(self.faces));
-        row(&mut text, "written", &counts);
+        document
+            .row("bodies", format!("{} convex {kind}, {} faces", grouped(self.bodies), grouped(self.faces)));
+        let mut table = Table::new([
+            Column::new("axis").key("axis").left(),
+            Column::new("from").key("low").format(Format::Significant),
+            Column::new("to").key("high").format(Format::Significant),
+            Column::new("unit").key("unit").left(),
+        ]);
         for (k, axis) in self.axes.iter().enumerate() {
-            let [low, high] = [self.low[k], self.high[k]].map(significant);
             let unit = if is_angle(axis) { "rad" } else { "D" };
-            row(&mut text, axis, &format!("{low} to {high} {unit}"));
+            table.push([(*axis).into(), self.low[k].into(), self.high[k].into(), unit.into()]);
         }
-        text
+        document.table(table);
+        document
     }
 }
 
 /// What a shape is, in words.
-pub fn told(shape: Subject) -> &'static str {
+pub fn in_words(shape: Subject) -> &'static str {
     match shape {
         Subject::Halves => "both halves as convex pieces, docked",
         Subject::Swept => "the moving half, reflected and turned through its slices",
@@ -133,7 +144,7 @@ fn heading(shape: &Solids) -> String {
     format!(
         "catchment {}: {}; {}, z along the approach",
         env!("CARGO_PKG_VERSION"),
-        told(shape.subject),
+        in_words(shape.subject),
         axes.join(", ")
     )
 }
