@@ -99,13 +99,13 @@ def design_file(program: str) -> str:
     return text + "\n## Beside the tables\n\n| key | value | what it says |\n|---|---|---|\n" + "\n".join(rows(top, "")) + "\n"
 
 
-def fields(program: str) -> str:
+def fields() -> str:
     return f"""# Fields of the JSON reports
 
 {MADE}Every command with `--json` prints one object with the same head: `schema` (the version of the format), `catchment` (of the program) and `kind`. Lengths are in D and angles in
-radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list; the fields of `settings` are the method's own. Types are those of values that the
-program printed for this page: *number* is a float, and *null* says that nothing is there. The [JSON schema of design files](../../designs/schema.json) is another one.
-""" + report_fields.sections(program)
+radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list and `*` for any name; *number* is a float, and *null* says that nothing is there. The same as a
+[JSON schema](../../crates/catchment-report/reports.schema.json), for validators and code generators; that of [design files](../../designs/schema.json) is another one.
+""" + report_fields.sections()
 
 
 def measurements() -> str:
@@ -131,7 +131,7 @@ def main() -> None:
     pages = {
         "cli.md": cli(program),
         "design-file.md": design_file(program),
-        "fields.md": fields(program),
+        "fields.md": fields(),
         "python.md": python_reference.page(MADE),
         "measurements.md": measurements(),
     }

@@ -95,15 +95,12 @@ impl Kind {
     fn of(path: &Path, drawable: bool) -> Result<Self, Failure> {
         let Some(ending) = path.extension().and_then(OsStr::to_str) else { return Ok(Self::Folder) };
         let known = ENDINGS.iter().filter(|(_, kind)| drawable || !kind.is_picture());
-        match known.clone().find(|(name, _)| name.eq_ignore_ascii_case(ending)) {
-            Some((_, kind)) => Ok(*kind),
-            None => {
-                let names: Vec<&str> = known.map(|(name, _)| *name).collect();
-                let help =
-                    format!("let its name end in .{}, or give a folder without an ending", names.join(", ."));
-                Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
-            }
+        if let Some((_, kind)) = known.clone().find(|(name, _)| name.eq_ignore_ascii_case(ending)) {
+            return Ok(*kind);
         }
+        let names: Vec<&str> = known.map(|(name, _)| *name).collect();
+        let help = format!("let its name end in .{}, or give a folder without an ending", names.join(", ."));
+        Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
     }
 
     /// By the ending of a path that receives the whole report as one text.

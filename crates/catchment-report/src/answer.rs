@@ -40,7 +40,7 @@ impl Report {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
         report.upright = answer.upright.as_ref().map(UprightReport::from);
-        report.jams = answer.jams.clone();
+        report.jams.clone_from(&answer.jams);
         report.window = answer.window.as_ref().and_then(|found| found.as_ref().ok()).map(WindowSection::from);
         report.seat = Some(answer.seating.clone());
         report.warnings = answer.warnings().into_iter().map(WarningReport::from).collect();

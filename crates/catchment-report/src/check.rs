@@ -187,9 +187,8 @@ impl Printed for CheckBody {
 impl CheckBody {
     /// Shown where there are problems; of a design without any programs read the names of the columns alone.
     fn table_of_problems(&self) -> Table {
-        let column = |title: &str, key: &str| match self.problems.is_empty() {
-            true => Column::data(key),
-            false => Column::new(title).key(key).left(),
+        let column = |title: &str, key: &str| {
+            if self.problems.is_empty() { Column::data(key) } else { Column::new(title).key(key).left() }
         };
         let mut table = Table::new([
             Column { left: false, ..column("line", "line") },

@@ -36,36 +36,35 @@ pub use add_json_schemas as add;
 /// Adds the JSON schemas of all reports of this crate to a generator.
 #[cfg(feature = "schema")]
 pub fn add_all(generator: &mut schemars::SchemaGenerator) {
-    use crate::*;
     add!(
         generator,
-        Report,
-        AgreementReport,
-        CheckReport,
-        ComparisonReport,
-        ConvergenceReport,
-        ExportReport,
-        FacesReport,
-        FrictionReport,
-        HoldReport,
-        JamsReport,
-        LeverReport,
-        Envelope<outcomes::Answer<'static>>,
-        PlanReport,
-        RestsReport,
-        SensitivityReport,
-        SlicesReport,
-        SolidsReport,
-        SuccessesReport,
-        SweepReport,
-        TraceReport,
-        TrialsReport,
-        ValidationReport,
-        WindowReport,
-        ZraaReport,
+        crate::Report,
+        crate::AgreementReport,
+        crate::CheckReport,
+        crate::ComparisonReport,
+        crate::ConvergenceReport,
+        crate::ExportReport,
+        crate::FacesReport,
+        crate::FrictionReport,
+        crate::HoldReport,
+        crate::JamsReport,
+        crate::LeverReport,
+        crate::Envelope<crate::outcomes::Answer<'static>>,
+        crate::PlanReport,
+        crate::RestsReport,
+        crate::SensitivityReport,
+        crate::SlicesReport,
+        crate::SolidsReport,
+        crate::SuccessesReport,
+        crate::SweepReport,
+        crate::TraceReport,
+        crate::TrialsReport,
+        crate::ValidationReport,
+        crate::WindowReport,
+        crate::ZraaReport,
     );
     #[cfg(feature = "drop")]
-    add!(generator, ChanceReport);
+    add!(generator, crate::ChanceReport);
 }
 
 #[cfg(test)]

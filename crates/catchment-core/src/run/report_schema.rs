@@ -80,9 +80,7 @@ impl<'a> ReportSchema<'a> {
             let most = fields.get("maxItems").and_then(Value::as_u64).unwrap_or(u64::MAX);
             let is_there = match position {
                 Ok(position) => (position as u64) < most,
-                Err(_) => self
-                    .names(items)
-                    .is_none_or(|names| names.is_empty() || names.iter().any(|name| name == step)),
+                Err(_) => self.names(items).is_none_or(|names| names.iter().any(|name| name == step)),
             };
             return is_there.then_some(items);
         }
@@ -100,16 +98,15 @@ impl<'a> ReportSchema<'a> {
         }
     }
 
-    /// The names by which items of a list are stepped into, their axes; empty where any name may be, as of robots. `None` where items have none.
+    /// The names by which items of a list are stepped into: their axes; `None` where any name may be, as of robots.
     fn names(&self, items: &'a Value) -> Option<Vec<String>> {
         let item = self.alternatives(items);
-        if !self.step(&item, "robot").is_empty()
-            && item.iter().all(|schema| schema.get("properties").is_some())
-        {
-            return Some(Vec::new());
+        let are_objects = item.iter().all(|schema| schema.get("properties").is_some());
+        if are_objects && !self.step(&item, "robot").is_empty() {
+            return None;
         }
-        let axis: Vec<String> = self.step(&item, "axis").iter().flat_map(|axis| words(axis)).collect();
-        Some(if axis.is_empty() { vec![String::new()] } else { axis })
+        let axis = if are_objects { self.step(&item, "axis") } else { Vec::new() };
+        Some(axis.iter().flat_map(|axis| words(axis)).collect())
     }
 
     /// The names of what is one step further, as far as the schema says them.
@@ -121,7 +118,7 @@ impl<'a> ReportSchema<'a> {
                 .unwrap_or_default()
         };
         let items = here.iter().filter_map(|schema| self.names(schema.get("items")?));
-        here.iter().flat_map(properties).chain(items.flatten().filter(|name| !name.is_empty())).collect()
+        here.iter().flat_map(properties).chain(items.flatten()).collect()
     }
 
     /// The types that stand at a place, `integer` as `number`; empty where anything may stand.

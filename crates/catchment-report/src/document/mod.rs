@@ -21,7 +21,7 @@ use crate::envelope::{Body, Envelope};
 use crate::schema::{Timing, WarningReport};
 use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design};
-use catchment_core::document::{Document, Subject, rounded};
+use catchment_core::document::{Document, Subject, Table, rounded};
 use serde::Serialize;
 use std::ops::{Deref, DerefMut};
 
@@ -119,7 +119,7 @@ impl<B: Printed> Envelope<B> {
 
     /// Its table for programs, the names of the columns first; empty where it has none.
     pub fn records(&self) -> Vec<Vec<String>> {
-        self.body.document().records().map(|table| table.records()).unwrap_or_default()
+        self.body.document().records().map(Table::records).unwrap_or_default()
     }
 }
 
@@ -161,7 +161,7 @@ pub fn heading(design: &Design) -> Document {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use catchment_core::document::{Cell, Column, Format, Table};
+    use catchment_core::document::{Cell, Column, Format};
 
     /// A document with every kind of part.
     pub(crate) fn sample() -> Described<'static> {

@@ -91,7 +91,7 @@ impl Page {
             }
             if let Some(title) = &section.title {
                 let title = self.style.painted(BOLD, &printable(title));
-                self.text.push_str(&format!("{INDENT}{title}\n"));
+                self.text.extend([INDENT, &title, "\n"]);
             }
             for part in &section.parts {
                 match part {
@@ -159,7 +159,12 @@ impl Page {
             let mut line = INDENT.to_owned();
             for (k, (cell, width)) in row[..last].iter().zip(&widths).enumerate() {
                 let (left, gap) = (columns[k].1.left, " ".repeat(GAP));
-                line += &if left { format!("{cell:<width$}{gap}") } else { format!("{cell:>width$}{gap}") };
+                let padding = " ".repeat(width.saturating_sub(cell.chars().count()));
+                line.extend(if left {
+                    [cell, padding.as_str(), &gap]
+                } else {
+                    [padding.as_str(), cell, &gap]
+                });
             }
             let indent = line.chars().count();
             for (k, words) in broken(&row[last], widths[last]).into_iter().enumerate() {

@@ -92,7 +92,7 @@ impl Jams {
             document.row("  turned", format!("{turned} where the design has symmetry = {symmetry}"));
         }
         if let Some(examined) = &jam.examined {
-            places.order(document, examined);
+            Places::order(document, examined);
             // Friction stops a half just before all contacts of the mated pose close: how it would be held there means nothing.
             if self.settings.friction == 0.0 || jam.docked_with_symmetry.is_none() {
                 places.held(document, examined);

@@ -148,7 +148,7 @@ impl<'a> Places<'a> {
     }
 
     /// By which order contacts hold it.
-    pub(in crate::run) fn order(self, document: &mut Document, examined: &Examined) {
+    pub(in crate::run) fn order(document: &mut Document, examined: &Examined) {
         if let Some(held) = &examined.immobility {
             document.row("  order", held.words());
         }

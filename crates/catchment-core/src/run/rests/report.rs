@@ -66,7 +66,7 @@ impl Rests {
         document.row(format!("rest {number}"), format!("basin {share} of the error box{docked}{images}"));
         places.pose(document, &rest.pose, rest.above_mated_d, &rest.extent);
         if let Some(examined) = &rest.examined {
-            places.order(document, examined);
+            Places::order(document, examined);
             places.held(document, examined);
             document.row("  escape height", self.escape(design, rest));
         }
