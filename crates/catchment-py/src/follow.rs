@@ -91,7 +91,7 @@ impl Problem {
             let (path, reason) = problem.trace(&error, &settings);
             let report = TraceReport::new(problem, &settings, error, &path, reason);
             let picture = figure::trajectory(problem.design(), problem.connector(), &path);
-            Told::new(report.to_json()?, report.table(), &report.records())?.with(picture)
+            Told::of(&report)?.with(picture)
         })
     }
 }

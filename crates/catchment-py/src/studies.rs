@@ -62,7 +62,7 @@ impl Problem {
             let found = window::run(problem, &settings, exec)?;
             let report =
                 WindowReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
-            Told::new(report.to_json()?, report.table(), &report.records())
+            Told::of(&report)
         })
     }
 
@@ -90,8 +90,8 @@ impl Problem {
             let found = jams::run(problem, &settings, exec)?;
             let report =
                 JamsReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
-            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
-            told.with(figure::jams(&report.design, &report.found, problem.connector()))
+            let told = Told::of(&report)?;
+            told.with(figure::jams(&report.design, &report.result, problem.connector()))
         })
     }
 
@@ -103,7 +103,7 @@ impl Problem {
             let square = Square::of(&found, exec)?;
             let nilsson = Nilsson::beside(&found, problem.pair());
             let report = ZraaReport::new(problem.design(), &found, &square, nilsson.as_ref());
-            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
+            let told = Told::of(&report)?;
             told.with(Ok(figure::region(problem.design(), &found, &square)))
         })
     }
@@ -141,7 +141,7 @@ pub(crate) fn compare(
     let subjects = subjects().map_err(|refusal| refusal.raise(py))?;
     work(py, &how, |exec| {
         let found = compared(subjects, resolution(cells.as_deref())?, true, exec)?;
-        let told = Told::new(found.report.to_json()?, found.report.table(), &found.report.records())?;
+        let told = Told::of(&found.report)?;
         match found.picture {
             Some(picture) => told.with(picture),
             None => Ok(told),

@@ -1,9 +1,11 @@
 //! A report in every form that it is told in.
 
 use crate::refusal::Refusal;
-use catchment::report::csv;
+use catchment::report::document::Printed;
 use catchment::report::figure::{FigureError, Picture};
+use catchment::report::{Envelope, csv};
 use pyo3::prelude::*;
+use serde::Serialize;
 
 /// Pixels per unit of a picture: as the command line draws them.
 pub(crate) const PNG_SCALE: f32 = 2.0;
@@ -25,9 +27,9 @@ pub(crate) struct Told {
 
 impl Told {
     /// Of a report without a picture.
-    pub(crate) fn new(json: String, table: String, records: &[Vec<String>]) -> Result<Self, Refusal> {
-        let csv = String::from_utf8_lossy(&csv(records)?).into_owned();
-        Ok(Self { json, table, csv, picture: None })
+    pub(crate) fn of<B: Printed + Serialize>(report: &Envelope<B>) -> Result<Self, Refusal> {
+        let csv = String::from_utf8_lossy(&csv(&report.records())?).into_owned();
+        Ok(Self { json: report.to_json()?, table: report.table(), csv, picture: None })
     }
 
     /// The same with its picture, where there is something to draw.

@@ -43,6 +43,8 @@ from ._results import End, Ends, Picture, Report, Result, Touching
 if TYPE_CHECKING:
     from distributed import Client
 
+    from . import reports
+
 NOTHING = Changes(free=None, cor=None, aspect_ratio=None, rotation_length=None)
 
 
@@ -356,7 +358,7 @@ class Problem:
             )
         return Ends(*self._native.follow_many(rows, method, as_json(settings), how(threads, memory, progress)))
 
-    def trace(self, pose: Pose, *, friction: float = 0.0) -> Report:
+    def trace(self, pose: Pose, *, friction: float = 0.0) -> Report[reports.TraceReport]:
         """The way of one pose error, from first contact to where it rests, with its picture."""
         return Report._of(self._native.trace(self._pose(pose), real(friction, "friction"), how()))
 
@@ -371,7 +373,7 @@ class Problem:
         threads: int = 0,
         memory: int | None = None,
         progress: Progress = False,
-    ) -> Report:
+    ) -> Report[reports.WindowReport]:
         """The largest box of errors around zero that all dock: what a datasheet may say. `report["window"]`.
 
         fix: half-widths that are given ({"x": "2 mm"}); the others grow.
@@ -397,7 +399,7 @@ class Problem:
         threads: int = 0,
         memory: int | None = None,
         progress: Progress = False,
-    ) -> Report:
+    ) -> Report[reports.JamsReport]:
         """Where it jams instead of docking, on which features, how firmly. `report["jams"]`.
 
         motions: random poses that are followed.
@@ -410,7 +412,7 @@ class Problem:
         mu = real(friction, "friction")
         return Report._of(self._native.jams(*drawn, cells(resolution), mu, certified, expected, run_how))
 
-    def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report:
+    def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report[reports.ZraaReport]:
         """Offsets that are corrected by sliding alone, all rotations locked, exactly. `report["area_d2"]` or `report["from_d"]`."""
         return Report._of(self._native.zraa(how(threads, memory, progress)))
 
@@ -455,7 +457,7 @@ def compare(
     threads: int = 0,
     memory: int | None = None,
     progress: Progress = False,
-) -> Report:
+) -> Report[reports.ComparisonReport]:
     """Two acceptances beside each other: where they differ, and by how much. `report["comparison"]`.
 
     first, second: problems, or folders (or NAME.zarr) of stored results. One problem alone is decided by two methods.

@@ -7,7 +7,7 @@ import html
 import json
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from ._arguments import Progress, how
 
 if TYPE_CHECKING:
     import xarray
+
+    from . import reports
 
     from ._problem import Problem
 
@@ -44,7 +46,11 @@ class Picture(NamedTuple):
             file.write(self.svg.encode() if os.fspath(path).endswith(".svg") else self.png)
 
 
-class Report:
+#: The fields of a report: one of the types in `catchment.reports`.
+Fields = TypeVar("Fields", bound=Mapping[str, Any])
+
+
+class Report(Generic[Fields]):
     """A report: the same JSON, table and picture as the command line's.
 
     Fields of the JSON are read by `report["sum"]` or `report.to_dict()`; lengths in it are in D, angles in radians.
@@ -61,19 +67,18 @@ class Report:
         self._read: dict[str, Any] | None = None
 
     @classmethod
-    def _of(cls, told: _catchment.Told) -> Report:
+    def _of(cls, told: _catchment.Told) -> Report[Fields]:
         svg, png = told.svg(), told.png()
         picture = None if svg is None or png is None else Picture(svg, png)
         return cls(told.json, told.table, told.csv, picture)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The report as a dictionary of its own."""
-        read: dict[str, Any] = json.loads(self.json)
-        return read
+    def to_dict(self) -> Fields:
+        """The report as a dictionary of its own; `catchment.reports` has the types of its fields."""
+        return cast("Fields", json.loads(self.json))
 
     def __getitem__(self, key: str) -> Any:
         if self._read is None:
-            self._read = self.to_dict()
+            self._read = json.loads(self.json)
         return self._read[key]
 
     @property
@@ -114,7 +119,7 @@ class Report:
         return f'<img alt="{name}" style="max-width: 100%" src="data:image/png;base64,{image}">{table}'
 
 
-class Result(Report):
+class Result(Report["reports.RunReport"]):
     """The answer of a run: outcomes over the grid, the Sum with its interval, figures of merit.
 
     It can be pickled. Pictures that were not drawn before are computed again where they are asked for after that, and so is

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from . import _catchment
 from ._arguments import (
@@ -47,7 +47,7 @@ def sweep(
     threads: int = ...,
     memory: int | None = ...,
     progress: Progress = ...,
-) -> Report: ...
+) -> Report[Mapping[str, Any]]: ...
 @overload
 def sweep(
     problem: Problem,
@@ -66,7 +66,7 @@ def sweep(
     threads: int = ...,
     memory: int | None = ...,
     progress: Progress = ...,
-) -> list[Report]: ...
+) -> list[Report[Mapping[str, Any]]]: ...
 def sweep(
     problem: Problem,
     over: Mapping[str, str | Iterable[Quantity]],
@@ -84,7 +84,7 @@ def sweep(
     threads: int = 0,
     memory: int | None = None,
     progress: Progress = False,
-) -> Report | list[Report]:
+) -> Report[Mapping[str, Any]] | list[Report[Mapping[str, Any]]]:
     """Design parameters varied: every combination of values, computed and compared. `report["designs"]`.
 
     over: keys of the design file and their values: {"aspect_ratio": [0.5, 1, 2], "cor": "-1..1/5"}; the last key changes
@@ -128,7 +128,7 @@ def sweep(
         from . import _cluster
 
         found = _cluster.designs(client, problem, plans, sweeps, run_how)
-    reports = [Report._of(one.run(elsewhere, run_how)) for one, elsewhere in zip(sweeps, found)]
+    reports: list[Report[Mapping[str, Any]]] = [Report._of(one.run(elsewhere, run_how)) for one, elsewhere in zip(sweeps, found)]
     return reports[0] if isinstance(seed, int) else reports
 
 
