@@ -143,7 +143,7 @@ impl Sweep {
             let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
             let report = SweepReport::new(&base, found, Some(timing));
             let map = figure::sweep_map(&report);
-            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
+            let told = Told::of(&report)?;
             if let Some(path) = &self.output {
                 self.save(&report, path, exec)?;
             }
