@@ -18,7 +18,7 @@ use catchment::exec::Exec;
 use catchment::problem::Problem;
 use catchment::report::document::{Printed, Style, html, markdown, text};
 use catchment::report::figure::Picture;
-use catchment::report::folder::{Files, StudyFolder, encode};
+use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Envelope, ReportOf, csv};
@@ -26,7 +26,6 @@ use catchment::run::Requirement;
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use serde::Serialize;
-use std::cell::OnceCell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -114,13 +113,38 @@ pub(crate) struct Output<'a> {
     args: &'a ResultArgs,
     file: Option<(&'a Path, Kind)>,
     figure: Option<(&'a Path, Kind)>,
+    /// The name of the table and the picture in a folder.
+    name: &'static str,
     drawable: bool,
 }
 
+/// Pictures under the names of their files.
+pub(crate) type Pictures = Vec<(&'static str, Picture)>;
+
 impl ResultArgs {
+    /// Those of a command that has options of its own for JSON and for the path.
+    pub(crate) const fn new(json: bool, output: Option<PathBuf>) -> Self {
+        Self { json, csv: false, require: Vec::new(), output, figure: None, force: false }
+    }
+
+    /// The file or the folder to write.
+    pub(crate) fn output(&self) -> Option<&Path> {
+        self.output.as_deref()
+    }
+
     /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
     /// picture of it.
     pub(crate) fn check(&self, report: &'static str, drawable: bool) -> Result<Output<'_>, Failure> {
+        self.check_named(report, report, drawable)
+    }
+
+    /// The same where table and picture have another name than the report.
+    pub(crate) fn check_named(
+        &self,
+        report: &'static str,
+        name: &'static str,
+        drawable: bool,
+    ) -> Result<Output<'_>, Failure> {
         let file = match &self.output {
             Some(path) => Some((path.as_path(), Kind::of(path, drawable)?)),
             None => None,
@@ -140,7 +164,7 @@ impl ResultArgs {
         check_apart(self.output.as_deref(), self.figure.as_deref())?;
         for (path, kind) in file.iter().chain(&figure) {
             match kind {
-                Kind::Folder => StudyFolder { path, name: report }.check(&Exec::new())?,
+                Kind::Folder => StudyFolder { path, name }.check(&Exec::new())?,
                 _ => check_place(path, self.force)?,
             }
         }
@@ -151,7 +175,7 @@ impl ResultArgs {
             ));
         }
         self.check_requirements(report)?;
-        Ok(Output { args: self, file, figure, drawable })
+        Ok(Output { args: self, file, figure, name, drawable })
     }
 
     fn check_requirements(&self, report: &str) -> Result<(), Failure> {
@@ -167,24 +191,33 @@ impl ResultArgs {
 impl Output<'_> {
     /// Whether a picture is to be written.
     pub(crate) fn wants_picture(&self) -> bool {
-        self.figure.is_some() || self.file.is_some_and(|(_, kind)| kind.is_picture() || kind == Kind::Folder)
+        let is_drawn = |(_, kind): (&Path, Kind)| kind.is_picture() || kind == Kind::Folder && self.drawable;
+        self.figure.is_some() || self.file.is_some_and(is_drawn)
     }
 
     /// Writes and prints a report, and says which requirements it does not meet. `draw` makes its picture, if there is one.
     pub(crate) fn finish<B: Printed + Serialize>(
         self,
         report: &Envelope<B>,
-        draw: impl Fn() -> Result<Picture, Failure>,
+        draw: impl FnOnce() -> Result<Picture, Failure>,
     ) -> Result<ExitStatus, Failure> {
-        let drawn: OnceCell<Picture> = OnceCell::new();
-        let picture = || -> Result<&Picture, Failure> {
-            if let Some(picture) = drawn.get() {
-                return Ok(picture);
-            }
-            let picture = draw()?;
-            Ok(drawn.get_or_init(|| picture))
-        };
+        let pictures = || Ok(vec![(self.name, draw()?)]);
+        let notes = self.write(report, pictures, |_| Ok(String::new()), &Exec::new())?;
+        self.print(report, &notes)
+    }
+
+    /// Writes the files of a report, and says what a folder received. `draw` makes its pictures: a file gets the first, a folder gets all. `more` adds to the
+    /// folder, and names what it added.
+    pub(crate) fn write<B: Printed + Serialize>(
+        &self,
+        report: &Envelope<B>,
+        draw: impl FnOnce() -> Result<Pictures, Failure>,
+        more: impl Fn(&Path) -> Result<String, SaveError>,
+        exec: &Exec,
+    ) -> Result<Vec<String>, Failure> {
+        let pictures = if self.wants_picture() { draw()? } else { Pictures::new() };
         let document = report.described();
+        let mut notes = Vec::new();
         for (path, kind) in self.file.iter().chain(&self.figure) {
             let bytes = match kind {
                 Kind::Json => report.to_json()?.into_bytes(),
@@ -192,29 +225,43 @@ impl Output<'_> {
                 Kind::Markdown => markdown(&document).into_bytes(),
                 Kind::Html => html(&document).into_bytes(),
                 Kind::Text => text(&document, Style::default()).into_bytes(),
-                Kind::Png | Kind::Svg => image(picture()?, kind.ending())?,
+                Kind::Png | Kind::Svg => match pictures.first() {
+                    Some((_, picture)) => image(picture, kind.ending())?,
+                    None => return Err(no_picture()),
+                },
                 Kind::Folder => {
-                    let folder = StudyFolder { path, name: B::KIND };
-                    let exec = Exec::new();
-                    let files = if self.drawable {
-                        encode(&[(B::KIND, picture()?.clone())], &exec)?
-                    } else {
-                        Files::new()
-                    };
-                    folder.write(&report.to_json()?, &report.records(), files, &exec, |_| Ok(()))?;
+                    let folder = StudyFolder { path, name: self.name };
+                    let files = if pictures.is_empty() { Files::new() } else { encode(&pictures, exec)? };
+                    let mut added = String::new();
+                    let note =
+                        folder.write(&report.to_json()?, &report.records(), files, exec, |folder| {
+                            added = more(folder)?;
+                            Ok(())
+                        })?;
+                    notes.push(note + &added);
                     written(path);
                     continue;
                 }
             };
             write_file(path, &bytes, self.args.force)?;
         }
+        Ok(notes)
+    }
+
+    /// Prints a report, and notes beside it; says which requirements it does not meet.
+    pub(crate) fn print<B: Printed + Serialize>(
+        &self,
+        report: &Envelope<B>,
+        notes: &[String],
+    ) -> Result<ExitStatus, Failure> {
         if self.args.json {
             to_stdout(&report.to_json()?)?;
         } else if self.args.csv {
             to_stdout(&String::from_utf8_lossy(&table(report)?))?;
         } else {
-            to_stdout(&text(&document, crate::output::style()))?;
+            to_stdout(&text(&report.described(), crate::output::style()))?;
         }
+        to_stderr(notes);
         let verdicts = report.verdicts(&self.args.require)?;
         let unmet: Vec<String> =
             verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
@@ -262,6 +309,11 @@ pub(crate) fn study<T: Subject>(
 /// What speaks against the numbers of a problem before any is computed.
 pub(crate) fn warnings(problem: &Problem) -> Vec<WarningReport> {
     problem.objections().iter().map(WarningReport::note).collect()
+}
+
+/// The same as lines of stderr, for reports that do not hold it.
+pub(crate) fn objections(problem: &Problem) -> Vec<String> {
+    problem.objections().iter().map(|objection| format!("warning: {objection}")).collect()
 }
 
 /// Asked for a picture of something that has none: refused before anything was computed.

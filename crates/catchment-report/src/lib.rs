@@ -29,7 +29,6 @@ mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
 mod comparison;
-mod convergence;
 pub mod document;
 mod envelope;
 mod export;
@@ -52,7 +51,6 @@ mod rests;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
-mod sensitivity;
 pub mod set;
 mod slices;
 pub mod solids;
@@ -71,7 +69,9 @@ pub mod write;
 pub mod zarr;
 mod zraa;
 
+use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
+use catchment_study::sensitivity::Sensitivity;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -85,7 +85,6 @@ pub use comparison::{
     Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
     MethodResult,
 };
-pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
@@ -105,8 +104,7 @@ pub use rests::{RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
 pub use schema::{Report, RunBody};
-pub use sensitivity::{SensitivityBody, SensitivityReport};
-pub use slices::{SliceReport, SlicesBody, SlicesReport};
+pub use slices::{SliceReport, SlicesFound, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
 pub use success::{
     AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
@@ -132,3 +130,9 @@ pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
+
+/// Refinement of the grid, with every method, with its head.
+pub type ConvergenceReport = ReportOf<Convergence>;
+
+/// The Sum against ρ, the centre of rotation and the aspect ratio, with its head.
+pub type SensitivityReport = ReportOf<Sensitivity>;
