@@ -69,6 +69,7 @@ pub mod write;
 pub mod zarr;
 mod zraa;
 
+use catchment_study::agreement::Agreement;
 use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
 use catchment_study::sensitivity::Sensitivity;
@@ -81,10 +82,7 @@ pub use chance::{
     PresetReport,
 };
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
-pub use comparison::{
-    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
-    MethodResult,
-};
+pub use comparison::{Compared, ComparisonBody, ComparisonReport};
 pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
@@ -130,6 +128,9 @@ pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
+
+/// Every method of a design on one grid, with its head.
+pub type AgreementReport = ReportOf<Agreement>;
 
 /// Refinement of the grid, with every method, with its head.
 pub type ConvergenceReport = ReportOf<Convergence>;
