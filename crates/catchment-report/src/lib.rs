@@ -10,7 +10,7 @@
 //!                       └──▶  write: complete or not at all
 //!
 //!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
-//!   convergence · sensitivity · sweep · comparison
+//!   comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -45,6 +45,8 @@ mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
 pub mod page;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+mod parts;
 mod plan;
 mod resting;
 mod rests;
@@ -55,7 +57,6 @@ pub mod set;
 mod slices;
 pub mod solids;
 mod success;
-mod sweep;
 mod table;
 pub mod text;
 mod trajectory;
@@ -73,6 +74,7 @@ use catchment_study::agreement::Agreement;
 use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
 use catchment_study::sensitivity::Sensitivity;
+use catchment_study::sweep::Sweep;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -96,6 +98,8 @@ pub use jams::{
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use parts::Parts;
 pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
 pub use resting::{HeldReport, ThresholdsReport};
 pub use rests::{RestReport, RestsBody, RestsReport};
@@ -108,9 +112,6 @@ pub use success::{
     AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
     ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
 };
-#[cfg(all(feature = "figure", feature = "zarr"))]
-pub use sweep::Parts;
-pub use sweep::{SweepBody, SweepReport};
 pub use table::{first_look, table, table_with};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
@@ -137,3 +138,6 @@ pub type ConvergenceReport = ReportOf<Convergence>;
 
 /// The Sum against ρ, the centre of rotation and the aspect ratio, with its head.
 pub type SensitivityReport = ReportOf<Sensitivity>;
+
+/// Every combination of values of a sweep, with its head.
+pub type SweepReport = ReportOf<Sweep>;
