@@ -107,8 +107,7 @@ impl Subject for SlicesFound {
             document.section(None).row(
                 "estimate",
                 format!(
-                    "{conservative:.3} (conservative) … {optimistic:.3} (optimistic): what x-y and x with each rotation let one guess of the ONAA edge of the \
-                     whole"
+                    "{conservative:.3} (conservative) … {optimistic:.3} (optimistic): the ONAA edge of the whole, by the slices x-y and x with each rotation"
                 ),
             );
         }
