@@ -18,7 +18,7 @@ use catchment::exec::Exec;
 use catchment::problem::Problem;
 use catchment::report::document::{Described, Printed, Style, html, markdown, text};
 use catchment::report::figure::Picture;
-use catchment::report::folder::{Files, StudyFolder, encode};
+use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Envelope, ReportOf, csv};
@@ -26,13 +26,12 @@ use catchment::run::Requirement;
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use serde::Serialize;
-use std::cell::OnceCell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// How a result is printed.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct PrintArgs {
     /// Print JSON, in D and radians
     #[arg(long, conflicts_with = "csv", help_heading = "Output")]
@@ -62,7 +61,7 @@ pub(crate) struct ResultArgs {
 }
 
 /// Reads a requirement.
-pub(crate) fn requirement(text: &str) -> Result<Requirement, String> {
+fn requirement(text: &str) -> Result<Requirement, String> {
     text.parse::<Requirement>().map_err(|error| escaped(&error.to_string()))
 }
 
@@ -77,6 +76,8 @@ pub(crate) enum Kind {
     Png,
     Svg,
     Folder,
+    /// What the command writes itself, by its ending.
+    Own(&'static str),
 }
 
 /// Every ending that a file may have.
@@ -91,21 +92,22 @@ const ENDINGS: [(&str, Kind); 7] = [
 ];
 
 impl Kind {
-    /// By the ending of a path; one without an ending is a folder.
-    fn of(path: &Path, drawable: bool) -> Result<Self, Failure> {
+    /// By the ending of a path; one without an ending is a folder. `own` endings precede the others.
+    fn of(path: &Path, drawable: bool, own: &[&'static str]) -> Result<Self, Failure> {
         let Some(ending) = path.extension().and_then(OsStr::to_str) else { return Ok(Self::Folder) };
-        let known = ENDINGS.iter().filter(|(_, kind)| drawable || !kind.is_picture());
+        let own = own.iter().map(|name| (*name, Self::Own(name)));
+        let known = own.chain(ENDINGS.into_iter().filter(|(_, kind)| drawable || !kind.is_picture()));
         if let Some((_, kind)) = known.clone().find(|(name, _)| name.eq_ignore_ascii_case(ending)) {
-            return Ok(*kind);
+            return Ok(kind);
         }
-        let names: Vec<&str> = known.map(|(name, _)| *name).collect();
+        let names: Vec<&str> = known.map(|(name, _)| name).collect();
         let help = format!("let its name end in .{}, or give a folder without an ending", names.join(", ."));
         Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
     }
 
     /// By the ending of a path that receives the whole report as one text.
     pub(crate) fn of_text(path: &Path) -> Option<Self> {
-        Self::of(path, false).ok().filter(|kind| !matches!(kind, Self::Csv | Self::Folder))
+        Self::of(path, false, &[]).ok().filter(|kind| !matches!(kind, Self::Csv | Self::Folder))
     }
 
     const fn is_picture(self) -> bool {
@@ -120,11 +122,17 @@ impl Kind {
 /// Places that were tried out before anything is computed.
 #[derive(Debug)]
 pub(crate) struct Output<'a> {
-    args: &'a ResultArgs,
+    print: &'a PrintArgs,
+    force: bool,
     file: Option<(&'a Path, Kind)>,
     figure: Option<(&'a Path, Kind)>,
+    /// The name of the table and the picture in a folder.
+    name: &'static str,
     drawable: bool,
 }
+
+/// Pictures under the names of their files.
+pub(crate) type Pictures = Vec<(&'static str, Picture)>;
 
 impl ResultArgs {
     /// Whether JSON is printed.
@@ -132,108 +140,216 @@ impl ResultArgs {
         self.print.json
     }
 
+    /// The file or the folder to write.
+    pub(crate) fn output(&self) -> Option<&Path> {
+        self.output.as_deref()
+    }
+
     /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
     /// picture of it.
     pub(crate) fn check(&self, report: &'static str, drawable: bool) -> Result<Output<'_>, Failure> {
+        self.check_all(report, report, drawable, &[])
+    }
+
+    /// The same; table and picture have this name in a folder, and not that of the report.
+    pub(crate) fn check_named(
+        &self,
+        report: &'static str,
+        name: &'static str,
+    ) -> Result<Output<'_>, Failure> {
+        self.check_all(report, name, true, &[])
+    }
+
+    /// The same of a command that writes files with some endings itself; [`Output::own`] says whether one is to be written.
+    pub(crate) fn check_with(
+        &self,
+        report: &'static str,
+        drawable: bool,
+        own: &[&'static str],
+    ) -> Result<Output<'_>, Failure> {
+        self.check_all(report, report, drawable, own)
+    }
+
+    fn check_all(
+        &self,
+        report: &'static str,
+        name: &'static str,
+        drawable: bool,
+        own: &[&'static str],
+    ) -> Result<Output<'_>, Failure> {
+        self.print.check(report, &[])?;
         let file = match &self.output {
-            Some(path) => Some((path.as_path(), Kind::of(path, drawable)?)),
+            Some(path) => Some((path.as_path(), Kind::of(path, drawable, own)?)),
             None => None,
         };
-        let figure = self.figure.as_deref().map(|path| match Kind::of(path, drawable) {
-            Ok(kind) if kind.is_picture() => Ok((path, kind)),
-            _ if !drawable => Err(Failure::with_help(
-                "there is no picture of this result".to_owned(),
-                Some("leave --figure out".to_owned()),
-            )),
-            _ => {
-                let message = format!("cannot tell what to draw into {}", shown(path));
-                Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())))
+        let figure = match &self.figure {
+            Some(_) if !drawable => {
+                return Err(Failure::with_help(NO_PICTURE.to_owned(), Some("leave --figure out".to_owned())));
             }
-        });
-        let figure = figure.transpose()?;
-        check_apart(self.output.as_deref(), self.figure.as_deref())?;
+            Some(path) => match Kind::of(path, true, &[]) {
+                Ok(kind) if kind.is_picture() => Some((path.as_path(), kind)),
+                _ => {
+                    let message = format!("cannot tell what to draw into {}", shown(path));
+                    let help = "let its name end in .png or .svg".to_owned();
+                    return Err(Failure::with_help(message, Some(help)));
+                }
+            },
+            None => None,
+        };
+        check_apart(self.figure.as_deref(), self.output.as_deref())?;
         for (path, kind) in file.iter().chain(&figure) {
             match kind {
-                Kind::Folder => StudyFolder { path, name: report }.check(&Exec::new())?,
+                Kind::Folder => StudyFolder { path, name }.check(&Exec::new())?,
                 _ => check_place(path, self.force)?,
             }
         }
         if self.force && file.is_none() && figure.is_none() {
-            return Err(Failure::with_help(
-                "--force replaces files, and none is to be written".to_owned(),
-                Some("leave it out, or give -o".to_owned()),
-            ));
+            let help = "leave it out, or give -o".to_owned();
+            let message = "--force replaces files, and none is to be written".to_owned();
+            return Err(Failure::with_help(message, Some(help)));
         }
-        self.print.check(report)?;
-        Ok(Output { args: self, file, figure, drawable })
+        Ok(Output { print: &self.print, force: self.force, file, figure, name, drawable })
+    }
+
+    /// Refuses requirements that no report of this kind meets or fails. `absent` are places that are null with the options at hand.
+    pub(crate) fn check_requirements(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
+        self.print.check(report, absent)
     }
 }
 
-impl Output<'_> {
+impl<'a> Output<'a> {
+    /// Of a command with options of its own for what is printed and where it is written.
+    pub(crate) fn of(
+        print: &'a PrintArgs,
+        path: Option<&'a Path>,
+        report: &'static str,
+    ) -> Result<Self, Failure> {
+        print.check(report, &[])?;
+        let file = match path {
+            Some(path) => Some((path, Kind::of(path, true, &[])?)),
+            None => None,
+        };
+        match file {
+            Some((path, Kind::Folder)) => StudyFolder { path, name: report }.check(&Exec::new())?,
+            Some((path, _)) => check_place(path, false)?,
+            None => {}
+        }
+        Ok(Self { print, force: false, file, figure: None, name: report, drawable: true })
+    }
+
+    /// The folder, for a command that fills it itself.
+    pub(crate) fn take_folder(&mut self) -> Result<Option<&'a Path>, Failure> {
+        let folder = self.file.take_if(|(_, kind)| *kind == Kind::Folder);
+        if folder.is_some() && self.force {
+            let help =
+                "leave it out: a folder that this command wrote is replaced without it, and no other is";
+            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
+        }
+        Ok(folder.map(|(path, _)| path))
+    }
+
+    /// The ending of the file that the command writes itself, if there is one.
+    pub(crate) fn own(&self) -> Option<&'static str> {
+        match self.file {
+            Some((_, Kind::Own(ending))) => Some(ending),
+            _ => None,
+        }
+    }
+
+    /// Writes the file of [`Self::own`].
+    pub(crate) fn write_own(&self, bytes: &[u8]) -> Result<(), Failure> {
+        self.file.map_or(Ok(()), |(path, _)| write_file(path, bytes, self.force))
+    }
+
     /// The same without its pictures, where there is nothing to draw.
-    pub(crate) fn without_picture(self, is_without: bool) -> Self {
-        let kept = |place: &(&Path, Kind)| !is_without || !place.1.is_picture();
-        Self { file: self.file.filter(kept), figure: self.figure.filter(kept), ..self }
+    pub(crate) fn without_picture(self) -> Self {
+        let kept = |place: &(&Path, Kind)| !place.1.is_picture();
+        Self { file: self.file.filter(kept), figure: self.figure.filter(kept), drawable: false, ..self }
     }
 
     /// Writes the pictures alone.
     pub(crate) fn draw(&self, draw: impl Fn() -> Result<Picture, Failure>) -> Result<(), Failure> {
         for (path, kind) in self.file.iter().chain(&self.figure).filter(|(_, kind)| kind.is_picture()) {
-            write_file(path, &image(&draw()?, kind.ending())?, self.args.force)?;
+            write_file(path, &image(&draw()?, kind.ending())?, self.force)?;
         }
         Ok(())
     }
 
     /// Whether a picture is to be written.
     pub(crate) fn wants_picture(&self) -> bool {
-        self.figure.is_some() || self.file.is_some_and(|(_, kind)| kind.is_picture() || kind == Kind::Folder)
+        let is_drawn = |(_, kind): (&Path, Kind)| kind.is_picture() || kind == Kind::Folder && self.drawable;
+        self.figure.is_some() || self.file.is_some_and(is_drawn)
     }
 
     /// Writes and prints a report, and says which requirements it does not meet. `draw` makes its picture, if there is one.
     pub(crate) fn finish<B: Printed + Serialize>(
         self,
         report: &Envelope<B>,
-        draw: impl Fn() -> Result<Picture, Failure>,
+        draw: impl FnOnce() -> Result<Picture, Failure>,
     ) -> Result<ExitStatus, Failure> {
-        let drawn: OnceCell<Picture> = OnceCell::new();
-        let picture = || -> Result<&Picture, Failure> {
-            if let Some(picture) = drawn.get() {
-                return Ok(picture);
-            }
-            let picture = draw()?;
-            Ok(drawn.get_or_init(|| picture))
-        };
+        let pictures = || Ok(vec![(self.name, draw()?)]);
+        let notes = self.write(report, pictures, |_| Ok(String::new()), &Exec::new())?;
+        self.print(report, &notes)
+    }
+
+    /// Writes the files of a report, and says what a folder received. `draw` makes its pictures: a file gets the first, a folder gets all. `more` adds to the
+    /// folder, and names what it added.
+    pub(crate) fn write<B: Printed + Serialize>(
+        &self,
+        report: &Envelope<B>,
+        draw: impl FnOnce() -> Result<Pictures, Failure>,
+        more: impl Fn(&Path) -> Result<String, SaveError>,
+        exec: &Exec,
+    ) -> Result<Vec<String>, Failure> {
+        let pictures = if self.wants_picture() { draw()? } else { Pictures::new() };
         let document = report.described();
+        let mut notes = Vec::new();
         for (path, kind) in self.file.iter().chain(&self.figure) {
             let bytes = match kind {
                 Kind::Json | Kind::Markdown | Kind::Html | Kind::Text => rendered(*kind, report, &document)?,
                 Kind::Csv => table(report)?,
-                Kind::Png | Kind::Svg => image(picture()?, kind.ending())?,
+                Kind::Own(_) => continue,
+                Kind::Png | Kind::Svg => match pictures.first() {
+                    Some((_, picture)) => image(picture, kind.ending())?,
+                    None => return Err(no_picture()),
+                },
                 Kind::Folder => {
-                    let folder = StudyFolder { path, name: B::KIND };
-                    let exec = Exec::new();
-                    let files = if self.drawable {
-                        encode(&[(B::KIND, picture()?.clone())], &exec)?
-                    } else {
-                        Files::new()
-                    };
-                    folder.write(&report.to_json()?, &report.records(), files, &exec, |_| Ok(()))?;
+                    let folder = StudyFolder { path, name: self.name };
+                    let files = if pictures.is_empty() { Files::new() } else { encode(&pictures, exec)? };
+                    let mut added = String::new();
+                    let note =
+                        folder.write(&report.to_json()?, &report.records(), files, exec, |folder| {
+                            added = more(folder)?;
+                            Ok(())
+                        })?;
+                    notes.push(note + &added);
                     written(path);
                     continue;
                 }
             };
-            write_file(path, &bytes, self.args.force)?;
+            write_file(path, &bytes, self.force)?;
         }
-        self.args.print.print(report, &document)
+        Ok(notes)
+    }
+
+    /// Prints a report, and notes beside it; says which requirements it does not meet.
+    pub(crate) fn print<B: Printed + Serialize>(
+        &self,
+        report: &Envelope<B>,
+        notes: &[String],
+    ) -> Result<ExitStatus, Failure> {
+        let status = self.print.print(report, &report.described());
+        to_stderr(notes);
+        status
     }
 }
 
 impl PrintArgs {
-    /// Refuses requirements that no report of this kind answers.
-    fn check(&self, report: &str) -> Result<(), Failure> {
+    /// Refuses requirements that no report of this kind answers. `absent` are places that are null with the options at hand.
+    fn check(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
         for requirement in &self.require {
-            let tried = requirement.check(&schema, &[]);
+            let tried = requirement.check(&schema, absent);
             tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
         }
         Ok(())
@@ -311,12 +427,19 @@ pub(crate) fn study<T: Subject>(
     })
 }
 
-/// What speaks against the numbers of a problem before any is computed.
+/// Warnings about a problem, before anything is computed.
 pub(crate) fn warnings(problem: &Problem) -> Vec<WarningReport> {
     problem.objections().iter().map(WarningReport::note).collect()
 }
 
+/// The same as lines of stderr, for reports that do not hold it.
+pub(crate) fn objections(problem: &Problem) -> Vec<String> {
+    problem.objections().iter().map(|objection| format!("warning: {objection}")).collect()
+}
+
+const NO_PICTURE: &str = "there is no picture of this result";
+
 /// Asked for a picture of something that has none: refused before anything was computed.
 pub(crate) fn no_picture() -> Failure {
-    Failure::with_help("there is no picture of this result".to_owned(), None)
+    Failure::with_help(NO_PICTURE.to_owned(), None)
 }

@@ -9,7 +9,7 @@ use catchment::exec::Stopwatch;
 use catchment::method::zraa::{self, Nilsson, Square};
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
-use catchment::report::compare::{Subject, compare as compared};
+use catchment::report::compare::{Source, compare as compared};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{JamsReport, WindowReport, ZraaReport, figure};
 use catchment::run::window;
@@ -126,21 +126,21 @@ pub(crate) fn compare(
     cells: Option<String>,
     how: How,
 ) -> PyResult<Told> {
-    let subject = |side: &Side<'_>| -> Result<Subject, Refusal> {
+    let source = |side: &Side<'_>| -> Result<Source, Refusal> {
         Ok(match side {
-            Side::Stored(path) => Subject::Stored(path.clone()),
+            Side::Stored(path) => Source::Stored(path.clone()),
             Side::Fresh(source, problem, name, settings) => {
                 let method = method(name, settings)?;
                 method.applies_to(problem.inner.design())?;
                 let (problem, run) = (Box::new(problem.inner.clone()), Box::new(Run::by(method)));
-                Subject::Fresh { source: source.clone(), problem, run }
+                Source::Fresh { source: source.clone(), problem, run }
             }
         })
     };
-    let subjects = || -> Result<[Subject; 2], Refusal> { Ok([subject(&sides[0])?, subject(&sides[1])?]) };
-    let subjects = subjects().map_err(|refusal| refusal.raise(py))?;
+    let sources = || -> Result<[Source; 2], Refusal> { Ok([source(&sides[0])?, source(&sides[1])?]) };
+    let sources = sources().map_err(|refusal| refusal.raise(py))?;
     work(py, &how, |exec| {
-        let found = compared(subjects, resolution(cells.as_deref())?, true, exec)?;
+        let found = compared(sources, resolution(cells.as_deref())?, true, exec)?;
         let told = Told::of(&found.report)?;
         match found.picture {
             Some(picture) => told.with(picture),

@@ -141,7 +141,7 @@ impl Sweep {
             let base = self.plan.base().clone();
             let found = self.plan.clone().run(keep, exec).map_err(refused)?;
             let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
-            let report = SweepReport::new(&base, found, Some(timing));
+            let report = SweepReport::new(&base, found, Vec::new(), Some(timing));
             let map = figure::sweep_map(&report);
             let told = Told::of(&report)?;
             if let Some(path) = &self.output {

@@ -6,9 +6,9 @@
 //!   (over the other's cells)          ┘
 //! ```
 
-use super::comparison::{Compared as Side, ComparisonReport};
+use super::comparison::{Compared as Side, ComparisonBody, ComparisonReport};
 use super::folder::RESULT;
-use super::schema::Timing;
+use super::schema::{Timing, axes};
 use super::zarr::{self, ZarrError};
 use super::{Report, figure};
 use catchment_core::acceptance::Acceptance;
@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 /// One of the two.
 #[derive(Debug)]
-pub enum Subject {
+pub enum Source {
     /// A result that was stored: its folder or its group.
     Stored(PathBuf),
     /// A problem to be decided; the resolution of the run is not asked.
@@ -87,13 +87,13 @@ pub struct Found {
     pub picture: Option<Result<figure::Picture, figure::FigureError>>,
 }
 
-/// Compares two subjects. Problems are decided over the cells of a stored result where there is one, else over `resolution`, else
+/// Compares two sources. Problems are decided over the cells of a stored result where there is one, else over `resolution`, else
 /// over an even number of cells that exact descent affords.
 ///
 /// # Errors
 /// See [`CompareError`].
 pub fn compare(
-    subjects: [Subject; 2],
+    sources: [Source; 2],
     resolution: Option<Resolution>,
     picture: bool,
     exec: &Exec,
@@ -101,8 +101,8 @@ pub fn compare(
     let started = Stopwatch::start();
     // Stored results first: their grid is what a problem is decided on.
     let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
-    for (side, subject) in sides.iter_mut().zip(&subjects) {
-        if let Subject::Stored(path) = subject {
+    for (side, source) in sides.iter_mut().zip(&sources) {
+        if let Source::Stored(path) = source {
             let (report, acceptance) = zarr::read(&group(path), exec)?;
             *side = Some((Side { source: path.display().to_string(), report }, acceptance));
         }
@@ -112,17 +112,17 @@ pub fn compare(
     if picture {
         // The cells that both have are no more than those of either.
         let grids =
-            subjects.iter().filter_map(|subject| planned(subject, cells)).collect::<Result<Vec<_>, _>>()?;
+            sources.iter().filter_map(|source| planned(source, cells)).collect::<Result<Vec<_>, _>>()?;
         let fits = grids.iter().map(|grid| figure::ensure_grid_fits(grid, exec));
         fits.reduce(Result::or).unwrap_or(Ok(()))?;
     }
     let mut decided = Vec::with_capacity(2);
-    for (k, (side, subject)) in sides.into_iter().zip(subjects).enumerate() {
+    for (k, (side, source)) in sides.into_iter().zip(sources).enumerate() {
         let part = exec.part([0.5 * k as f64, 0.5 * (k + 1) as f64], "comparing");
-        decided.push(match (side, subject) {
+        decided.push(match (side, source) {
             (Some(stored), _) => stored,
-            (None, Subject::Fresh { source, problem, run }) => decide(source, &problem, &run, cells, &part)?,
-            (None, Subject::Stored(path)) => {
+            (None, Source::Fresh { source, problem, run }) => decide(source, &problem, &run, cells, &part)?,
+            (None, Source::Stored(path)) => {
                 return Err(ZarrError::Content { path, reason: "it was not read".to_owned() }.into());
             }
         });
@@ -146,8 +146,9 @@ pub fn compare(
         figure::difference(&first.report.design, &paired, &comparison, names)
     });
     let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
-    let sides = [first.clone(), second.clone()];
-    let report = ComparisonReport::new(sides, &paired, comparison, Some(timing));
+    let axes = axes(&paired.first);
+    let body = ComparisonBody { first: first.clone(), second: second.clone(), axes, comparison };
+    let report = ComparisonReport::of(body, Vec::new(), Some(timing));
     Ok(Found { report, picture })
 }
 
@@ -163,8 +164,8 @@ fn as_resolution(report: &Report) -> Option<Resolution> {
 }
 
 /// The grid that a problem will be decided on; `None` of a stored result.
-fn planned(subject: &Subject, cells: Resolution) -> Option<Result<Grid, CompareError>> {
-    let Subject::Fresh { source, problem, .. } = subject else { return None };
+fn planned(from: &Source, cells: Resolution) -> Option<Result<Grid, CompareError>> {
+    let Source::Fresh { source, problem, .. } = from else { return None };
     Some(grid_of(source, problem, cells))
 }
 

@@ -10,7 +10,7 @@
 //!                       └──▶  write: complete or not at all
 //!
 //!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
-//!   convergence · sensitivity · sweep · comparison
+//!   comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -29,7 +29,6 @@ mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
 mod comparison;
-mod convergence;
 pub mod document;
 mod envelope;
 mod export;
@@ -45,17 +44,17 @@ mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
 pub mod page;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+mod parts;
 mod plan;
 mod run;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
-mod sensitivity;
 pub mod set;
 mod slices;
 pub mod solids;
 mod success;
-mod sweep;
 mod table;
 pub mod text;
 mod trajectory;
@@ -69,7 +68,11 @@ pub mod zarr;
 mod zraa;
 
 use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
+use catchment_study::agreement::Agreement;
+use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
+use catchment_study::sensitivity::Sensitivity;
+use catchment_study::sweep::Sweep;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -79,11 +82,7 @@ pub use chance::{
     PresetReport,
 };
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
-pub use comparison::{
-    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
-    MethodResult,
-};
-pub use convergence::{ConvergenceBody, ConvergenceReport};
+pub use comparison::{Compared, ComparisonBody, ComparisonReport};
 pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
@@ -93,21 +92,19 @@ pub use hold::{
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use parts::Parts;
 pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
 pub use run::first_look;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
 pub use schema::{Report, RunBody};
-pub use sensitivity::{SensitivityBody, SensitivityReport};
-pub use slices::{SliceReport, SlicesBody, SlicesReport};
+pub use slices::{SliceReport, SlicesFound, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
 pub use success::{
     AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
     ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
 };
-#[cfg(all(feature = "figure", feature = "zarr"))]
-pub use sweep::Parts;
-pub use sweep::{SweepBody, SweepReport};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
@@ -129,3 +126,15 @@ pub type RestsReport = ReportOf<Rests>;
 
 /// The largest box of errors that all dock, with its head.
 pub type WindowReport = ReportOf<Window>;
+
+/// Every method of a design on one grid, with its head.
+pub type AgreementReport = ReportOf<Agreement>;
+
+/// Refinement of the grid, with every method, with its head.
+pub type ConvergenceReport = ReportOf<Convergence>;
+
+/// The Sum against ρ, the centre of rotation and the aspect ratio, with its head.
+pub type SensitivityReport = ReportOf<Sensitivity>;
+
+/// Every combination of values of a sweep, with its head.
+pub type SweepReport = ReportOf<Sweep>;

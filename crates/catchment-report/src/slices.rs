@@ -1,24 +1,23 @@
-//! Slices as versioned JSON and as a table.
+//! Slices as versioned JSON, and what people and programs read of them.
 
-use super::envelope::{Body, Envelope};
-use super::schema::{AcceptanceReport, Axis, OnaaReport, Timing, WarningReport, axes};
-use super::table::heading;
-use super::text::{grouped, line, percent, row, significant, wrapped};
+use super::document::ReportOf;
+use super::schema::{AcceptanceReport, Axis, OnaaReport, WarningReport, axes};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
+use catchment_core::document::{
+    Cell, Column, Document, Format, Subject, Table, grouped, percent, significant,
+};
 use catchment_core::merit::estimate::Estimate;
 use catchment_study::slices::{Settings, Slice, Slices};
 use serde::Serialize;
 
-/// What slices have to say, with its head.
-pub type SlicesReport = Envelope<SlicesBody>;
+/// Slices of a design, with their head.
+pub type SlicesReport = ReportOf<SlicesFound>;
 
-/// What slices have to say; fields as in [`Report`](super::Report).
+/// Slices of a design; fields as in [`Report`](super::Report).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SlicesBody {
-    /// The design, resolved: lengths in D, angles in radians.
-    pub design: Design,
+pub struct SlicesFound {
     /// What else changes the answer.
     #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
     pub settings: Settings,
@@ -26,10 +25,6 @@ pub struct SlicesBody {
     pub slices: Vec<SliceReport>,
     /// Estimated edge of the largest cube of the whole, in [0, 1]; null where slices it needs are missing.
     pub onaa_estimate: Option<Estimate>,
-}
-
-impl Body for SlicesBody {
-    const KIND: &'static str = "slices";
 }
 
 /// One slice.
@@ -48,99 +43,95 @@ pub struct SliceReport {
     pub warnings: Vec<WarningReport>,
 }
 
-impl SlicesReport {
-    /// Evaluates slices of a design.
-    pub fn new(design: &Design, found: &Slices, settings: Settings, timing: Option<Timing>) -> Self {
-        let slice = |s: &Slice| SliceReport {
-            axes: axes(&s.acceptance),
-            method: s.acceptance.method.to_owned(),
-            acceptance: AcceptanceReport {
-                sum_bracket: Some(s.bracket),
-                ..AcceptanceReport::from(s.sum.clone())
-            },
-            onaa: s.onaa.clone().into(),
-            warnings: s.warnings.iter().cloned().map(WarningReport::from).collect(),
-        };
-        let body = SlicesBody {
-            design: design.clone(),
+impl SlicesFound {
+    /// Of slices that were computed with these settings.
+    pub fn of(found: &Slices, settings: Settings) -> Self {
+        Self {
             settings,
-            slices: found.slices.iter().map(slice).collect(),
+            slices: found.slices.iter().map(SliceReport::from).collect(),
             onaa_estimate: found.estimate,
-        };
-        Envelope::of(body, Vec::new(), timing)
+        }
     }
 
-    /// The report as text of 80 columns; ends with a line break.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        heading(&mut text, &self.design);
-        let method = self.slices.first().map_or("", |slice| &slice.method);
-        row(&mut text, "slices", &format!("through zero, by {method}: two errors vary, all free ones move"));
-        text.push('\n');
-        let mut columns =
-            |slice: &str, cells: &str, sum: &str, share: &str, star: &str, doubt: &str, edge: &str| {
-                let left = format!("  {slice:<10}  {cells:<9}  {sum:<12}{share:>9} {star:1}");
-                line(&mut text, &format!("{left} {doubt:>17}  {edge:>9}"));
-            };
-        columns("slice", "cells", "Sum", "share", "", "one cell of doubt", "ONAA edge");
-        let (mut open, mut undecided) = (false, 0);
+    /// A row per slice. For programs its numbers have no exponents.
+    fn table(&self) -> Table {
+        let mut table = Table::new([
+            Column::new("slice").left().key("slice"),
+            Column::new("cells").left().key("cells"),
+            Column::new("Sum").left().key("sum"),
+            Column::data("unit"),
+            Column::new("share").key("fraction"),
+            Column::new(""),
+            Column::new("one cell of doubt"),
+            Column::data("doubt_from"),
+            Column::data("doubt_to"),
+            Column::new("ONAA edge").key("onaa_edge"),
+        ]);
         for slice in &self.slices {
             let a = &slice.acceptance;
             let cells: Vec<String> = slice.axes.iter().map(|axis| axis.cells.to_string()).collect();
-            let doubt = a
-                .sum_bracket
-                .map_or_else(String::new, |[lo, hi]| format!("{} … {}", significant(lo), significant(hi)));
-            let cut = slice.reaches_border();
-            open |= cut;
-            undecided += a.outcomes.undecided;
-            columns(
-                &slice.name(),
-                &cells.join(" × "),
-                &format!("{} {}", significant(a.sum), a.unit),
-                &percent(a.fraction),
-                if cut { "*" } else { "" },
-                &doubt,
-                &format!("{:.4}", slice.onaa.edge),
-            );
-        }
-        if open {
-            line(&mut text, "  * up to the border of the error box, perhaps further");
-        }
-        if let Some(e) = self.onaa_estimate {
-            text.push('\n');
-            let words = format!(
-                "{:.3} (conservative) … {:.3} (optimistic): what x-y and x with each rotation let one guess of the \
-                 ONAA edge of the whole",
-                e.conservative, e.optimistic
-            );
-            wrapped(&mut text, "  estimate       ", &words);
-        }
-        if undecided > 0 {
-            let words = format!("{} cells undecided: they count as rejected", grouped(undecided));
-            wrapped(&mut text, "warning: ", &words);
-        }
-        text
-    }
-
-    /// The table as records for programs, the names of the columns first.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let head = ["slice", "cells", "sum", "unit", "fraction", "doubt_from", "doubt_to", "onaa_edge"];
-        let mut records = vec![head.map(str::to_owned).to_vec()];
-        for slice in &self.slices {
-            let a = &slice.acceptance;
+            let doubt = a.sum_bracket.map(|[lo, hi]| format!("{} … {}", significant(lo), significant(hi)));
             let [from, to] = a.sum_bracket.unwrap_or([a.sum; 2]);
-            records.push(vec![
-                slice.name(),
-                a.cells.to_string(),
-                a.sum.to_string(),
-                a.unit.clone(),
-                a.fraction.to_string(),
-                from.to_string(),
-                to.to_string(),
-                slice.onaa.edge.to_string(),
+            let shown = |text: String, value: f64| Cell::shown(text, value.to_string());
+            table.push([
+                slice.name().into(),
+                Cell::shown(cells.join(" × "), a.cells),
+                shown(format!("{} {}", significant(a.sum), a.unit), a.sum),
+                a.unit.clone().into(),
+                shown(percent(a.fraction), a.fraction),
+                if slice.reaches_border() { "*" } else { "" }.into(),
+                doubt.into(),
+                from.to_string().into(),
+                to.to_string().into(),
+                shown(Format::Fixed(4).of(slice.onaa.edge), slice.onaa.edge),
             ]);
         }
-        records
+        table
+    }
+}
+
+impl Subject for SlicesFound {
+    const KIND: &'static str = "slices";
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
+        let method = self.slices.first().map_or("", |slice| &slice.method);
+        document
+            .row("slices", format!("through zero, by {method}: two errors vary, all free ones move"))
+            .section(None)
+            .table(self.table());
+        if self.slices.iter().any(SliceReport::reaches_border) {
+            document.paragraph("* up to the border of the error box, perhaps further");
+        }
+        if let Some(Estimate { conservative, optimistic }) = self.onaa_estimate {
+            document.section(None).row(
+                "estimate",
+                format!(
+                    "{conservative:.3} (conservative) … {optimistic:.3} (optimistic): the ONAA edge of the whole, by the slices x-y and x with each rotation"
+                ),
+            );
+        }
+        let undecided: usize = self.slices.iter().map(|slice| slice.acceptance.outcomes.undecided).sum();
+        if undecided > 0 {
+            let words = format!("{} cells undecided: they count as rejected", grouped(undecided));
+            document.section(None).row("warning", words);
+        }
+        document
+    }
+}
+
+impl From<&Slice> for SliceReport {
+    fn from(slice: &Slice) -> Self {
+        Self {
+            axes: axes(&slice.acceptance),
+            method: slice.acceptance.method.to_owned(),
+            acceptance: AcceptanceReport {
+                sum_bracket: Some(slice.bracket),
+                ..AcceptanceReport::from(slice.sum.clone())
+            },
+            onaa: slice.onaa.clone().into(),
+            warnings: slice.warnings.iter().cloned().map(WarningReport::from).collect(),
+        }
     }
 }
 
@@ -178,7 +169,8 @@ mod tests {
         let slice = Slice { axes: [Dof::Pitch, Dof::Yaw], acceptance, sum, bracket, onaa, warnings };
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });
         let found = Slices { slices: vec![slice], estimate };
-        let report = SlicesReport::new(&design, &found, Settings::default(), None);
+        let report =
+            SlicesReport::new(&design, SlicesFound::of(&found, Settings::default()), Vec::new(), None);
         let text = report.table();
         for line in text.lines() {
             assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");

@@ -188,7 +188,7 @@ fn what_cannot_be_built_is_told_and_stops_nothing() {
     let Finding { message, help, .. } = &findings.list[0];
     assert_eq!(*reason, format!("{message}; {}", help.as_ref().unwrap()), "what is wrong, and what helps");
     assert_eq!((sweep.largest, sweep.smallest), (Some(0), Some(0)));
-    let report = SweepReport::new(&base, sweep.clone(), None);
+    let report = SweepReport::new(&base, sweep.clone(), Vec::new(), None);
     let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(flat(&report.table()).contains(&flat(&format!("family cone: {reason}"))), "{}", report.table());
     assert_eq!(report.records()[2].last(), Some(reason));

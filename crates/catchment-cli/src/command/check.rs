@@ -50,7 +50,8 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     match checked {
         Ok(problem) => output.finish(&CheckReport::good(&problem), picture),
         Err(ProblemError::Findings(findings)) if args.result.is_json() => {
-            output.without_picture(problem.is_none()).finish(&CheckReport::bad(&findings), picture)?;
+            let output = if problem.is_some() { output } else { output.without_picture() };
+            output.finish(&CheckReport::bad(&findings), picture)?;
             Ok(ExitStatus::Failed)
         }
         Err(error) => {

@@ -11,14 +11,14 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::method_parser;
-use crate::output::{tell, written};
-use catchment::exec::Exec;
+use crate::output::to_stderr;
+use crate::result_args::{Pictures, ResultArgs};
 use catchment::landscape::Resolution;
 use catchment::method::Method;
 use catchment::problem::Problem;
-use catchment::report::compare::{Found, Subject, compare};
+use catchment::report::compare::{Found, Source, compare};
 use catchment::report::figure::FigureError;
-use catchment::report::folder::{Files, StudyFolder, encode};
+use catchment::report::{Body, ComparisonBody};
 use catchment::run::Run;
 use clap::Args;
 use std::path::PathBuf;
@@ -32,8 +32,7 @@ use std::path::PathBuf;
     catchment compare design.toml --methods descent,flood\n  \
     catchment compare old.toml new.toml -o out          two designs, with a picture\n  \
     catchment compare out design.toml --methods descent a stored result against a fresh one\n  \
-    catchment compare a.zarr b.zarr --json | jq .comparison.jaccard\n\n\
-    -o DIR: difference.png, difference.svg, difference.csv (the confusions), report.json.")]
+    catchment compare a.zarr b.zarr --json | jq .comparison.jaccard")]
 pub(crate) struct CompareArgs {
     /// A design, a folder written by `run -o`, or its NAME.zarr
     #[arg(value_name = "A", value_hint = clap::ValueHint::AnyPath)]
@@ -47,41 +46,37 @@ pub(crate) struct CompareArgs {
     /// Cells per axis, such as 30 or x=40,yaw=24 [default: those of a stored result, else by number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
-    /// Print the report as JSON instead of the table
-    #[arg(long)]
-    json: bool,
-    /// Write picture, table and report into this folder
-    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
+/// The name of its table and its picture in a folder.
+const NAME: &str = "difference";
+
 pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
-    let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "difference" });
-    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
-    let subjects = subjects(args)?;
+    let output = args.result.check_named(ComparisonBody::KIND, NAME)?;
+    let sources = sources(args)?;
     let running = args.exec.start()?;
     let exec = &running.exec;
-    let Found { report, picture } = compare(subjects, args.resolution, folder.is_some(), exec)?;
-    let json = report.to_json()?;
-    let mut notes = Vec::new();
-    if let (Some(folder), Some(picture)) = (&folder, picture) {
-        let mut pictures = Files::new();
-        match picture {
-            Ok(picture) => pictures = encode(&[(folder.name, picture)], exec)?,
-            Err(FigureError::Empty { what }) => notes.push(format!("no picture: {what}")),
-            Err(error) => return Err(error.into()),
+    let Found { report, picture } = compare(sources, args.resolution, output.wants_picture(), exec)?;
+    let pictures = match picture {
+        Some(Ok(picture)) => vec![(NAME, picture)],
+        Some(Err(FigureError::Empty { what })) => {
+            running.beside_bar(|| to_stderr(&[format!("no picture: {what}")]));
+            Pictures::new()
         }
-        notes.push(folder.write(&json, &report.records(), pictures, exec, |_| Ok(()))?);
-        written(folder.path);
-    }
+        Some(Err(error)) => return Err(error.into()),
+        None => Pictures::new(),
+    };
+    let notes = output.write(&report, || Ok(pictures), |_| Ok(String::new()), exec)?;
     drop(running);
-    tell(&if args.json { json } else { report.table() }, &notes)
+    output.print(&report, &notes)
 }
 
 /// What A and B are, and who decides the designs among them.
-fn subjects(args: &CompareArgs) -> Result<[Subject; 2], Failure> {
+fn sources(args: &CompareArgs) -> Result<[Source; 2], Failure> {
     let refused =
         |message: &str, help: &str| Err(Failure::with_help(message.to_owned(), Some(help.to_owned())));
     let paths = [&args.first, args.second.as_ref().unwrap_or(&args.first)];
@@ -97,16 +92,16 @@ fn subjects(args: &CompareArgs) -> Result<[Subject; 2], Failure> {
     }
     let mut methods = args.methods.iter().cloned();
     let all = args.methods.first().cloned().unwrap_or_default();
-    let mut subject = |k: usize| -> Result<Subject, Failure> {
+    let mut source = |k: usize| -> Result<Source, Failure> {
         let path = paths[k].clone();
         if stored[k] {
-            return Ok(Subject::Stored(path));
+            return Ok(Source::Stored(path));
         }
         let problem = Problem::open(&path)?.checked()?;
         let method = methods.next().unwrap_or_else(|| all.clone());
         method.applies_to(problem.design())?;
         let run = Box::new(Run::by(method));
-        Ok(Subject::Fresh { source: path.display().to_string(), problem: Box::new(problem), run })
+        Ok(Source::Fresh { source: path.display().to_string(), problem: Box::new(problem), run })
     };
-    Ok([subject(0)?, subject(1)?])
+    Ok([source(0)?, source(1)?])
 }

@@ -6,17 +6,16 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::output::{tell, written};
-use catchment::exec::Exec;
+use crate::result_args::{ResultArgs, objections};
+use catchment::document::Subject;
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
-use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
-use catchment::report::{SlicesReport, figure, save_slices};
+use catchment::report::{SlicesFound, SlicesReport, figure, save_slices};
 use catchment::study::slices::{Settings, SlicesError, ensure_fits, run as compute};
 use catchment::terminal::escaped;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Slices: two errors vary finely, all free ones move
@@ -29,7 +28,7 @@ use std::time::Instant;
     catchment slices design.toml --axes x,pitch --axes x,yaw --resolution 201\n  \
     catchment slices design.toml --json | jq '.slices[].onaa.edge'\n  \
     catchment slices designs/x-face-3d.toml --axes x,y --axes x,roll --axes x,pitch --axes x,yaw --method drop\n                                                        the slices that the dissertation published\n\n\
-    -o DIR: slices.png, slices.svg, slices.csv, report.json, and a Zarr group such as x-pitch.zarr for each.")]
+    A folder also gets a Zarr group such as x-pitch.zarr for each slice.")]
 pub(crate) struct SlicesArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -41,12 +40,8 @@ pub(crate) struct SlicesArgs {
     resolution: Resolution,
     #[command(flatten)]
     method: PoseMethodArgs,
-    /// Write pictures, table, report and outcomes into this folder
-    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
-    output: Option<PathBuf>,
-    /// Print the report as JSON instead of the table
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -61,8 +56,7 @@ fn pair(text: &str) -> Result<[Dof; 2], String> {
 
 pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "slices" });
-    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
+    let output = args.result.check(SlicesFound::KIND, true)?;
     let problem = args.design.problem()?;
     let settings =
         Settings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };
@@ -73,24 +67,20 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         error => error.into(),
     };
     let cells = ensure_fits(&problem, &settings, exec).map_err(refused)?;
-    if folder.is_some() {
+    if output.wants_picture() {
         figure::ensure_fits(cells, exec)?;
     }
     let found = compute(&problem, &settings, exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let design = problem.design();
-    let report = SlicesReport::new(design, &found, settings, Some(timing));
-    let json = report.to_json()?;
-    let mut notes: Vec<String> =
-        problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
-    if let Some(folder) = &folder {
-        let picture = figure::slice_matrix(design, problem.connector(), &found)?;
-        let pictures = encode(&[(folder.name, picture)], exec)?;
-        let groups = |folder: &Path| save_slices(&found, folder, &problem, &report, exec);
-        let said = folder.write(&json, &report.records(), pictures, exec, groups)?;
-        written(folder.path);
-        notes.push(format!("{said}, {} Zarr groups", found.slices.len()));
-    }
+    let report = SlicesReport::new(design, SlicesFound::of(&found, settings), Vec::new(), Some(timing));
+    let picture = || Ok(vec![("slices", figure::slice_matrix(design, problem.connector(), &found)?)]);
+    let groups = |folder: &Path| {
+        save_slices(&found, folder, &problem, &report, exec)?;
+        Ok(format!(", {} Zarr groups", found.slices.len()))
+    };
+    let mut notes = objections(&problem);
+    notes.extend(output.write(&report, picture, groups, exec)?);
     drop(running);
-    tell(&if args.json { json } else { report.table() }, &notes)
+    output.print(&report, &notes)
 }

@@ -7,19 +7,21 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
-use crate::output::{kept, tell, written};
+use crate::output::kept;
+use crate::result_args::ResultArgs;
 use crate::signals;
 use catchment::design::SourceText;
+use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
-use catchment::report::folder::{StudyFolder, encode};
+use catchment::report::figure::{sweep_map, sweep_outlines};
 use catchment::report::schema::Timing;
-use catchment::report::{Parts, SweepReport, figure};
+use catchment::report::{Parts, SweepReport};
 use catchment::run::{Over, Run, RunError};
 use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::Path;
 use std::time::Instant;
 
 /// Sweep design parameters: every combination of values, computed and compared
@@ -34,8 +36,8 @@ use std::time::Instant;
     catchment sweep design.toml --over connector.moving.mesh=a.stl,b.stl --json | jq '.designs[].figures.sum'\n\n\
     A key is written as its path (errors.x), or as its last word where no other key has it; cor and rho are short for\n\
     center_of_rotation and rotation_length. -1..1/5 is five values from -1 to 1.\n\
-    -o DIR: sweep.csv, sweep.png and outlines.png (also .svg), report.json, sweep.zarr. Until it is complete, finished designs are\n\
-    kept in DIR.parts: the same command goes on from there after Ctrl-C, and writes what it would have written.")]
+    A folder also gets outlines.png (also .svg) and sweep.zarr. Until the result is complete, finished designs are kept in PATH.parts\n\
+    beside it: the same command goes on from there after Ctrl-C, and writes what it would have written.")]
 pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -51,12 +53,8 @@ pub(crate) struct SweepArgs {
     sample: SampleArgs,
     #[command(flatten)]
     errors: ErrorArgs,
-    /// Write table, pictures, report and a Zarr group into this folder
-    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
-    output: Option<PathBuf>,
-    /// Print the report as JSON instead of the table
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -67,36 +65,33 @@ fn axis(text: &str) -> Result<Axis, String> {
 
 pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "sweep" });
-    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
+    let output = args.result.check(Sweep::KIND, true)?;
     let plan = plan(args)?;
     let running = args.exec.start()?;
     let exec = &running.exec;
     let base = plan.base().clone();
-    let parts = args.output.as_deref().map(Parts::beside);
+    let parts = args.result.output().map(Parts::beside);
     let (kept_so_far, designs) = (parts.clone(), plan.len());
     running.may_be_left_after(move || tell_kept(kept_so_far.as_ref(), designs));
     let found = compute(plan, parts.as_ref(), exec)?;
     signals::must_stay();
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
-    let report = SweepReport::new(&base, found, Some(timing));
-    let json = report.to_json()?;
-    let mut notes = Vec::new();
-    if let Some(folder) = &folder {
-        let mut drawn = Vec::new();
-        drawn.extend(figure::sweep_map(&report).map(|picture| ("sweep", picture)));
-        drawn.extend(figure::sweep_outlines(&report)?.map(|picture| ("outlines", picture)));
-        let pictures = encode(&drawn, exec)?;
-        let said =
-            folder.write(&json, &report.records(), pictures, exec, |into| report.save_group(into, exec))?;
-        written(folder.path);
-        notes.push(format!("{said}, sweep.zarr"));
-    }
+    let report = SweepReport::new(&base, found, Vec::new(), Some(timing));
+    let pictures = || {
+        let map = sweep_map(&report).map(|picture| ("sweep", picture));
+        let outlines = sweep_outlines(&report)?.map(|picture| ("outlines", picture));
+        Ok(map.into_iter().chain(outlines).collect())
+    };
+    let group = |folder: &Path| {
+        report.save_group(folder, exec)?;
+        Ok(", sweep.zarr".to_owned())
+    };
+    let notes = output.write(&report, pictures, group, exec)?;
     if let Some(parts) = parts {
         parts.clear();
     }
     drop(running);
-    tell(&if args.json { json } else { report.table() }, &notes)
+    output.print(&report, &notes)
 }
 
 /// The designs, read.

@@ -89,7 +89,7 @@ fn refinement_says_when_it_is_stable() {
     assert!((last["sum"].as_f64().unwrap() - 2.39).abs() < 0.25, "{last}");
     let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     assert!(
-        told.starts_with("exit 0\n") && told.contains("\nflood\n") && told.contains("stable\n"),
+        told.starts_with("exit 0\n") && told.contains("\n  flood\n") && told.contains("stable\n"),
         "{told}"
     );
     assert_eq!(

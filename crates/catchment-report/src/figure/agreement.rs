@@ -2,12 +2,13 @@
 
 use super::Picture;
 use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
-use crate::{Agreement, AgreementReport};
+use crate::AgreementReport;
+use catchment_study::agreement::PairAgreement;
 
 /// Draws how each two methods of a design agree: left the share of cells, right the overlap of the accepted sets.
 pub fn agreement(report: &AgreementReport) -> Picture {
     let names: Vec<String> = report.results().map(|(name, _)| name.to_owned()).collect();
-    let map = |title, of: fn(&Agreement) -> f64| NumberMap {
+    let map = |title, of: fn(&PairAgreement) -> f64| NumberMap {
         title,
         rows: &names,
         columns: &names,

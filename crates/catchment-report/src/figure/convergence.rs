@@ -5,21 +5,21 @@ use super::draw::axis::short;
 use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use catchment_core::design::Design;
-use catchment_study::convergence::{Convergence, Sequence};
+use crate::ConvergenceReport;
+use catchment_study::convergence::Sequence;
 use catchment_study::refinement::Refinement;
 
 /// Draws every method's sequence: above the Sums with their intervals, below the ONAA edges; left over cells per axis,
 /// right over the time that they took.
-pub fn convergence(design: &Design, found: &Convergence) -> Picture {
+pub fn convergence(report: &ConvergenceReport) -> Picture {
     let (left, right, top, size) = (78.0, 530.0, 92.0, [380.0, 240.0]);
     let below = top + size[1] + 64.0;
     let height = below + size[1] + 56.0;
     let mut svg = Svg::new(right + size[0] + 28.0, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let story = format!(
         "every method refined until two refinements in a row change Sum and ONAA by less than {} %",
-        short(100.0 * found.settings.tolerance)
+        short(100.0 * report.settings.tolerance)
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines = |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
@@ -35,9 +35,9 @@ pub fn convergence(design: &Design, found: &Convergence) -> Picture {
                 })
                 .collect(),
         };
-        found.sequences.iter().enumerate().map(line).collect()
+        report.sequences.iter().enumerate().map(line).collect()
     };
-    let sum_label = format!("Sum [{}]", found.unit);
+    let sum_label = format!("Sum [{}]", report.unit);
     let places = [(left, top), (right, top), (left, below), (right, below)];
     for (k, (x, y)) in places.into_iter().enumerate() {
         let across: fn(&Refinement) -> f64 = if k % 2 == 0 { |t| t.resolution as f64 } else { |t| t.seconds };
@@ -65,7 +65,7 @@ mod tests {
     use crate::schema::testing::design;
     use catchment_core::method::Method;
     use catchment_core::pose::Dof;
-    use catchment_study::convergence::{Settings, StopReason};
+    use catchment_study::convergence::{Convergence, Settings, StopReason};
 
     #[test]
     fn every_method_has_a_line_in_every_chart() {
@@ -95,7 +95,7 @@ mod tests {
             unit: "D·rad".to_owned(),
             sequences: Method::on_grids().iter().enumerate().map(sequence).collect(),
         };
-        let picture = convergence(&design, &found);
+        let picture = convergence(&ConvergenceReport::new(&design, found, Vec::new(), None));
         look("convergence", &picture);
         assert_eq!(picture.svg().matches("<circle").count(), 4 * 5 * Method::on_grids().len());
         assert!(!picture.svg().contains("NaN"));

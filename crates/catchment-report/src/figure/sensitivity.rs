@@ -5,20 +5,19 @@ use super::draw::axis::short;
 use super::draw::chart::{Chart, Line, Mark, Point, Spacing};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use catchment_core::design::Design;
-use catchment_study::sensitivity::Sensitivity;
+use crate::SensitivityReport;
 
 /// Draws the Sum over ρ. The points are of the same random poses: their band moves as a whole, their differences are
 /// known better than it is wide.
-pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
+pub fn sensitivity(report: &SensitivityReport) -> Picture {
     let mut svg = Svg::new(620.0, 440.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let story = format!(
         "Sum {} … {} {} over ρ, with its 95 % interval, by the same {} random poses",
-        short(found.least.sum),
-        short(found.greatest.sum),
-        found.unit,
-        found.settings.poses.unwrap_or_default()
+        short(report.least.sum),
+        short(report.greatest.sum),
+        report.unit,
+        report.settings.poses.unwrap_or_default()
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let point = |p: &catchment_study::sensitivity::AtRho| Point {
@@ -27,14 +26,14 @@ pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
         interval: Some(p.ci95),
     };
     let line =
-        Line { name: String::new(), colour: CURVES[0], points: found.over_rho.iter().map(point).collect() };
+        Line { name: String::new(), colour: CURVES[0], points: report.over_rho.iter().map(point).collect() };
     let chart = Chart {
         rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
         x_label: "ρ, rotation length [D]",
         spacing: Spacing::Logarithmic,
-        y_label: &format!("Sum [{}]", found.unit),
+        y_label: &format!("Sum [{}]", report.unit),
         lines: &[line],
-        mark: Some(Mark { x: design.alignment.rotation_length, y: None, words: "this design" }),
+        mark: Some(Mark { x: report.design.alignment.rotation_length, y: None, words: "this design" }),
     };
     chart.draw(&mut svg);
     Picture::of(svg)
@@ -46,7 +45,7 @@ mod tests {
     use super::*;
     use crate::schema::testing::design;
     use catchment_core::pose::Dof;
-    use catchment_study::sensitivity::{AtRho, Settings};
+    use catchment_study::sensitivity::{AtRho, Sensitivity, Settings};
 
     #[test]
     fn the_sum_is_drawn_over_rho() {
@@ -70,7 +69,7 @@ mod tests {
             over_rho,
             settings,
         };
-        let picture = sensitivity(&design, &found);
+        let picture = sensitivity(&SensitivityReport::new(&design, found, Vec::new(), None));
         look("sensitivity", &picture);
         assert_eq!(picture.svg().matches("<circle").count(), 13);
         assert!(picture.svg().contains("this design") && !picture.svg().contains("NaN"));

@@ -63,11 +63,11 @@ fn short_name(axis: &Axis) -> &str {
 /// Draws the Sum of every design in the colour of its size, and its share of the error box; `None` for more rows than fit a page.
 pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
     const MOST_ROWS: usize = 60;
-    let (rows, columns) = table(&report.found.settings.axes);
+    let (rows, columns) = table(&report.settings.axes);
     if rows.len() > MOST_ROWS || columns.len() > MOST_MAPS {
         return None;
     }
-    let figures = || report.found.designs.iter().map(|trial| trial.found.figures());
+    let figures = || report.designs.iter().map(|trial| trial.found.figures());
     let values = |of: fn(&catchment_study::sweep::Figures) -> Option<f64>| -> Vec<Vec<f64>> {
         let all: Vec<f64> = figures().map(|f| f.and_then(of).unwrap_or(f64::NAN)).collect();
         all.chunks(columns.len().max(1)).map(<[f64]>::to_vec).collect()
@@ -78,7 +78,7 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
         Colouring::Sequential([lo, hi])
     };
     let place = |number: Option<usize>| number.map(|k| [k / columns.len().max(1), k % columns.len().max(1)]);
-    let marks: Vec<([usize; 2], &str)> = [(report.found.largest, "▲"), (report.found.smallest, "▼")]
+    let marks: Vec<([usize; 2], &str)> = [(report.largest, "▲"), (report.smallest, "▼")]
         .into_iter()
         .filter_map(|(number, mark)| Some((place(number)?, mark)))
         .collect();
@@ -98,11 +98,11 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
         maps.push(map("ONAA edge, of the error box", edges, Vec::new()));
     }
     let extreme = |what: &str, number: Option<usize>| {
-        let trial = &report.found.designs[number?];
+        let trial = &report.designs[number?];
         Some(format!("{what}: {} at {}", significant(trial.found.figures()?.sum), report.named(trial)))
     };
     let story: Vec<String> =
-        [extreme("▲ largest Sum", report.found.largest), extreme("▼ smallest Sum", report.found.smallest)]
+        [extreme("▲ largest Sum", report.largest), extreme("▼ smallest Sum", report.smallest)]
             .into_iter()
             .flatten()
             .collect();
@@ -116,13 +116,9 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
 /// # Errors
 /// A map cannot be encoded.
 pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureError> {
-    let (rows, columns) = table(&report.found.settings.axes);
-    let outlines: Vec<Option<&Outline>> = report
-        .found
-        .designs
-        .iter()
-        .map(|trial| trial.found.figures().and_then(|f| f.outline.as_ref()))
-        .collect();
+    let (rows, columns) = table(&report.settings.axes);
+    let outlines: Vec<Option<&Outline>> =
+        report.designs.iter().map(|trial| trial.found.figures().and_then(|f| f.outline.as_ref())).collect();
     let Some(first) = outlines.iter().flatten().next() else { return Ok(None) };
     if outlines.len() > MOST_OUTLINES || columns.len() > MOST_MAPS {
         return Ok(None);
@@ -242,7 +238,7 @@ mod tests {
         let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
         let plan = Plan::new(&source, Settings { axes, run }, Ok).unwrap();
         let design = plan.base().clone();
-        SweepReport::new(&design, plan.run(&Nowhere, &Exec::new()).unwrap(), None)
+        SweepReport::new(&design, plan.run(&Nowhere, &Exec::new()).unwrap(), Vec::new(), None)
     }
 
     #[test]
@@ -258,7 +254,7 @@ mod tests {
             look(name, &map);
             let outlines = sweep_outlines(&report).unwrap().unwrap();
             look(&format!("{name}-outlines"), &outlines);
-            let designs = report.found.designs.len();
+            let designs = report.designs.len();
             assert_eq!(outlines.svg().matches("<image").count(), designs);
             assert!(map.svg().matches("▲").count() == 2 && outlines.svg().matches("▲").count() == 2);
         }

@@ -30,7 +30,7 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
     let folder = &folder.join("sweep.zarr");
     write::permit().step(folder, || std::fs::create_dir_all(folder).map_err(ZarrError::from))?;
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
-    let found = &report.found;
+    let found = &report.result;
     let (axes, names) = (&found.settings.axes, names(&found.settings.axes));
     let mut arrays = Map::new();
     for (axis, name) in axes.iter().zip(&names) {
@@ -119,7 +119,7 @@ fn variables(report: &SweepReport) -> Vec<(String, String, Variable)> {
     add("onaa_edge", "1", Box::new(|f| f.onaa_edge));
     add("centered_edge", "1", Box::new(|f| f.centered_edge));
     add("success", "1", Box::new(|f| f.success));
-    let first = report.found.designs.iter().find_map(|trial| trial.found.figures());
+    let first = report.designs.iter().find_map(|trial| trial.found.figures());
     for error in first.into_iter().flat_map(|figures| figures.tolerances.iter().map(|along| along.axis)) {
         let unit = if error.is_rotation() { "rad" } else { "D" };
         let along = move |f: &Figures| f.tolerances.iter().find(|along| along.axis == error).copied();

@@ -16,6 +16,7 @@
 //! Not promised: that the Sum is smooth between two values, or that the largest of those tried is the largest there is.
 
 mod axis;
+mod report;
 
 pub use axis::{Axis, AxisError};
 

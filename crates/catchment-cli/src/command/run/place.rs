@@ -6,7 +6,7 @@ use crate::output::{check_place, write_file, written};
 use crate::result_args::{self, rendered};
 use catchment::exec::Exec;
 use catchment::report::figure::Drawn;
-use catchment::report::folder::{POSES, REPORT, RESULT, StudyFolder};
+use catchment::report::folder::{POSES, REPORT, RESULT};
 use catchment::report::set::Kind;
 use catchment::report::write;
 use catchment::report::{self, Report, Target};
@@ -81,13 +81,6 @@ impl PlaceArgs {
     /// Whether pictures alone are wanted.
     pub(super) const fn wants_figures_alone(&self) -> bool {
         self.figures.is_some()
-    }
-
-    /// The folder of a study of this name, if one is to be written; refused now if it cannot be.
-    pub(super) fn study(&self, name: &'static str) -> Result<Option<StudyFolder<'_>>, Failure> {
-        let folder = self.output.as_deref().map(|path| StudyFolder { path, name });
-        folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
-        Ok(folder)
     }
 }
 

@@ -2,15 +2,15 @@
 
 use super::RunArgs;
 use super::sample::duration;
-use crate::exec_args::Running;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{tell, written};
+use crate::result_args::{Output, objections};
+use catchment::document::Subject;
+use catchment::exec::Exec;
 use catchment::problem::Problem;
-use catchment::report::figure::Picture;
-use catchment::report::folder::{StudyFolder, encode};
+use catchment::report::ReportOf;
+use catchment::report::figure::{self, Picture};
 use catchment::report::schema::Timing;
-use catchment::report::{ConvergenceReport, SensitivityReport, figure};
 use catchment::study::{convergence, sensitivity};
 use clap::Args;
 use std::time::{Duration, Instant};
@@ -40,9 +40,6 @@ pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
 }
 
 fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let folder = args.place.study("convergence")?;
-    let problem = args.design.problem()?;
     let default = convergence::Settings::default();
     let settings = convergence::Settings {
         tolerance: args.sample.tolerance.unwrap_or(default.tolerance),
@@ -51,66 +48,35 @@ fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
         seed: args.sample.seed,
         ..default
     };
-    let running = args.exec.start()?;
-    let found = convergence::run(&problem, &settings, &running.exec)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    let report = ConvergenceReport::new(problem.design(), found, Some(timing));
-    let told = Told {
-        json: report.to_json()?,
-        table: report.table(),
-        records: report.records(),
-        picture: figure::convergence(problem.design(), &report.found),
-    };
-    told.tell(args, folder, &problem, running)
+    study(args, figure::convergence, |problem, exec| Ok(convergence::run(problem, &settings, exec)?))
 }
 
 fn sensitivity(args: &RunArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let folder = args.place.study("sensitivity")?;
-    let problem = args.design.problem()?;
     let settings = sensitivity::Settings {
         poses: args.sample.samples.map(|poses| poses as usize),
         seed: args.sample.seed,
         ..sensitivity::Settings::default()
     };
+    study(args, figure::sensitivity, |problem, exec| Ok(sensitivity::run(problem, &settings, exec)?))
+}
+
+/// Computes a study of the design, writes it where `-o` says, and prints it.
+pub(super) fn study<T: Subject>(
+    args: &RunArgs,
+    draw: fn(&ReportOf<T>) -> Picture,
+    compute: impl FnOnce(&Problem, &Exec) -> Result<T, Failure>,
+) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let output = Output::of(&args.print, args.place.output.as_deref(), T::KIND)?;
+    let problem = args.design.problem()?;
     let running = args.exec.start()?;
-    let found = sensitivity::run(&problem, &settings, &running.exec)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    let report = SensitivityReport::new(problem.design(), found, Some(timing));
-    let told = Told {
-        json: report.to_json()?,
-        table: report.table(),
-        records: report.records(),
-        picture: figure::sensitivity(problem.design(), &report.found),
-    };
-    told.tell(args, folder, &problem, running)
-}
-
-/// A study in every form that it is told in.
-struct Told {
-    json: String,
-    table: String,
-    records: Vec<Vec<String>>,
-    picture: Picture,
-}
-
-impl Told {
-    /// Writes what is to be written, prints the rest.
-    fn tell(
-        self,
-        args: &RunArgs,
-        folder: Option<StudyFolder>,
-        problem: &Problem,
-        running: Running,
-    ) -> Result<ExitStatus, Failure> {
-        let mut notes: Vec<String> =
-            problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
-        if let Some(folder) = folder {
-            let pictures = encode(&[(folder.name, self.picture)], &running.exec)?;
-            notes.push(folder.write(&self.json, &self.records, pictures, &running.exec, |_| Ok(()))?);
-            written(folder.path);
-        }
-        drop(running);
-        tell(if args.print.json { &self.json } else { &self.table }, &notes)
-    }
+    let exec = &running.exec;
+    let found = compute(&problem, exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
+    let report = ReportOf::new(problem.design(), found, Vec::new(), Some(timing));
+    let mut notes = objections(&problem);
+    let pictures = || Ok(vec![(T::KIND, draw(&report))]);
+    notes.extend(output.write(&report, pictures, |_| Ok(String::new()), exec)?);
+    drop(running);
+    output.print(&report, &notes)
 }

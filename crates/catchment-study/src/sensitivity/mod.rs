@@ -17,6 +17,8 @@
 //! Not promised: that the Sum is smooth; a slope is the mean one between p − h and p + h, which are reported. Undecided
 //! poses count as rejected on both sides. Lengths in D, the Sum in Dᵃ·radᵇ.
 
+mod report;
+
 use super::pose_bytes;
 use catchment_core::acceptance::{Acceptance, Domain, Outcome};
 use catchment_core::advice::Advice;

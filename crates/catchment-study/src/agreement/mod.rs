@@ -10,6 +10,8 @@
 //!
 //! Not promised: that methods which agree are right. Only descent is exact at every pose.
 
+mod report;
+
 use catchment_core::acceptance::Acceptance;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Resolution, ResolutionError};
@@ -18,6 +20,7 @@ use catchment_core::merit::comparison::{ComparisonError, Overlap, Paired, confus
 use catchment_core::method::{Decide, Method, descent};
 use catchment_core::problem::Problem;
 use catchment_core::run::{Answer, Over, Run, RunError, Sample};
+use serde::Serialize;
 use std::time::Duration;
 
 /// What changes the answer.
@@ -47,44 +50,72 @@ impl Default for Settings {
     }
 }
 
-/// Why a method has no answer.
-#[derive(Debug, thiserror::Error)]
-pub enum LeftOut {
-    /// It is not made for the design.
-    #[error("{reason}")]
-    NotApplicable {
-        /// Why.
-        reason: String,
-    },
-    /// It takes too long.
-    #[error("it takes longer than the {} s allowed", limit.as_secs_f64())]
-    Time {
-        /// What was allowed.
-        limit: Duration,
-    },
-    /// It gave up.
-    #[error(transparent)]
-    Run(RunError),
-}
-
-/// One method.
-#[derive(Debug)]
-pub struct Tried {
-    /// Its name.
-    pub method: &'static str,
-    /// What it found.
-    pub answer: Result<Answer, LeftOut>,
-}
-
-/// All methods of a problem.
-#[derive(Debug)]
+/// Every method of a design on one grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Agreement {
     /// Cells per axis, by axis.
     pub cells: Vec<usize>,
-    /// Every method, in the order of the settings.
-    pub tried: Vec<Tried>,
-    /// Of the methods that have an answer, in their order: how each two agree.
-    pub overlaps: Vec<Vec<Overlap>>,
+    /// Seconds that each method could take.
+    pub time_limit_s: f64,
+    /// Unit of the Sums.
+    pub unit: String,
+    /// Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
+    pub methods: Vec<Decided>,
+    /// Of the methods that came to a result, in their order: how each two agree.
+    pub agreement: Vec<Vec<PairAgreement>>,
+}
+
+/// One method of many.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Decided {
+    /// Its name.
+    pub method: &'static str,
+    /// What it found.
+    pub result: Option<MethodResult>,
+    /// Why it found nothing.
+    pub left_out: Option<String>,
+}
+
+/// What one method found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MethodResult {
+    /// The measure of the accepted cells.
+    pub sum_grid: f64,
+    /// The Sum: corrected where the method draws random poses.
+    pub sum: f64,
+    /// Its 95 % interval, if there is one.
+    pub sum_ci95: Option<[f64; 2]>,
+    /// The ONAA edge.
+    pub onaa_edge: Option<f64>,
+    /// Wall-clock time, in seconds.
+    pub seconds: f64,
+}
+
+/// How two methods agree.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PairAgreement {
+    /// Share of the cells that both accept or both reject.
+    pub agreement: f64,
+    /// Accepted by both over accepted by any.
+    pub jaccard: f64,
+}
+
+/// Why a method has no result.
+#[derive(Debug, thiserror::Error)]
+enum LeftOut {
+    /// It is not made for the design.
+    #[error("{reason}")]
+    NotApplicable { reason: String },
+    /// It takes too long.
+    #[error("it takes longer than the {} s allowed", limit.as_secs_f64())]
+    Time { limit: Duration },
+    /// It gave up.
+    #[error(transparent)]
+    Run(RunError),
 }
 
 /// Why there is no agreement to speak of.
@@ -119,7 +150,9 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Agreem
     let grid = settings.resolution.grid(problem.alignment(), &even_cells(problem))?;
     let resolution = Resolution::of(&grid);
     let total = settings.methods.len() as f64;
-    let mut tried = Vec::with_capacity(settings.methods.len());
+    let mut methods = Vec::with_capacity(settings.methods.len());
+    let mut decided: Vec<Acceptance> = Vec::new();
+    let mut unit = String::new();
     for (k, method) in settings.methods.iter().enumerate() {
         let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "methods");
         let run = Run {
@@ -131,22 +164,47 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Agreem
         let answer = within(&run, problem, settings.time_limit, &part);
         // Whoever stops the study wants nothing more of it.
         exec.check()?;
-        tried.push(Tried { method: method.name(), answer });
+        let (result, left_out) = match answer {
+            Ok(answer) => {
+                unit = answer.unit();
+                let result = MethodResult::from(&answer);
+                decided.push(answer.acceptance);
+                (Some(result), None)
+            }
+            Err(reason) => (None, Some(reason.to_string())),
+        };
+        methods.push(Decided { method: method.name(), result, left_out });
     }
-    let found: Vec<&Acceptance> = tried
-        .iter()
-        .filter_map(|tried| tried.answer.as_ref().ok())
-        .map(|answer| &answer.acceptance)
-        .collect();
-    let between = |a: &Acceptance, b: &Acceptance| -> Result<Overlap, AgreementError> {
+    let between = |a: &Acceptance, b: &Acceptance| -> Result<PairAgreement, AgreementError> {
         let paired = Paired::of(a, b)?;
-        Ok(Overlap::of(&confusion(&paired.first, &paired.second, exec)?))
+        let overlap = Overlap::of(&confusion(&paired.first, &paired.second, exec)?);
+        Ok(PairAgreement { agreement: overlap.agreement(), jaccard: overlap.jaccard() })
     };
-    let overlaps = found
+    let agreement = decided
         .iter()
-        .map(|a| found.iter().map(|b| between(a, b)).collect())
+        .map(|a| decided.iter().map(|b| between(a, b)).collect())
         .collect::<Result<_, AgreementError>>()?;
-    Ok(Agreement { cells: grid.shape(), tried, overlaps })
+    let time_limit_s = settings.time_limit.as_secs_f64();
+    Ok(Agreement { cells: grid.shape(), time_limit_s, unit, methods, agreement })
+}
+
+impl Agreement {
+    /// The methods that came to a result, with it.
+    pub fn results(&self) -> impl Iterator<Item = (&'static str, &MethodResult)> {
+        self.methods.iter().filter_map(|decided| Some((decided.method, decided.result.as_ref()?)))
+    }
+}
+
+impl From<&Answer> for MethodResult {
+    fn from(answer: &Answer) -> Self {
+        Self {
+            sum_grid: answer.merits.sum.sum,
+            sum: answer.sum(),
+            sum_ci95: answer.sum_ci95(),
+            onaa_edge: answer.onaa().map(|onaa| onaa.edge),
+            seconds: answer.seconds,
+        }
+    }
 }
 
 /// One method, unless it does not apply or takes too long.

@@ -11,6 +11,8 @@
 //! stands the one that exact descents correct it to, with its 95 % interval. Two small changes in a row may be luck. Where time stops a method, the number of
 //! its refinements differs from run to run; what is computed at each resolution does not.
 
+mod report;
+
 use super::refinement::{Refinement, RefinementError, Sampled};
 use catchment_core::exec::{Bytes, Exec, OutOfBudget};
 use catchment_core::landscape::Resolution;
