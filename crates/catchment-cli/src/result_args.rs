@@ -150,14 +150,15 @@ impl ResultArgs {
                 Some("leave it out, or give -o".to_owned()),
             ));
         }
-        self.check_requirements(report)?;
+        self.check_requirements(report, &[])?;
         Ok(Output { args: self, file, figure, drawable })
     }
 
-    fn check_requirements(&self, report: &str) -> Result<(), Failure> {
+    /// Refuses requirements that no report of this kind meets or fails. `absent` are places that are null with the options at hand.
+    pub(crate) fn check_requirements(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
         for requirement in &self.require {
-            let tried = requirement.check(&schema, &[]);
+            let tried = requirement.check(&schema, absent);
             tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
         }
         Ok(())

@@ -9,7 +9,7 @@
 //!                 └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
+//!   check · trajectory · chance · jams · rests · hold · lever · zraa · faces · trials · export · solids · slices ·
 //!   convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
@@ -19,7 +19,6 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
-mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
 mod cells;
@@ -46,7 +45,6 @@ mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
 pub mod page;
-mod plan;
 mod resting;
 mod rests;
 #[cfg(all(feature = "figure", feature = "zarr"))]
@@ -62,7 +60,6 @@ mod table;
 pub mod text;
 mod trajectory;
 mod trials;
-mod validation;
 mod version;
 pub mod vtk;
 mod window;
@@ -72,6 +69,8 @@ pub mod zarr;
 mod zraa;
 
 use catchment_study::friction::Friction;
+use catchment_study::plan::Plan;
+use catchment_study::validate::Validation;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -99,7 +98,6 @@ pub use jams::{
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
-pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
 pub use resting::{HeldReport, ThresholdsReport};
 pub use rests::{RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
@@ -119,10 +117,6 @@ pub use table::{first_look, table, table_with};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
-pub use validation::{
-    AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
-    TriedReport, ValidationBody, ValidationReport,
-};
 pub use version::{Version, VersionError};
 pub use window::{
     CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
@@ -132,3 +126,9 @@ pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
+
+/// A plan of trials, with its head.
+pub type PlanReport = ReportOf<Plan>;
+
+/// A prediction beside the trials of a robot, with its head.
+pub type ValidationReport = ReportOf<Validation>;
