@@ -9,7 +9,7 @@
 //!                 └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · chance · jams · rests · hold · lever · zraa · faces · trials · export · solids · slices ·
+//!   check · trajectory · chance · jams · rests · hold · lever · zraa · faces · export · solids · slices ·
 //!   convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
@@ -59,7 +59,6 @@ mod sweep;
 mod table;
 pub mod text;
 mod trajectory;
-mod trials;
 mod version;
 pub mod vtk;
 mod window;
@@ -70,6 +69,7 @@ mod zraa;
 
 use catchment_study::friction::Friction;
 use catchment_study::plan::Plan;
+use catchment_study::trials::Trials;
 use catchment_study::validate::Validation;
 
 pub use answer::{UnanswerableError, check_requirements};
@@ -116,7 +116,6 @@ pub use sweep::{SweepBody, SweepReport};
 pub use table::{first_look, table, table_with};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
-pub use trials::{TrialReport, TrialsBody, TrialsReport};
 pub use version::{Version, VersionError};
 pub use window::{
     CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
@@ -129,6 +128,9 @@ pub type FrictionReport = ReportOf<Friction>;
 
 /// A plan of trials, with its head.
 pub type PlanReport = ReportOf<Plan>;
+
+/// Trials beside the exact region, with their head.
+pub type TrialsReport = ReportOf<Trials>;
 
 /// A prediction beside the trials of a robot, with its head.
 pub type ValidationReport = ReportOf<Validation>;
