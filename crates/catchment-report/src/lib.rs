@@ -121,7 +121,7 @@ pub use window::{
     CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
     WorstReport,
 };
-pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
+pub use zraa::{AcceptedOffsets, CatchReport, NilssonReport, ZraaBody, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
