@@ -137,7 +137,7 @@ impl ResultArgs {
             }
         });
         let figure = figure.transpose()?;
-        check_apart(self.output.as_deref(), self.figure.as_deref())?;
+        check_apart(self.figure.as_deref(), self.output.as_deref())?;
         for (path, kind) in file.iter().chain(&figure) {
             match kind {
                 Kind::Folder => StudyFolder { path, name: report }.check(&Exec::new())?,

@@ -96,7 +96,7 @@ pub use jams::{
     ContactReport, ExaminedReport, ExtentReport, JamReport, JamsBody, JamsFound, JamsReport, PairReport,
     WayOutReport,
 };
-pub use lever::{LeverBody, LeverFound, LeverReport};
+pub use lever::{CornerContact, FirstContact, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 pub use resting::{HeldReport, ThresholdsReport};
 pub use rests::{RestReport, RestsBody, RestsReport};
