@@ -63,7 +63,7 @@ impl FacesReport {
 }
 
 impl Printed for FacesBody {
-    fn title(&self) -> &str {
+    fn title(&self) -> &'static str {
         "offsets along x that are corrected without rotation"
     }
 
