@@ -122,43 +122,6 @@ impl FileArgs {
     }
 }
 
-/// A picture beside the file of [`FileArgs`], whose `--force` is for both.
-#[derive(Debug, Args)]
-pub(crate) struct FigureArgs {
-    /// Also draw it, as .png or .svg
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, group = FILES)]
-    figure: Option<PathBuf>,
-}
-
-impl FigureArgs {
-    /// Which picture is asked for. Refuses what cannot be written in the end, also where the file is to be written, before
-    /// anything is computed.
-    pub(crate) fn kind(&self, file: &FileArgs) -> Result<Option<&'static str>, Failure> {
-        let Some(path) = &self.figure else { return Ok(None) };
-        check_apart(Some(path), file.output.as_deref())?;
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
-        let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
-            let message = format!("cannot tell what to draw into {}", shown(path));
-            return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
-        };
-        check_place(path, file.force)?;
-        Ok(Some(kind))
-    }
-
-    /// Writes the picture, if one is asked for.
-    pub(crate) fn draw(
-        &self,
-        kind: Option<&str>,
-        picture: Option<&Picture>,
-        file: &FileArgs,
-    ) -> Result<(), Failure> {
-        match (&self.figure, kind, picture) {
-            (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, file.force),
-            _ => Ok(()),
-        }
-    }
-}
-
 /// Pixels per unit of a picture.
 const PNG_SCALE: f32 = 2.0;
 

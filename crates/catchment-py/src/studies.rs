@@ -11,7 +11,7 @@ use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::report::compare::{Source, compare as compared};
 use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{JamsReport, WindowReport, ZraaReport, figure};
+use catchment::report::{AcceptedOffsets, JamsReport, WindowReport, ZraaReport, figure};
 use catchment::run::window;
 use catchment::run::{Run, jams};
 use pyo3::prelude::*;
@@ -102,7 +102,8 @@ impl Problem {
             let found = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
             let square = Square::of(&found, exec)?;
             let nilsson = Nilsson::beside(&found, problem.pair());
-            let report = ZraaReport::new(problem.design(), &found, &square, nilsson.as_ref());
+            let offsets = AcceptedOffsets::new(problem.design(), &found, &square, nilsson.as_ref());
+            let report = ZraaReport::new(problem.design(), offsets, Vec::new(), None);
             let told = Told::of(&report)?;
             told.with(Ok(figure::region(problem.design(), &found, &square)))
         })

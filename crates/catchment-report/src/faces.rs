@@ -1,8 +1,9 @@
-//! Several designs side by side by the offsets that they correct without rotation: JSON, text, a table for programs.
+//! Several designs side by side by the offsets that they correct without rotation.
 
+use super::document::Printed;
 use super::envelope::{Body, Envelope};
-use super::text::number;
-use super::zraa::{ZraaBody, ZraaFound};
+use super::zraa::{AcceptedOffsets, ZraaBody};
+use catchment_core::document::{Document, Table};
 use catchment_core::pose::Dof;
 use serde::Serialize;
 
@@ -13,7 +14,7 @@ pub type FacesReport = Envelope<FacesBody>;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FacesBody {
-    /// What each corrects along x, in the order given.
+    /// The offsets along x that each design corrects, in the given order.
     pub faces: Vec<ZraaBody>,
 }
 
@@ -52,31 +53,39 @@ impl FacesReport {
         if faces.len() > Self::MOST {
             return Err(FacesError::TooMany { count: faces.len() });
         }
-        let along_x = |face: &&ZraaBody| matches!(face.found, ZraaFound::Interval { axis: Dof::X, .. });
+        let along_x =
+            |face: &&ZraaBody| matches!(face.result, AcceptedOffsets::Interval { axis: Dof::X, .. });
         if let Some(other) = faces.iter().find(|face| !along_x(face)) {
             return Err(FacesError::NotAlongX { name: other.design.name.clone() });
         }
         Ok(Self::of(FacesBody { faces }, Vec::new(), None))
     }
+}
 
-    /// One after another for a person.
-    pub fn table(&self) -> String {
-        let tables: Vec<String> = self.faces.iter().map(ZraaBody::table).collect();
-        tables.join("\n")
+impl Printed for FacesBody {
+    fn title(&self) -> &'static str {
+        "offsets along x that are corrected without rotation"
     }
 
-    /// A record per design for programs, the names of the columns first, in D; a bound is empty where the halves do not
-    /// meet along one profile.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let head = ["name", "from", "to", "nilsson_bound", "nilsson_both"];
-        let mut records = vec![head.map(str::to_owned).to_vec()];
+    /// A section per design; the table for programs has a bound where the halves meet along one profile.
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        let mut table = Table::data("name from to nilsson_bound nilsson_both");
         for face in &self.faces {
-            let ZraaFound::Interval { from_d, to_d, nilsson, .. } = &face.found else { continue };
-            let [bound, both] = nilsson
-                .as_ref()
-                .map_or_else(<[String; 2]>::default, |found| [found.bound_d, found.both_d].map(number));
-            records.push(vec![face.design.name.clone(), number(*from_d), number(*to_d), bound, both]);
+            face.result.describe(document.titled(Some(face.design.name.clone())), &face.design);
+            if let AcceptedOffsets::Interval { from_d, to_d, nilsson, .. } = &face.result {
+                let [bound, both] =
+                    [nilsson.as_ref().map(|found| found.bound_d), nilsson.as_ref().map(|found| found.both_d)];
+                table.push([
+                    face.design.name.as_str().into(),
+                    (*from_d).into(),
+                    (*to_d).into(),
+                    bound.into(),
+                    both.into(),
+                ]);
+            }
         }
-        records
+        document.table(table);
+        document
     }
 }

@@ -1,74 +1,68 @@
-//! The first contact as the kinematic method sees it: versioned JSON, text, a table for programs.
+//! The first contact as the kinematic method sees it, and what describes it.
 
-use super::envelope::{Body as Kind, Envelope};
-use super::text::{line, number};
+use super::document::ReportOf;
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::document::{Column, Document, Format, Subject, Table, fixed};
 use catchment_core::method::kinematic::stepping::Halt;
 use catchment_core::method::kinematic::{Body, Lever, Settings, Start};
 use catchment_core::pose::PoseError;
 use serde::Serialize;
 
 /// A first contact, with its head.
-pub type LeverReport = Envelope<LeverBody>;
+pub type LeverReport = ReportOf<FirstContact>;
 
 /// A first contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeverBody {
-    /// The design, resolved: lengths in D, angles in radians.
-    pub design: Design,
+pub struct FirstContact {
     /// Name of the method.
     pub method: &'static str,
     /// Its settings.
     pub settings: Settings,
-    /// The pose error.
+    /// The pose error, in D and radians.
     pub start: PoseError,
-    /// What becomes of it by this method.
+    /// Its outcome by this method.
     pub outcome: Outcome,
-    /// How the stepping of an X-Face halts; null for the others, which are not stepped.
+    /// How the stepping of an X-Face halts; null for other faces, which are not stepped.
     pub halt: Option<Halt>,
     /// The contact; null where nothing touches, or corner meets corner.
-    pub contact: Option<LeverFound>,
+    pub contact: Option<CornerContact>,
 }
 
 /// A contact of a corner with an edge. Places are x and z in the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeverFound {
+pub struct CornerContact {
     /// Whose corner it is.
     pub corner_of: Body,
-    /// Rotation point of the moving half, `P_M`.
+    /// Rotation point of the moving half, `P_M`, in D.
     pub moving_pivot_d: [f64; 2],
-    /// Rotation point of the base half, `P_B`.
+    /// Rotation point of the base half, `P_B`, in D.
     pub base_pivot_d: [f64; 2],
-    /// Where they touch, `P_C`.
+    /// Where they touch, `P_C`, in D.
     pub contact_d: [f64; 2],
     /// Unit normal of the edge, out of its body.
     pub normal: [f64; 2],
-    /// l, from the corner's rotation point to the contact.
+    /// l, from the corner's rotation point to the contact, in D.
     pub lever_d: f64,
-    /// d, from the edge's rotation point to the line of the edge.
+    /// d, from the edge's rotation point to the line of the edge, in D.
     pub distance_d: f64,
-    /// q₁, along the edge to the contact.
+    /// q₁, along the edge to the contact, in D.
     pub along_d: f64,
-    /// `β_p`, radians.
+    /// `β_p` from the vertical to the lever, in radians.
     pub beta_p: f64,
-    /// `α_e`, radians.
+    /// `α_e` from the normal to the vertical, in radians.
     pub alpha_e: f64,
-    /// θ₁, radians.
+    /// θ₁ from the lateral direction to the normal, in radians.
     pub theta_1: f64,
-    /// θ₂, radians.
+    /// θ₂ from the normal to the lever, in radians.
     pub theta_2: f64,
-    /// θ₂ where the halves are aligned, radians.
+    /// θ₂ where the halves are aligned, in radians.
     pub theta_2_aligned: f64,
 }
 
-impl Kind for LeverBody {
-    const KIND: &'static str = "kinematic-contact";
-}
-
-impl From<&Lever> for LeverFound {
+impl From<&Lever> for CornerContact {
     fn from(lever: &Lever) -> Self {
         let (own, other) = (lever.corner_pivot.to_array(), lever.edge_pivot.to_array());
         let [moving, base] = if lever.corner == Body::Moving { [own, other] } else { [other, own] };
@@ -90,113 +84,106 @@ impl From<&Lever> for LeverFound {
     }
 }
 
-impl LeverReport {
-    /// Of a pose.
-    pub fn new(design: &Design, start: &Start) -> Self {
-        let body = LeverBody {
-            design: design.clone(),
+impl From<&Start> for FirstContact {
+    fn from(start: &Start) -> Self {
+        Self {
             method: "kinematic",
             settings: start.settings,
             start: start.error,
             outcome: start.outcome,
             halt: start.halt,
-            contact: start.lever.as_ref().map(LeverFound::from),
-        };
-        Self::of(body, Vec::new(), None)
-    }
-
-    /// The contact for a person: lengths in D, degrees.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        line(&mut text, &self.design.name);
-        match &self.contact {
-            None => line(&mut text, "no corner touches an edge"),
-            Some(found) => {
-                let words = match found.corner_of {
-                    Body::Moving => "first contact: a corner of the moving half on an edge of the base",
-                    Body::Base => "first contact: a corner of the base on an edge of the moving half",
-                };
-                line(&mut text, words);
-                for (name, [x, z]) in [
-                    ("P_M  rotation point, moving half", found.moving_pivot_d),
-                    ("P_B  rotation point, base", found.base_pivot_d),
-                    ("P_C  contact", found.contact_d),
-                ] {
-                    line(&mut text, &format!("  {name:<34}  x {:8.4} D    z {:8.4} D", tidy(x), tidy(z)));
-                }
-                let [x, z] = found.normal.map(tidy);
-                line(&mut text, &format!("  {:<34}  x {x:8.4}      z {z:8.4}", "N    normal of the edge"));
-                for (name, value) in found.lengths() {
-                    line(&mut text, &format!("  {name:<34}    {:8.4} D", tidy(value)));
-                }
-                for (name, value) in found.angles() {
-                    line(&mut text, &format!("  {name:<34}    {:8.3} deg", tidy(value.to_degrees())));
-                }
-                if found.theta_2 < 0.0 {
-                    line(&mut text, "  theta_2 is negative: the corner's body turns away, a failed mate");
-                }
-            }
+            contact: start.lever.as_ref().map(CornerContact::from),
         }
-        let halt =
-            self.halt.map_or_else(String::new, |halt| format!(" (the stepping halts: {})", halt.name()));
-        line(&mut text, &format!("outcome by this method: {}{halt}", self.outcome.name()));
-        text
-    }
-
-    /// A record per quantity for programs, the names of the columns first, in D and radians.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let mut records = vec![["quantity", "value"].map(str::to_owned).to_vec()];
-        let mut add = |name: &str, value: f64| records.push(vec![name.to_owned(), number(value)]);
-        if let Some(found) = &self.contact {
-            for (name, [x, z]) in [
-                ("moving_pivot", found.moving_pivot_d),
-                ("base_pivot", found.base_pivot_d),
-                ("contact", found.contact_d),
-                ("normal", found.normal),
-            ] {
-                add(&format!("{name}_x"), x);
-                add(&format!("{name}_z"), z);
-            }
-            for (name, value) in [
-                ("lever", found.lever_d),
-                ("distance", found.distance_d),
-                ("along", found.along_d),
-                ("beta_p", found.beta_p),
-                ("alpha_e", found.alpha_e),
-                ("theta_1", found.theta_1),
-                ("theta_2", found.theta_2),
-                ("theta_2_aligned", found.theta_2_aligned),
-            ] {
-                add(name, value);
-            }
-        }
-        records
     }
 }
 
-impl LeverFound {
-    /// Lengths with their names.
-    const fn lengths(&self) -> [(&'static str, f64); 3] {
-        [
+impl Subject for FirstContact {
+    const KIND: &'static str = "kinematic-contact";
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
+        let halt =
+            self.halt.map_or_else(String::new, |halt| format!(" (the stepping halts: {})", halt.name()));
+        document.row("outcome", format!("{}{halt}, by the kinematic method", self.outcome.name()));
+        match &self.contact {
+            None => {
+                document.row("first contact", "no corner touches an edge");
+            }
+            Some(contact) => contact.describe(&mut document),
+        }
+        document.table(self.quantities());
+        document
+    }
+}
+
+impl FirstContact {
+    /// A row per quantity, in D and radians.
+    fn quantities(&self) -> Table {
+        let mut table = Table::data("quantity value");
+        let Some(contact) = &self.contact else { return table };
+        let mut add = |name: &str, value: f64| table.push([name.into(), value.into()]);
+        for (name, [x, z]) in [
+            ("moving_pivot", contact.moving_pivot_d),
+            ("base_pivot", contact.base_pivot_d),
+            ("contact", contact.contact_d),
+            ("normal", contact.normal),
+        ] {
+            add(&format!("{name}_x"), x);
+            add(&format!("{name}_z"), z);
+        }
+        for (name, value) in [
+            ("lever", contact.lever_d),
+            ("distance", contact.distance_d),
+            ("along", contact.along_d),
+            ("beta_p", contact.beta_p),
+            ("alpha_e", contact.alpha_e),
+            ("theta_1", contact.theta_1),
+            ("theta_2", contact.theta_2),
+            ("theta_2_aligned", contact.theta_2_aligned),
+        ] {
+            add(name, value);
+        }
+        table
+    }
+}
+
+impl CornerContact {
+    fn describe(&self, document: &mut Document) {
+        let words = match self.corner_of {
+            Body::Moving => "a corner of the moving half on an edge of the base",
+            Body::Base => "a corner of the base on an edge of the moving half",
+        };
+        document.row("first contact", words);
+        if self.theta_2 < 0.0 {
+            document.more("theta_2 is negative: the corner's body turns away, a failed mate");
+        }
+        let value = |title: &str| Column::new(title).format(Format::Fixed(4));
+        let mut places = Table::new([Column::new("place").left(), value("x [D]"), value("z [D]")]);
+        for (name, [x, z]) in [
+            ("P_M  rotation point, moving half", self.moving_pivot_d),
+            ("P_B  rotation point, base", self.base_pivot_d),
+            ("P_C  contact", self.contact_d),
+            ("N    normal of the edge (of length 1)", self.normal),
+        ] {
+            places.push([name.into(), x.into(), z.into()]);
+        }
+        let mut levers = Table::new([Column::new("length or angle").left(), Column::new("value")]);
+        for (name, value) in [
             ("l    lever of the corner", self.lever_d),
             ("d    rotation point to edge", self.distance_d),
             ("q_1  along the edge", self.along_d),
-        ]
-    }
-
-    /// Angles with their names, radians.
-    const fn angles(&self) -> [(&'static str, f64); 5] {
-        [
+        ] {
+            levers.push([name.into(), format!("{} D", fixed(value, 4)).into()]);
+        }
+        for (name, value) in [
             ("beta_p   vertical to lever", self.beta_p),
             ("alpha_e  normal to vertical", self.alpha_e),
             ("theta_1  lateral to normal (ours)", self.theta_1),
             ("theta_2  normal to lever", self.theta_2),
             ("beta_p + alpha_e  theta_2 aligned", self.theta_2_aligned),
-        ]
+        ] {
+            levers.push([name.into(), format!("{} deg", fixed(value.to_degrees(), 3)).into()]);
+        }
+        document.section(None).table(places).section(None).table(levers);
     }
-}
-
-/// Rounding does not print as −0.0000.
-fn tidy(value: f64) -> f64 {
-    if value.abs() < 5e-5 { 0.0 } else { value }
 }

@@ -9,8 +9,7 @@
 //!                 └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
-//!   comparison
+//!   check · trajectory · chance · jams · rests · hold · lever · zraa · faces · export · solids · slices · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -19,7 +18,6 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
-mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
 mod cells;
@@ -46,7 +44,6 @@ mod outcomes;
 pub mod page;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod parts;
-mod plan;
 mod run;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
@@ -58,8 +55,6 @@ mod success;
 mod table;
 pub mod text;
 mod trajectory;
-mod trials;
-mod validation;
 mod version;
 pub mod vtk;
 pub mod write;
@@ -71,8 +66,11 @@ use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
 use catchment_study::agreement::Agreement;
 use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
+use catchment_study::plan::Plan;
 use catchment_study::sensitivity::Sensitivity;
 use catchment_study::sweep::Sweep;
+use catchment_study::trials::Trials;
+use catchment_study::validate::Validation;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -90,11 +88,10 @@ pub use faces::{FacesBody, FacesError, FacesReport};
 pub use hold::{
     HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
 };
-pub use lever::{LeverBody, LeverFound, LeverReport};
+pub use lever::{CornerContact, FirstContact, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use parts::Parts;
-pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
 pub use run::first_look;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
@@ -107,13 +104,8 @@ pub use success::{
 };
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
-pub use trials::{TrialReport, TrialsBody, TrialsReport};
-pub use validation::{
-    AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
-    TriedReport, ValidationBody, ValidationReport,
-};
 pub use version::{Version, VersionError};
-pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
+pub use zraa::{AcceptedOffsets, CatchReport, NilssonReport, ZraaBody, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
@@ -138,3 +130,12 @@ pub type SensitivityReport = ReportOf<Sensitivity>;
 
 /// Every combination of values of a sweep, with its head.
 pub type SweepReport = ReportOf<Sweep>;
+
+/// A plan of trials, with its head.
+pub type PlanReport = ReportOf<Plan>;
+
+/// Trials beside the exact region, with their head.
+pub type TrialsReport = ReportOf<Trials>;
+
+/// A prediction beside the trials of a robot, with its head.
+pub type ValidationReport = ReportOf<Validation>;

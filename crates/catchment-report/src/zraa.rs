@@ -1,32 +1,25 @@
-//! The offsets that are corrected without any rotation: as versioned JSON, as text, as corners for programs.
+//! The offsets that are corrected without any rotation, and what describes them.
 
-use super::envelope::{Body, Envelope};
-use super::text::{line, number, rounded};
+use super::document::{OfDesign, ReportOf};
+use super::text::rounded;
 use catchment_core::design::Design;
+use catchment_core::document::{Document, Subject, Table};
 use catchment_core::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
 use catchment_core::pose::Dof;
 use serde::Serialize;
 
 /// The zero-rotation area of acceptance, with its head.
-pub type ZraaReport = Envelope<ZraaBody>;
+pub type ZraaReport = ReportOf<AcceptedOffsets>;
 
-/// The zero-rotation area of acceptance.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ZraaBody {
-    /// The design, resolved: lengths in D, angles in radians.
-    pub design: Design,
-    /// What is accepted.
-    #[serde(flatten)]
-    pub found: ZraaFound,
-}
+/// The zero-rotation area of acceptance of a design.
+pub type ZraaBody = OfDesign<AcceptedOffsets>;
 
-/// Offsets that are accepted, in D. Bounds of a circle are those of the round design that a polygon stands for, null
-/// where nothing is round.
+/// Offsets that are corrected without rotation, in D. Bounds of a circle are those of the round design that a polygon approximates, null where nothing is
+/// round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
-pub enum ZraaFound {
+pub enum AcceptedOffsets {
     /// One free translation.
     Interval {
         /// x or y.
@@ -123,40 +116,30 @@ impl NilssonReport {
         }
     }
 
-    fn tell(&self, text: &mut String) {
+    fn describe(&self, document: &mut Document) {
         let kind = if self.ungendered { "both halves alike" } else { "halves of two kinds" };
-        line(text, &format!("  nilsson {} to both sides is the most for one profile, {kind}", self.bound()));
-        line(text, &format!("          {:.9} D to both sides is what this one corrects", self.both_d));
-        for (side, found) in [("−x", &self.from), ("+x", &self.to)] {
-            let words = found.map_or_else(
-                || "nothing is caught".to_owned(),
+        document
+            .row("nilsson", format!("{} to both sides is the most for one profile, {kind}", self.bound()))
+            .more(format!("{:.9} D to both sides is what this profile corrects", self.both_d));
+        for (side, catch) in [("−x", &self.from), ("+x", &self.to)] {
+            let words = catch.map_or_else(
+                || "nothing is corrected".to_owned(),
                 |CatchReport { minimum_d, maximum_d, .. }| {
                     let [minimum, maximum] = [minimum_d, maximum_d].map(|x| rounded(x + 0.0));
                     format!("the minimum at x = {minimum} slides home short of the maximum at {maximum}")
                 },
             );
-            line(text, &format!("          to {side} {words}"));
+            document.more(format!("to {side} {words}"));
         }
     }
 }
 
-impl Body for ZraaBody {
-    const KIND: &'static str = "zraa";
-}
-
-impl ZraaReport {
-    /// Of a design; `nilsson` is what its profile says, if it has one.
-    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
-        Self::of(ZraaBody::new(design, zraa, square, nilsson), Vec::new(), None)
-    }
-}
-
-impl ZraaBody {
-    /// Of a design; `nilsson` is what its profile says, if it has one.
+impl AcceptedOffsets {
+    /// Of a design; `nilsson` is of its profile, if it has one.
     pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
         let bounds = circle_bounds(design, zraa);
-        let found = match zraa {
-            Zraa::Interval { axis, from, to } => ZraaFound::Interval {
+        match zraa {
+            Zraa::Interval { axis, from, to } => Self::Interval {
                 axis: *axis,
                 from_d: *from,
                 to_d: *to,
@@ -165,7 +148,7 @@ impl ZraaBody {
                 onaa_d: square.edge,
                 nilsson: nilsson.map(NilssonReport::from),
             },
-            Zraa::Region { polygons, area, .. } => ZraaFound::Region {
+            Zraa::Region { polygons, area, .. } => Self::Region {
                 area_d2: *area,
                 circle_area_d2: bounds,
                 onaa_d: square.edge,
@@ -174,33 +157,29 @@ impl ZraaBody {
                 circle_onaa_d: circle_square(design, zraa, square),
                 polygons_d: polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect()).collect(),
             },
-        };
-        Self { design: design.clone(), found }
+        }
     }
 
-    /// The accepted offsets for a person.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        let (design, text) = (&self.design, &mut text);
-        line(text, &design.name);
-        let circle = |text: &mut String, bounds: Option<[f64; 2]>, unit: &str| {
+    /// Its rows, without its table for programs.
+    pub(super) fn describe(&self, document: &mut Document, design: &Design) {
+        let circle = |document: &mut Document, bounds: Option<[f64; 2]>, unit: &str| {
             if let Some([lower, upper]) = bounds {
-                let stands = "a polygon stands for it, see chord_error";
-                line(text, &format!("  circle  {lower:.9} … {upper:.9} {unit}: {stands}"));
+                let polygon = "a polygon stands for it, see chord_error";
+                document.row("circle", format!("{lower:.9} … {upper:.9} {unit}: {polygon}"));
             }
         };
-        match &self.found {
-            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d, nilsson, .. } => {
-                line(text, &format!("  offsets in {} corrected without rotation", axis.name()));
+        match self {
+            Self::Interval { axis, from_d, to_d, length_d, circle_length_d, nilsson, .. } => {
+                document.row("corrected", format!("offsets in {} without rotation", axis.name()));
                 for (name, value) in [("from", from_d), ("to", to_d), ("length", length_d)] {
-                    line(text, &format!("  {name:<6}  {value:.9} D{}", in_unit(design, *value, 1)));
+                    document.row(name, format!("{value:.9} D{}", in_unit(design, *value, 1)));
                 }
-                circle(text, *circle_length_d, "D");
+                circle(document, *circle_length_d, "D");
                 if let Some(nilsson) = nilsson {
-                    nilsson.tell(text);
+                    nilsson.describe(document);
                 }
             }
-            ZraaFound::Region {
+            Self::Region {
                 area_d2,
                 circle_area_d2,
                 onaa_d,
@@ -209,38 +188,53 @@ impl ZraaBody {
                 circle_onaa_d,
                 polygons_d,
             } => {
-                line(text, "  offsets in x and y corrected without rotation");
-                line(text, &format!("  area    {area_d2:.9} D²{}", in_unit(design, *area_d2, 2)));
-                circle(text, *circle_area_d2, "D²");
+                document.row("corrected", "offsets in x and y without rotation");
+                document.row("area", format!("{area_d2:.9} D²{}", in_unit(design, *area_d2, 2)));
+                circle(document, *circle_area_d2, "D²");
                 // The edge is exact to 1e-8 D: more digits would be noise.
-                line(text, &format!("  onaa    {onaa_d:.7} D{}", in_unit(design, *onaa_d, 1)));
-                line(text, &format!("          edge of the largest square, {}", around(*x, *y)));
+                document.row("onaa", format!("{onaa_d:.7} D{}", in_unit(design, *onaa_d, 1)));
+                document.more(format!("edge of the largest square, {}", around(*x, *y)));
                 if onaa_d - onaa_centered_d > Square::TOLERANCE {
-                    line(text, &format!("          {onaa_centered_d:.7} D for the largest around zero"));
+                    document.more(format!("{onaa_centered_d:.7} D for the largest around zero"));
                 }
                 if let Some([lower, upper]) = circle_onaa_d {
-                    line(text, &format!("  circle  {lower:.7} … {upper:.7} D"));
+                    document.row("circle", format!("{lower:.7} … {upper:.7} D"));
                 }
-                line(text, &format!("  tiled by {} convex polygons", polygons_d.len()));
+                document.row("tiled by", format!("{} convex polygons", polygons_d.len()));
             }
         }
-        std::mem::take(text)
     }
 
-    /// The corners as records for programs, the names of the columns first, in D; an interval has its two ends.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        match &self.found {
-            ZraaFound::Interval { axis, from_d, to_d, .. } => {
-                vec![vec![axis.name().to_owned()], vec![number(*from_d)], vec![number(*to_d)]]
+    /// The corners, in D; an interval has its two ends.
+    fn corners(&self) -> Table {
+        match self {
+            Self::Interval { axis, from_d, to_d, .. } => {
+                let mut table = Table::data(axis.name());
+                table.push([(*from_d).into()]);
+                table.push([(*to_d).into()]);
+                table
             }
-            ZraaFound::Region { polygons_d, .. } => {
-                let mut records = vec![["polygon", "x", "y"].map(str::to_owned).to_vec()];
+            Self::Region { polygons_d, .. } => {
+                let mut table = Table::data("polygon x y");
                 for (k, polygon) in polygons_d.iter().enumerate() {
-                    records.extend(polygon.iter().map(|[x, y]| vec![k.to_string(), number(*x), number(*y)]));
+                    for [x, y] in polygon {
+                        table.push([k.into(), (*x).into(), (*y).into()]);
+                    }
                 }
-                records
+                table
             }
         }
+    }
+}
+
+impl Subject for AcceptedOffsets {
+    const KIND: &'static str = "zraa";
+
+    fn document(&self, design: &Design) -> Document {
+        let mut document = Document::default();
+        self.describe(&mut document, design);
+        document.table(self.corners());
+        document
     }
 }
 
@@ -275,12 +269,11 @@ mod tests {
         let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
         let center = DVec2::new(0.25, 0.25);
         let square = Square { edge: 0.5, center, centered_edge: 0.0 };
-        let region = ZraaReport::new(
-            &design,
-            &Zraa::Region { polygons: vec![corners], area: 0.5, seam: 0.0 },
-            &square,
-            None,
-        );
+        let of = |design: &Design, zraa: &Zraa, square: &Square| {
+            let offsets = AcceptedOffsets::new(design, zraa, square, None);
+            ZraaReport::new(design, offsets, Vec::new(), None)
+        };
+        let region = of(&design, &Zraa::Region { polygons: vec![corners], area: 0.5, seam: 0.0 }, &square);
         let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
         assert_eq!(
             (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),
@@ -289,9 +282,9 @@ mod tests {
         assert!(json["circle_area_d2"].is_null() && json.get("axis").is_none());
         assert_eq!((&json["onaa_d"], &json["onaa_center_d"][1]), (&0.5.into(), &0.25.into()));
         let told = region.table();
-        assert!(told.contains("onaa    0.5000000 D = 25.000000 mm\n"), "{told}");
+        assert!(told.contains("onaa           0.5000000 D = 25.000000 mm\n"), "{told}");
         assert!(
-            told.contains("around x = 0.25, y = 0.25 D\n          0.0000000 D for the largest around"),
+            told.contains("around x = 0.25, y = 0.25 D\n                 0.0000000 D for the largest around"),
             "{told}"
         );
         assert!(
@@ -300,8 +293,7 @@ mod tests {
         );
         assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
         let square = Square { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
-        let interval =
-            ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square, None);
+        let interval = of(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square);
         let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
         assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));
         assert_eq!(json["onaa_d"], json["length_d"]);

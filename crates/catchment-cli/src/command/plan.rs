@@ -2,20 +2,19 @@
 
 use super::outcome::Point;
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FigureArgs, FileArgs};
+use crate::result_args::{ResultArgs, warnings};
 use crate::setting::number;
 use catchment::design::Findings;
+use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
 use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
-use catchment::report::figure;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{PlanReport, csv};
+use catchment::report::schema::Timing;
+use catchment::report::{PlanReport, figure};
 use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
 use clap::{Args, ValueEnum};
 use std::time::Instant;
@@ -33,7 +32,7 @@ use std::time::Instant;
     catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --accuracy 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
     catchment plan design.toml --pattern bracket --trials 40 --accuracy x=0.01 --require 'plan.deciding>=30'\n  \
     catchment plan out --pattern bracket --trials 60 --accuracy x=0.01\n                                                  of a result of `run -o`, with its friction\n\n\
-    -o writes .csv (the table for the robot), .json, .png or .svg. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
+    --csv prints the table for the robot, and -o writes it into a .csv file. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
     mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
         .help("The design file, or a folder written by `run -o`")
         .value_hint(clap::ValueHint::AnyPath)))]
@@ -67,11 +66,7 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    figure: FigureArgs,
-    #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -132,36 +127,24 @@ enum Kind {
 
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = args.figure.kind(&args.file)?;
+    let output = args.result.check(Plan::KIND, true)?;
     let running = args.exec.start()?;
     running.may_be_left();
     let (problem, decided_with) = args.design.decided(&running.exec)?;
     let settings = args.settings(&problem, decided_with)?;
-    let at = args.offsets_at.into();
-    let form = PlanReport::new(problem.design(), &Plan::form(&settings), at, Vec::new(), None);
-    args.asked.check(&form)?;
-    let found = make(&problem, &settings, &running.exec).map_err(refused)?;
-    let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
-    let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
+    let plan = make(&problem, &settings, &running.exec).map_err(refused)?;
+    let plan = Plan { offsets_at: args.offsets_at.into(), ..plan };
+    let slices = if output.wants_picture() {
+        let poses: Vec<PoseError> = plan.points.iter().map(|point| point.error).collect();
         let motions = descent::Settings::with_friction(settings.friction)?;
-        Some(panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?)
+        panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?
     } else {
-        None
+        Vec::new()
     };
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = PlanReport::new(problem.design(), &found, at, doubts, Some(timing));
-    let picture = drawn.map(|panels| figure::plan(&report, &panels));
-    match (kind, &picture) {
-        (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
-        (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
-        (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
-        _ => {}
-    }
-    args.figure.draw(drawing, picture.as_ref(), &args.file)?;
-    args.asked.tell(&report, PlanReport::table)
+    let report = PlanReport::new(problem.design(), plan, warnings(&problem), Some(timing));
+    output.finish(&report, || Ok(figure::plan(&report, &slices)))
 }
 
 /// Sizes of errors, as an option gives them.

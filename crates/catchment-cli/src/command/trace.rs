@@ -13,7 +13,7 @@ use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
 use catchment::report::schema::WarningReport;
-use catchment::report::{LeverReport, TraceReport, csv, figure, gltf, vtk};
+use catchment::report::{FirstContact, LeverReport, TraceReport, csv, figure, gltf, vtk};
 use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end
@@ -83,7 +83,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
             ));
         }
         let start = Start::of(&problem, &error)?;
-        let report = LeverReport::new(design, &start);
+        let report = LeverReport::new(design, FirstContact::from(&start), Vec::new(), None);
         let told = if args.json { report.to_json()? } else { report.table() };
         match kind {
             Some("csv") => args.file.write(&csv(&report.records())?)?,

@@ -1,21 +1,21 @@
-//! `catchment validate`: what trials say of a prediction.
+//! `catchment validate`: a prediction beside the trials of a robot.
 
 use super::outcome::Point;
 use super::plan::accuracy;
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FigureArgs, FileArgs};
+use crate::result_args::{ResultArgs, warnings};
 use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::Findings;
+use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::PoseError;
 use catchment::poses::TriedTable;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{ValidationReport, csv, figure};
+use catchment::report::schema::Timing;
+use catchment::report::{ValidationReport, figure};
 use catchment::study::plan::panels;
 use catchment::study::validate::{Settings, Validation, run as judge};
 use clap::Args;
@@ -65,19 +65,16 @@ pub(crate) struct ValidateArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    figure: FigureArgs,
-    #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = args.figure.kind(&args.file)?;
+    let absent: &[&str] = if args.estimate_friction { &[] } else { &["friction"] };
+    args.result.check_requirements(Validation::KIND, absent)?;
+    let output = args.result.check(Validation::KIND, true)?;
     let running = args.exec.start()?;
     running.may_be_left();
     let (problem, decided_with) = args.design.decided(&running.exec)?;
@@ -91,29 +88,17 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let source = read_table(&args.plan)?;
     let table = TriedTable::parse(&source.text, problem.design(), args.offsets_at.into())
         .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
-    let at = table.offsets_at;
-    let form =
-        ValidationReport::new(problem.design(), &Validation::form(&problem, &settings), at, Vec::new(), None);
-    args.asked.check(&form)?;
-    let found = judge(&problem, &table.rows, &settings, &running.exec)?;
-    let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
-        let poses: Vec<PoseError> = found.trials.iter().map(|trial| trial.tried.error).collect();
+    let validation = judge(&problem, &table.rows, &settings, &running.exec)?;
+    let validation = Validation { offsets_at: table.offsets_at, ..validation };
+    let slices = if output.wants_picture() {
+        let poses: Vec<PoseError> = validation.trials.iter().map(|trial| trial.point.error).collect();
         let motions = descent::Settings::with_friction(settings.friction)?;
-        Some(panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?)
+        panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?
     } else {
-        None
+        Vec::new()
     };
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = ValidationReport::new(problem.design(), &found, at, doubts, Some(timing));
-    let picture = drawn.map(|panels| figure::validation(&report, &panels));
-    match (kind, &picture) {
-        (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
-        (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
-        (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
-        _ => {}
-    }
-    args.figure.draw(drawing, picture.as_ref(), &args.file)?;
-    args.asked.tell(&report, ValidationReport::table)
+    let report = ValidationReport::new(problem.design(), validation, warnings(&problem), Some(timing));
+    output.finish(&report, || Ok(figure::validation(&report, &slices)))
 }

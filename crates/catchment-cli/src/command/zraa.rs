@@ -6,17 +6,20 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::pose_method_parser;
-use crate::output::{FileArgs, tell, to_stdout};
+use crate::result_args::{ResultArgs, warnings};
 use crate::setting::{Change, with_changes};
 use catchment::design::Design;
+use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::method::Method;
 use catchment::method::zraa::{Nilsson, Settings, Square, Zraa, run as accepted_offsets};
 use catchment::problem::{Draft, Problem};
-use catchment::report::figure::{self, Face, Picture};
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{FacesError, FacesReport, TrialsReport, ZraaBody, ZraaReport, csv};
-use catchment::study::trials;
+use catchment::report::figure::{self, Face};
+use catchment::report::schema::Timing;
+use catchment::report::{
+    AcceptedOffsets, Body, FacesBody, FacesError, FacesReport, TrialsReport, ZraaBody, ZraaReport,
+};
+use catchment::study::trials::{self, Trials};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -33,22 +36,19 @@ use std::time::Instant;
 #[command(after_long_help = "Examples:\n  \
     catchment zraa design.toml\n  \
     catchment zraa design.toml --free x             along one axis only\n  \
-    catchment zraa design.toml -o region.svg        with a picture (.svg, .png) or the polygons (.csv)\n  \
+    catchment zraa design.toml -o region.svg\n  \
     catchment zraa s-face.toml v-face.toml x-face.toml -o faces.svg\n                                                  side by side, at their largest offsets\n  \
     catchment zraa design.toml --json | jq .area_d2\n  \
     catchment zraa design.toml --beside drop --resolution 11,21,41 -o beside.svg\n                                                    drop trials beside it, and where they disagree\n  \
     catchment zraa design.toml --beside drop --resolution 21 --halvings 2\n                                                    again with half the time step, and a quarter\n\n\
     --beside locks all rotations and drops one half at a random place of every cell; the share of the error box on the wrong side of the \
-    exact border has its 95 % interval. -o then writes the picture of both, or the trials of the last round (.csv).")]
+    exact border has its 95 % interval. The table for programs has the trials of the last round.")]
 pub(crate) struct ZraaArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     /// More designs, to stand beside the first; x must be their only free offset
     #[arg(value_name = "MORE", value_hint = clap::ValueHint::FilePath)]
     more: Vec<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     /// Beside the exact region, trials by this method
     #[arg(long, value_name = "METHOD", value_parser = pose_method_parser(), conflicts_with = "more", help_heading = BESIDE)]
     beside: Option<Method>,
@@ -65,7 +65,7 @@ pub(crate) struct ZraaArgs {
     #[command(flatten)]
     drop: DropArgs,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -73,14 +73,13 @@ pub(crate) struct ZraaArgs {
 const BESIDE: &str = "Trials beside the exact region";
 
 pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["svg", "png", "csv"])?;
     let count = args.more.len() + 1;
     if count > FacesReport::MOST {
         return Err(FacesError::TooMany { count }.into());
     }
     let changes = args.drop.changes();
     match &args.beside {
-        Some(method) => return beside(args, with_changes(method, &changes)?, kind),
+        Some(method) => return beside(args, with_changes(method, &changes)?),
         None => {
             if let Some(Change { option, .. }) = changes.first() {
                 let message = format!("{option} is a setting of drop, and no trials are asked for");
@@ -91,48 +90,46 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
             }
         }
     }
+    let kind = if args.more.is_empty() { AcceptedOffsets::KIND } else { FacesBody::KIND };
+    let output = args.result.check(kind, true)?;
     // Rotations play no part, so whether the mated pose holds against them is of no interest here.
     let mut problems = vec![args.design.halves()?];
     for path in &args.more {
         problems.push(args.design.change(Draft::open(path)?)?.build()?);
     }
     let running = args.exec.start()?;
-    if matches!(kind, Some("svg" | "png")) {
+    if output.wants_picture() {
         figure::ensure_fits(0, &running.exec)?;
     }
-    let answers: Vec<Answer> =
-        problems.iter().map(|problem| Answer::of(problem, &running.exec)).collect::<Result<_, _>>()?;
+    let corrections: Vec<Correction> =
+        problems.iter().map(|problem| Correction::of(problem, &running.exec)).collect::<Result<_, _>>()?;
     drop(running);
-    let (records, picture, told): (_, Result<Picture, _>, _) =
-        if let ([problem], [answer]) = (&problems[..], &answers[..]) {
-            let Answer { zraa, square, nilsson } = answer;
-            let report = ZraaReport::new(problem.design(), zraa, square, nilsson.as_ref());
-            let told = if args.json { report.to_json()? } else { report.table() };
-            (report.records(), Ok(figure::region(problem.design(), zraa, square)), told)
-        } else {
-            let report = FacesReport::new(problems.iter().zip(&answers).map(Answer::body).collect())
-                .map_err(|error| Failure::with_help(error.to_string(), Some("--free x does".to_owned())))?;
-            let told = if args.json { report.to_json()? } else { report.table() };
-            let shown: Vec<Face<'_>> = problems.iter().zip(&answers).filter_map(Answer::face).collect();
-            (report.records(), figure::faces(&shown), told)
-        };
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &picture?)?,
-        Some(_) => args.file.write(&csv(&records)?)?,
-        None => {}
+    if let ([problem], [correction]) = (&problems[..], &corrections[..]) {
+        let report = ZraaReport::new(problem.design(), correction.offsets(problem), Vec::new(), None);
+        let Correction { zraa, square, .. } = correction;
+        return output.finish(&report, || Ok(figure::region(problem.design(), zraa, square)));
     }
-    to_stdout(&told)?;
-    Ok(ExitStatus::Done)
+    let both = || problems.iter().zip(&corrections);
+    let body = |(problem, correction): (&Problem, &Correction)| ZraaBody {
+        design: problem.design().clone(),
+        result: correction.offsets(problem),
+    };
+    let report = FacesReport::new(both().map(body).collect())
+        .map_err(|error| Failure::with_help(error.to_string(), Some("--free x does".to_owned())))?;
+    output.finish(&report, || {
+        let shown: Vec<Face<'_>> = both().filter_map(Correction::face).collect();
+        Ok(figure::faces(&shown)?)
+    })
 }
 
-/// What is known of one design.
-struct Answer {
+/// The offsets that a design corrects without rotation.
+struct Correction {
     zraa: Zraa,
     square: Square,
     nilsson: Option<Nilsson>,
 }
 
-impl Answer {
+impl Correction {
     fn of(problem: &Problem, exec: &Exec) -> Result<Self, Failure> {
         let zraa = accepted_offsets(problem.pair(), &Settings::default(), exec)?;
         let square = Square::of(&zraa, exec)?;
@@ -140,32 +137,33 @@ impl Answer {
         Ok(Self { zraa, square, nilsson })
     }
 
-    fn body((problem, answer): (&Problem, &Self)) -> ZraaBody {
-        ZraaBody::new(problem.design(), &answer.zraa, &answer.square, answer.nilsson.as_ref())
+    fn offsets(&self, problem: &Problem) -> AcceptedOffsets {
+        AcceptedOffsets::new(problem.design(), &self.zraa, &self.square, self.nilsson.as_ref())
     }
 
-    fn face<'a>((problem, answer): (&'a Problem, &'a Self)) -> Option<Face<'a>> {
-        let Zraa::Interval { from, to, .. } = answer.zraa else { return None };
+    fn face<'a>((problem, correction): (&'a Problem, &'a Self)) -> Option<Face<'a>> {
+        let Zraa::Interval { from, to, .. } = correction.zraa else { return None };
         Some(Face {
             design: problem.design(),
             connector: problem.connector(),
             pair: problem.pair(),
             reach: [from, to],
-            nilsson: answer.nilsson,
+            nilsson: correction.nilsson,
         })
     }
 }
 
 /// Trials beside the exact region, all rotations locked.
-fn beside(args: &ZraaArgs, method: Method, kind: Option<&str>) -> Result<ExitStatus, Failure> {
+fn beside(args: &ZraaArgs, method: Method) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
+    let output = args.result.check(Trials::KIND, true)?;
     let sliding = |design: Design| {
         let free = design.alignment.free.iter().filter(|dof| !dof.is_rotation()).collect();
         design.with_free(free)
     };
     let problem = args.design.draft()?.change("--beside", sliding)?.build()?;
     let running = args.exec.start()?;
-    if matches!(kind, Some("svg" | "png")) {
+    if output.wants_picture() {
         figure::ensure_fits(0, &running.exec)?;
     }
     let resolutions = args.resolution.clone();
@@ -173,14 +171,6 @@ fn beside(args: &ZraaArgs, method: Method, kind: Option<&str>) -> Result<ExitSta
     let found = trials::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let design = problem.design();
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = TrialsReport::new(design, &found, doubts, Some(timing));
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::trials(design, &found))?,
-        Some(_) => args.file.write(&csv(&report.records())?)?,
-        None => {}
-    }
-    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
-    tell(&if args.json { report.to_json()? } else { report.table() }, &said)
+    let report = TrialsReport::new(problem.design(), found, warnings(&problem), Some(timing));
+    output.finish(&report, || Ok(figure::trials(&report)))
 }

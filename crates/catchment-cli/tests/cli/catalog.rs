@@ -109,7 +109,7 @@ fn the_square_in_a_region_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let design = designs().join("x-face-3d.toml");
     let told = run(folder.path(), &["zraa", design.to_str().unwrap(), "-o", "region.svg"]);
-    assert!(told.contains("  onaa    1.0000000 D\n") && told.contains("around zero"), "{told}");
+    assert!(told.contains("  onaa           1.0000000 D\n") && told.contains("around zero"), "{told}");
     let svg = fs::read_to_string(folder.path().join("region.svg")).unwrap();
     assert!(svg.contains("ONAA 1.000 D") && svg.contains("stroke-dasharray=\"6 3\""));
 }

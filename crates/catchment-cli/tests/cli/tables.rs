@@ -49,7 +49,7 @@ fn zraa_for_people_and_its_files() {
     let csv = fs::read_to_string(dir.path().join("a.csv")).unwrap();
     assert!(csv.starts_with("polygon,x,y\n0,") && csv.lines().count() >= 5, "{csv}");
     insta::assert_snapshot!("zraa_over_a_file", with("a.svg"));
-    assert!(with("a.jpg").contains("let its name end in .svg, .png, .csv"));
+    assert!(with("a.jpg").contains("let its name end in .json, .csv, .md, .html, .txt, .png, .svg"));
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
 }
 

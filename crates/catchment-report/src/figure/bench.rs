@@ -1,8 +1,7 @@
 //! Trials of a plan over what docks: one panel for each value of the errors that do not lie across.
 
-use super::super::plan::PlanPointReport;
 use super::super::text::percent;
-use super::super::{PlanReport, TriedReport, ValidationReport};
+use super::super::{PlanReport, ValidationReport};
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units, short};
 use super::draw::colour::{self, Rgb, hex, mix};
@@ -11,7 +10,8 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Observed;
-use catchment_study::plan::{CELLS, Panel};
+use catchment_study::plan::{CELLS, Panel, Point};
+use catchment_study::validate::Judged;
 
 /// A trial that fared otherwise than predicted.
 const WRONG: &str = "#c62f2f";
@@ -45,9 +45,9 @@ struct Mark {
 
 /// Draws the poses of a plan, and what is predicted of them.
 pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
-    let of = |point: &PlanPointReport| Mark {
+    let of = |point: &Point| Mark {
         error: point.error,
-        shape: match (point.either, point.docks()) {
+        shape: match (point.foretold.either, point.foretold.docks()) {
             (true, _) => Shape::Either,
             (false, true) => Shape::Docks,
             (false, false) => Shape::Fails,
@@ -55,7 +55,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
         wrong: false,
     };
     let marks: Vec<Mark> = report.points.iter().map(of).collect();
-    let counts = &report.plan;
+    let counts = &report.counts;
     let story = format!(
         "{} trials at {} poses: {} decide, {} nearer to the border than the robot's accuracy",
         counts.trials, counts.poses, counts.deciding, counts.either
@@ -70,7 +70,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
 
 /// Draws what was seen of trials over what was predicted.
 pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
-    let of = |trial: &TriedReport| Mark {
+    let of = |trial: &Judged| Mark {
         error: trial.point.error,
         shape: match trial.observed {
             None => Shape::NotMade,
@@ -292,7 +292,7 @@ mod tests {
     use crate::schema::testing::design;
     use catchment_core::exec::Exec;
     use catchment_core::method::descent;
-    use catchment_core::poses::{OffsetsAt, Tried};
+    use catchment_core::poses::Tried;
     use catchment_core::problem::Problem;
     use catchment_study::plan::{Pattern, Settings, panels, run};
     use catchment_study::validate;
@@ -307,7 +307,7 @@ mod tests {
         let motions = descent::Settings::default();
         let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
         assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
-        let report = PlanReport::new(problem.design(), &found, OffsetsAt::Face, Vec::new(), None);
+        let report = PlanReport::new(problem.design(), found, Vec::new(), None);
         let picture = plan(&report, &slices);
         look("plan", &picture);
         assert!(picture.svg().contains("35 trials at 35 poses") && !picture.svg().contains("NaN"));
@@ -322,7 +322,7 @@ mod tests {
         let tried: Vec<Tried> = poses.iter().enumerate().map(tried).collect();
         let judged =
             validate::run(&problem, &tried, &validate::Settings::new(accuracy), &Exec::new()).unwrap();
-        let report = ValidationReport::new(problem.design(), &judged, OffsetsAt::Face, Vec::new(), None);
+        let report = ValidationReport::new(problem.design(), judged, Vec::new(), None);
         let picture = validation(&report, &slices);
         look("validation", &picture);
         assert!(picture.svg().contains("inconsistent; ") && picture.svg().contains("not made"));

@@ -6,7 +6,6 @@ use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use super::section::{Placement, View, describe};
 use super::{FigureError, Picture};
-use crate::lever::LeverFound;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
 use catchment_core::method::kinematic::{Body, Lever, Start};
@@ -124,20 +123,19 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
 
 /// The numbers beside the drawing.
 fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
-    let found = LeverFound::from(lever);
     let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees() + 0.0);
     let length = |value: f64| format!("{:.4} D", value + 0.0);
     let rows = [
-        ("l", "lever of the corner", length(found.lever_d)),
-        ("d", "rotation point to edge", length(found.distance_d)),
-        ("q₁", "along the edge", length(found.along_d)),
-        ("βₚ", "vertical to lever", degrees(found.beta_p)),
-        ("αₑ", "normal to vertical", degrees(found.alpha_e)),
-        ("θ₁", "lateral to normal", degrees(found.theta_1)),
-        ("θ₂", "normal to lever", degrees(found.theta_2)),
-        ("βₚ + αₑ", "θ₂ when aligned", degrees(found.theta_2_aligned)),
+        ("l", "lever of the corner", length(lever.length)),
+        ("d", "rotation point to edge", length(lever.distance)),
+        ("q₁", "along the edge", length(lever.along)),
+        ("βₚ", "vertical to lever", degrees(lever.beta_p)),
+        ("αₑ", "normal to vertical", degrees(lever.alpha_e)),
+        ("θ₁", "lateral to normal", degrees(lever.theta_1)),
+        ("θ₂", "normal to lever", degrees(lever.theta_2)),
+        ("βₚ + αₑ", "θ₂ when aligned", degrees(lever.aligned())),
     ];
-    let whose = match found.corner_of {
+    let whose = match lever.corner {
         Body::Moving => "a corner of the moving half on an edge",
         Body::Base => "a corner of the base on an edge",
     };
@@ -148,11 +146,11 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
         svg.text([x + 64.0, y], LABEL - 1.0, Anchor::Start, SOFT, meaning);
         svg.text([x + 284.0, y], LABEL, Anchor::End, INK, value);
     }
-    let verdict = if found.theta_2 < 0.0 {
+    let verdict = if lever.theta_2 < 0.0 {
         "θ₂ < 0: it turns away, a failed mate"
-    } else if found.theta_2 < found.theta_2_aligned - 1e-9 {
+    } else if lever.theta_2 < lever.aligned() - 1e-9 {
         "θ₂ is still to grow until aligned"
-    } else if found.theta_2 > found.theta_2_aligned + 1e-9 {
+    } else if lever.theta_2 > lever.aligned() + 1e-9 {
         "θ₂ is still to fall until aligned"
     } else {
         "θ₂ = βₚ + αₑ: aligned"

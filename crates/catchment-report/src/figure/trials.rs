@@ -1,6 +1,7 @@
 //! The zero-rotation area of acceptance in theory and by trials, side by side over the error box: a dot for every trial, ringed where it
 //! lies on the wrong side.
 
+use super::super::TrialsReport;
 use super::super::text::{percent, significant};
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
@@ -16,11 +17,12 @@ use catchment_study::trials::{Trial, Trials};
 const WRONG: &str = "#c62f2f";
 
 /// Draws the exact region and the trials of the last round.
-pub fn trials(design: &Design, found: &Trials) -> Picture {
+pub fn trials(report: &TrialsReport) -> Picture {
+    let (design, found) = (&report.design, &report.result);
     let (side, top) = (360.0, 98.0);
     let planar = found.grid.axes.len() == 2;
     let rect = |x: f64| Rect { x, y: top, w: side, h: if planar { side } else { 60.0 } };
-    let unit = if planar { "D²" } else { "D" };
+    let unit = found.unit;
     let round = found.rounds.last();
     let told = round.map_or_else(String::new, |round| {
         let [lo, hi] = round.disagreeing_ci95.map(percent);
@@ -28,7 +30,7 @@ pub fn trials(design: &Design, found: &Trials) -> Picture {
         format!(
             "{} trials by {}{step}: {} of the box on the wrong side (95 %: {lo} … {hi})",
             round.trials,
-            found.settings.method.name(),
+            found.method,
             percent(round.disagreeing),
         )
     });
@@ -94,14 +96,14 @@ fn dots(svg: &mut Svg, frame: &Frame, design: &Design, found: &Trials) {
     let radius = (0.3 * frame.rect.w / cells as f64).clamp(0.8, 4.0);
     let line = frame.rect.y + 0.5 * frame.rect.h;
     let place = |trial: &Trial| match &found.zraa {
-        Zraa::Region { .. } => frame.at([trial.error.x * factor, trial.error.y * factor]),
+        Zraa::Region { .. } => frame.at([trial.x * factor, trial.y * factor]),
         Zraa::Interval { axis, .. } => {
-            let along = if *axis == Dof::X { trial.error.x } else { trial.error.y };
+            let along = if *axis == Dof::X { trial.x } else { trial.y };
             [frame.px(along * factor), line]
         }
     };
     // Wrong ones on top.
-    let mut order: Vec<&Trial> = found.last.iter().collect();
+    let mut order: Vec<&Trial> = found.trials.iter().collect();
     order.sort_by_key(|trial| is_wrong(trial));
     for trial in order {
         svg.circle(place(trial), radius, &style(trial.outcome, is_wrong(trial)));
@@ -123,7 +125,7 @@ fn style(outcome: Outcome, wrong: bool) -> String {
 }
 
 fn legend(svg: &mut Svg, found: &Trials, [mut x, y]: [f64; 2]) {
-    let met = |outcome: Outcome| found.last.iter().any(|trial| trial.outcome == outcome);
+    let met = |outcome: Outcome| found.trials.iter().any(|trial| trial.outcome == outcome);
     let mut entries: Vec<(String, &str)> = Outcome::ALL
         .into_iter()
         .filter(|outcome| met(*outcome))
@@ -134,5 +136,95 @@ fn legend(svg: &mut Svg, found: &Trials, [mut x, y]: [f64; 2]) {
         svg.circle([x + 5.0, y - 4.0], 4.5, &style);
         svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
         x += 38.0 + width_of(words, LABEL);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::schema::testing::design as design_of;
+    use catchment_core::landscape::Grid;
+    use catchment_study::trials::Round;
+    use serde_json::Value;
+
+    /// Two trials along x, one of them on the wrong side.
+    fn line() -> (Design, Trials) {
+        let design = design_of([Dof::X].into_iter().collect());
+        let round = Round {
+            resolution: 2,
+            timestep: Some(1e-3),
+            trials: 2,
+            rejected_inside: 1,
+            accepted_outside: 0,
+            undecided: 0,
+            disagreeing: 0.5,
+            disagreeing_ci95: [0.1, 0.9],
+            measure: 1.0,
+            measure_ci95: [0.2, 1.8],
+            accepted: 1.0,
+        };
+        let trial = |x: f64, outcome| Trial { x, y: 0.0, outcome, inside: true };
+        let trials = Trials {
+            method: "descent",
+            settings: Value::Null,
+            seed: 7,
+            unit: "D",
+            exact: 1.0,
+            rounds: vec![round],
+            trials: vec![trial(-0.25, Outcome::Aligned), trial(0.25, Outcome::Jammed)],
+            zraa: Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.5 },
+            grid: Grid::over(&design.alignment, |_| 2),
+        };
+        (design, trials)
+    }
+
+    #[test]
+    fn rounds_and_trials_are_reported() {
+        let (design, found) = line();
+        let report = TrialsReport::new(&design, found, Vec::new(), None);
+        let json: Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
+        assert_eq!((&json["kind"], &json["unit"], &json["seed"]), (&"trials".into(), &"D".into(), &7.into()));
+        assert_eq!(json["rounds"][0]["rejected_inside"], 1);
+        assert_eq!(
+            (&json["trials"][1]["outcome"], &json["trials"][1]["inside"]),
+            (&"jammed".into(), &true.into())
+        );
+        let table = report.table();
+        assert!(table.contains("50.00 % (10.00 % … 90.00 %)") && table.contains("0.001"), "{table}");
+        assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+        assert_eq!(
+            report.records(),
+            [
+                vec!["x", "outcome", "inside"],
+                vec!["-0.25", "aligned", "true"],
+                vec!["0.25", "jammed", "true"]
+            ]
+        );
+    }
+
+    #[test]
+    fn theory_and_trials_are_drawn_side_by_side() {
+        let (design, line) = line();
+        let picture = trials(&TrialsReport::new(&design, line.clone(), Vec::new(), None));
+        look("trials-line", &picture);
+        let design = design_of([Dof::X, Dof::Y].into_iter().collect());
+        let corner = |x: f64, y: f64| glam::DVec2::new(x, y);
+        let polygons = vec![vec![corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)]];
+        let grid = Grid::over(&design.alignment, |_| 12);
+        let last = (0..144)
+            .map(|k| {
+                let error = grid.pose(k);
+                let inside = error.x.abs().max(error.y.abs()) < 0.5;
+                let aligned = inside != (k % 17 == 0);
+                let outcome = if aligned { Outcome::Aligned } else { Outcome::Missed };
+                Trial { x: error.x, y: error.y, outcome, inside }
+            })
+            .collect();
+        let zraa = Zraa::Region { polygons, area: 1.0, seam: 0.0 };
+        let region = Trials { zraa, grid, trials: last, unit: "D²", ..line };
+        let picture = trials(&TrialsReport::new(&design, region, Vec::new(), None));
+        look("trials-region", &picture);
+        assert!(picture.svg().contains("on the wrong side") && !picture.svg().contains("NaN"));
     }
 }

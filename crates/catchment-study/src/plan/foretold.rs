@@ -8,18 +8,39 @@ use catchment_core::pose::PoseError;
 use catchment_core::poses::Observed;
 use catchment_core::problem::Problem;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What exact motions say of a pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The prediction of a pose by exact motion. Distances are null where no border was found within the error box.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Foretold {
-    /// What becomes of it; nothing where that is undecided.
+    /// Its predicted outcome; null where that is undecided.
     pub predicted: Option<Observed>,
-    /// The nearest pose found that fares otherwise; none within the error box where there is nothing.
-    pub border: Option<Border>,
+    /// Whether it is nearer to the border than the accuracy of the robot: it may dock or fail.
+    pub either: bool,
+    /// Its distance to the border at most, in D, rotations times the rotation length.
+    pub distance_to_border: Option<f64>,
+    /// The same distance in units of the accuracy.
+    pub margin_in_sigma: Option<f64>,
+    /// The same distance as a share of the error box.
+    pub margin_in_box: Option<f64>,
 }
 
 impl Foretold {
+    /// Of a predicted outcome and the nearest pose found whose outcome differs.
+    pub(crate) fn new(predicted: Option<Observed>, border: Option<Border>) -> Self {
+        let mut foretold = Self {
+            predicted,
+            either: false,
+            distance_to_border: border.map(|border| border.distance),
+            margin_in_sigma: border.map(|border| border.sigmas),
+            margin_in_box: border.map(|border| border.box_share),
+        };
+        foretold.either = foretold.margin() < 1.0;
+        foretold
+    }
+
     /// Whether it docks, turned or not.
     pub const fn docks(&self) -> bool {
         matches!(self.predicted, Some(Observed::Aligned | Observed::AlignedElsewhere))
@@ -27,16 +48,20 @@ impl Foretold {
 
     /// How far it is from the border, in units of the accuracy; infinitely where no border was found, 0 where it is undecided what becomes of it.
     pub fn margin(&self) -> f64 {
-        match (self.predicted, &self.border) {
+        match (self.predicted, self.margin_in_sigma) {
             (None, _) => 0.0,
-            (_, Some(border)) => border.sigmas,
+            (_, Some(sigmas)) => sigmas,
             (_, None) => f64::INFINITY,
         }
     }
 
-    /// Whether the robot's accuracy lets it go either way.
-    pub fn is_either(&self) -> bool {
-        self.margin() < 1.0
+    /// The prediction in a word: `either` where the pose may dock or fail.
+    pub const fn word(&self) -> &'static str {
+        match self.predicted {
+            _ if self.either => "either",
+            Some(observed) => observed.name(),
+            None => "undecided",
+        }
     }
 }
 
@@ -82,7 +107,7 @@ pub(crate) fn foretell(
     let mut followed: usize = predicted.iter().map(|(_, count)| count).sum();
     let search = Search::new(problem, accuracy, f64::INFINITY);
     let mut foretold: Vec<Foretold> =
-        predicted.into_iter().map(|(predicted, _)| Foretold { predicted, border: None }).collect();
+        predicted.into_iter().map(|(predicted, _)| Foretold::new(predicted, None)).collect();
     let random = Stream::new(seed).branch(4);
     let rest = exec.part([FIRST, 1.0], "motions");
     let borders = for_each(poses.len(), &rest, judge, |judge, k| {
@@ -94,8 +119,8 @@ pub(crate) fn foretell(
         let border = search.nearest(judge, &poses[k], docks, nearest, random.branch(k as u64));
         (border, judge.followed() - before)
     })?;
-    for (told, (border, count)) in foretold.iter_mut().zip(borders) {
-        told.border = border;
+    for (foretold, (border, count)) in foretold.iter_mut().zip(borders) {
+        *foretold = Foretold::new(foretold.predicted, border);
         followed += count;
     }
     Ok((foretold, followed))

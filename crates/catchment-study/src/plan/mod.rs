@@ -16,6 +16,8 @@
 mod border;
 mod foretold;
 mod pattern;
+mod report;
+mod robot;
 mod slices;
 #[cfg(test)]
 mod tests;
@@ -25,13 +27,17 @@ use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::{Dof, PoseError};
+use catchment_core::poses::OffsetsAt;
 use catchment_core::problem::Problem;
 pub use foretold::Foretold;
 pub(crate) use foretold::{for_each, foretell};
 pub use pattern::Pattern;
 use pattern::{Maker, Placed};
+pub(crate) use robot::{PoseColumns, accuracy_words};
 use serde::{Deserialize, Serialize};
 pub use slices::{CELLS, Panel, panels};
+
+use crate::validate::LIMIT;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,44 +84,74 @@ impl Settings {
 /// Most trials of a plan: weeks of work for a robot.
 pub const MOST_TRIALS: usize = 10_000;
 
-/// A plan.
-#[derive(Debug, Clone, PartialEq)]
+/// A plan of trials.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Plan {
-    /// How it was asked for.
+    /// The settings.
     pub settings: Settings,
+    /// The point of the moving half at which the table for the robot gives x and y; the offsets of this report are those of the face centre.
+    pub offsets_at: OffsetsAt,
+    /// Counts of trials, poses and lines.
+    #[serde(rename = "plan")]
+    pub counts: Counts,
     /// The poses, line by line.
     pub points: Vec<Point>,
     /// The trials in their order.
     pub trials: Vec<Trial>,
-    /// Poses that fare otherwise, and not for want of accuracy, with other signs of their errors; of plans with positive errors alone.
-    pub asymmetric: usize,
-    /// Directions along which nothing fails within the error box; of brackets.
-    pub open: usize,
-    /// Motions that were followed.
+    /// Exact motions that were followed.
     pub motions: usize,
 }
 
+/// Counts of trials, poses and lines of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Counts {
+    /// Trials.
+    pub trials: usize,
+    /// Poses.
+    pub poses: usize,
+    /// Lines.
+    pub lines: usize,
+    /// Poses that are predicted to dock.
+    pub docking: usize,
+    /// All other poses.
+    pub failing: usize,
+    /// Of all poses, those nearer to the border than the accuracy of the robot: they may dock or fail.
+    pub either: usize,
+    /// Of all poses, those that decide: two accuracies or more from the border.
+    pub deciding: usize,
+    /// Poses whose outcome changes with the signs of their errors, and not for want of accuracy; 0 unless the plan has positive errors alone.
+    pub asymmetric: usize,
+    /// Directions along which nothing fails within the error box; 0 unless the pattern is a bracket.
+    pub open: usize,
+}
+
 /// A pose of a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Point {
-    /// The pose error.
+    /// The pose error, in D and radians.
     pub error: PoseError,
-    /// Its line, from 1.
+    /// Its line, from 1; 0 for none.
     pub line: usize,
-    /// What exact motions say of it.
+    /// Its prediction by exact motion.
+    #[serde(flatten)]
     pub foretold: Foretold,
 }
 
 /// A trial of a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trial {
-    /// From 1, in the order in which they are made.
+    /// Its number from 1, in the order in which trials are made.
+    #[serde(rename = "trial")]
     pub number: usize,
     /// Its part of the test, from 1.
     pub block: usize,
     /// How often the pose was tried by then, this time included.
     pub repeat: usize,
-    /// Which pose.
+    /// The number of its pose in `points`, from 0.
     pub point: usize,
 }
 
@@ -265,28 +301,27 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, 
     let (asymmetric, more) =
         if settings.symmetric { other_signs(problem, &points, &motions, &part(2))? } else { (0, 0) };
     let trials = order(points.len(), settings);
-    Ok(Plan {
-        settings: settings.clone(),
-        points,
-        trials,
+    let count = |is: &dyn Fn(&Foretold) -> bool| points.iter().filter(|p| is(&p.foretold)).count();
+    let docking = count(&Foretold::docks);
+    let counts = Counts {
+        trials: trials.len(),
+        poses: points.len(),
+        lines: points.iter().map(|point| point.line).max().unwrap_or(0),
+        docking,
+        failing: points.len() - docking,
+        either: count(&|foretold| foretold.either),
+        deciding: count(&|foretold| foretold.margin() >= LIMIT),
         asymmetric,
         open: made.open,
+    };
+    Ok(Plan {
+        settings: settings.clone(),
+        offsets_at: OffsetsAt::Face,
+        counts,
+        points,
+        trials,
         motions: made.followed + followed + more,
     })
-}
-
-impl Plan {
-    /// A plan without a pose: what requirements are tried on.
-    pub fn form(settings: &Settings) -> Self {
-        Self {
-            settings: settings.clone(),
-            points: Vec::new(),
-            trials: Vec::new(),
-            asymmetric: 0,
-            open: 0,
-            motions: 0,
-        }
-    }
 }
 
 /// An accuracy is of free errors, and not of none.
@@ -339,7 +374,7 @@ fn other_signs(
         || Judge::new(problem, motions),
         |judge, k| {
             let Point { error, foretold, .. } = &points[k];
-            if foretold.is_either() {
+            if foretold.either {
                 return (false, 0);
             }
             let before = judge.followed();

@@ -40,7 +40,7 @@ fn the_lattice_of_the_x_face_has_28_points_that_decide_and_14_that_do_not() {
         let sum = (point.error.x + point.error.y) * 65.5;
         *rows.entry(sum.round() as i64).or_default() += 1;
         assert_eq!(point.foretold.docks(), sum < 65.5, "{point:?}");
-        assert_eq!(point.foretold.is_either(), sum.round() == 65.0, "{point:?}");
+        assert_eq!(point.foretold.either, sum.round() == 65.0, "{point:?}");
         // The diamond's side, or its corner where that is nearer than the foot on the side.
         let [x, y] = [point.error.x, point.error.y].map(|v| v * 65.5);
         let foot = [x, y].map(|v| v - 0.5 * (x + y - 65.5));
@@ -49,16 +49,14 @@ fn the_lattice_of_the_x_face_has_28_points_that_decide_and_14_that_do_not() {
         } else {
             (x.max(y) - 65.5).hypot(x.min(y))
         };
-        let found = point.foretold.border.unwrap();
+        let Foretold { margin_in_sigma, distance_to_border, .. } = point.foretold;
+        let [sigmas, distance] = [margin_in_sigma, distance_to_border].map(Option::unwrap);
         // At most so much, and hardly more: directions are random, two in the plane.
-        assert!(
-            found.sigmas > exact * (1.0 - 1e-9) && found.sigmas < 1.02 * exact + 2e-3,
-            "{exact}: {point:?}"
-        );
-        assert!((found.distance * 65.5 - found.sigmas).abs() < 1e-9);
+        assert!(sigmas > exact * (1.0 - 1e-9) && sigmas < 1.02 * exact + 2e-3, "{exact}: {point:?}");
+        assert!((distance * 65.5 - sigmas).abs() < 1e-9);
     }
     assert_eq!(rows, BTreeMap::from([(60, 13), (65, 14), (70, 15)]));
-    assert_eq!((plan.trials.len(), plan.asymmetric), (42, 0));
+    assert_eq!((plan.trials.len(), plan.counts.asymmetric), (42, 0));
 }
 
 /// 5 × 5 × 6 poses up to x, y = D/2 and yaw = 30°: 96 dock, and 54 lie on the border.
@@ -76,7 +74,7 @@ fn the_grid_of_the_pyramid_has_150_points_of_which_96_dock() {
     let on_border = |point: &Point| point.error.x.max(point.error.y) > 0.5 - 1e-9;
     for point in &plan.points {
         assert_eq!(point.foretold.docks(), !on_border(point), "{point:?}");
-        assert_eq!(point.foretold.is_either(), on_border(point), "{point:?}");
+        assert_eq!(point.foretold.either, on_border(point), "{point:?}");
         if !on_border(point) {
             // A quarter of an inch inside or more: 63 accuracies of offset, or as far in yaw.
             assert!(point.foretold.margin() > 60.0, "{point:?}");
@@ -186,7 +184,7 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     assert!(narrow <= step * 1.0001 && narrow <= wide * 1.0001, "{narrow} {wide} {step}");
     assert!(3 * bracket.trials.len() <= grid.trials.len(), "{} {}", bracket.trials.len(), grid.trials.len());
     // Points at the border are told apart from it.
-    let either = bracket.points.iter().filter(|p| p.foretold.is_either()).count();
+    let either = bracket.points.iter().filter(|p| p.foretold.either).count();
     assert_eq!(either, 0);
 }
 

@@ -18,22 +18,38 @@ use crate::plan::{Judge, Search, for_each};
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
-use catchment_core::poses::Tried;
+use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
+use serde::Serialize;
 
-/// What friction explains.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrictionFound {
-    /// The fewest disagreements beyond the limit; 0 where some friction explains all.
+/// The coefficients of friction that explain the trials best.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FrictionInterval {
+    /// Whether some coefficient leaves no disagreement beyond the limit.
+    pub explains: bool,
+    /// The fewest disagreements beyond the limit that any coefficient leaves.
     pub fewest: usize,
-    /// The coefficients that leave so few.
-    pub interval: [f64; 2],
-    /// The interval goes on beyond the largest coefficient that was tried.
+    /// The smallest coefficient that leaves so few.
+    pub low: f64,
+    /// The largest coefficient that leaves so few.
+    pub high: f64,
+    /// Whether the interval continues beyond the largest coefficient that was tried.
     pub open: bool,
-    /// Some coefficient within the interval leaves more.
+    /// Whether some coefficient within the interval leaves more.
     pub broken: bool,
-    /// Every coefficient that was tried, in ascending order, with its disagreements: at least so many where it is clearly worse than the best before it.
-    pub tried: Vec<(f64, usize)>,
+    /// Every coefficient that was tried, in ascending order.
+    pub tried: Vec<FrictionTried>,
+}
+
+/// The disagreements that a coefficient of friction leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FrictionTried {
+    /// The coefficient.
+    pub friction: f64,
+    /// Disagreements beyond the limit: at least so many where the coefficient is clearly worse than the best before it.
+    pub beyond: usize,
 }
 
 /// Largest coefficient that is tried: rubber.
@@ -52,10 +68,10 @@ const CREEPS: usize = 500;
 /// Tries coefficients; and how many motions that took.
 pub(super) fn estimate(
     problem: &Problem,
-    trials: &[(Tried, bool)],
+    trials: &[(PoseError, bool)],
     settings: &Settings,
     exec: &Exec,
-) -> Result<(FrictionFound, usize), Cancelled> {
+) -> Result<(FrictionInterval, usize), Cancelled> {
     let mut followed = 0;
     let mut tried: Vec<(f64, usize)> = Vec::new();
     let total = (STEPS + 1 + 2 * HALVINGS) as f64;
@@ -94,8 +110,9 @@ pub(super) fn estimate(
     }
     let fewest = tried.iter().map(|(_, count)| *count).min().unwrap_or(0);
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let interval = interval.map(coefficient);
-    Ok((FrictionFound { fewest, interval, open, broken, tried }, followed))
+    let [low, high] = interval.map(coefficient);
+    let tried = tried.into_iter().map(|(friction, beyond)| FrictionTried { friction, beyond }).collect();
+    Ok((FrictionInterval { explains: fewest == 0, fewest, low, high, open, broken, tried }, followed))
 }
 
 /// So many of the finest steps: by one division, so that 0.3 is the number nearest to it and is written so.
@@ -106,7 +123,7 @@ fn coefficient(fine: usize) -> f64 {
 /// Trials that fare otherwise than was seen, and whose border is farther than the limit; when there are `enough` of them no more are counted.
 fn beyond(
     problem: &Problem,
-    trials: &[(Tried, bool)],
+    trials: &[(PoseError, bool)],
     settings: &Settings,
     friction: f64,
     enough: usize,
@@ -118,7 +135,7 @@ fn beyond(
     let search = Search::new(problem, &settings.accuracy, settings.limit);
     let random = Stream::new(settings.seed).branch(6);
     let judge = || Judge::new(problem, &motions);
-    let docks = for_each(trials.len(), exec, judge, |judge, k| judge.docks(&trials[k].0.error))?;
+    let docks = for_each(trials.len(), exec, judge, |judge, k| judge.docks(&trials[k].0))?;
     let mut followed = trials.len();
     let otherwise: Vec<usize> = (0..trials.len()).filter(|k| docks[*k] != trials[*k].1).collect();
     let mut count = 0;
@@ -128,7 +145,7 @@ fn beyond(
         }
         let found = for_each(some.len(), exec, judge, |judge, n| {
             let k = some[n];
-            let error = &trials[k].0.error;
+            let error = &trials[k].0;
             let before = judge.followed();
             let near = search.nearest(judge, error, docks[k], None, random.branch(k as u64)).is_some();
             (!near, judge.followed() - before)

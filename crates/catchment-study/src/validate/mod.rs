@@ -24,17 +24,18 @@
 
 mod friction;
 mod lines;
+mod report;
 mod statistics;
 #[cfg(test)]
 mod tests;
 
-use crate::plan::{Foretold, PlanError, check_accuracy, foretell};
+use crate::plan::{Foretold, PlanError, Point, check_accuracy, foretell};
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::PoseError;
-use catchment_core::poses::{Observed, Tried};
+use catchment_core::poses::{Observed, OffsetsAt, Tried};
 use catchment_core::problem::Problem;
-pub use friction::FrictionFound;
+pub use friction::{FrictionInterval, FrictionTried};
 pub use lines::Line;
 use serde::{Deserialize, Serialize};
 pub use statistics::clopper_pearson;
@@ -71,16 +72,16 @@ pub const FEWEST: usize = 5;
 /// Chance that is allowed of a wrong verdict.
 pub const LEVEL: f64 = 0.05;
 
-/// What becomes of a prediction.
+/// The verdict on a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The trials say nothing against it.
+    /// The trials do not contradict it.
     Consistent,
-    /// They do.
+    /// The trials contradict it.
     Inconsistent,
-    /// They cannot.
+    /// The trials do not decide.
     Undecided,
 }
 
@@ -95,99 +96,145 @@ impl Verdict {
     }
 }
 
-/// A trial and what exact motions say of its pose.
-#[derive(Debug, Clone, PartialEq)]
+/// A trial beside the prediction of its pose.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Judged {
-    /// What was tried.
-    pub tried: Tried,
-    /// What was to be expected.
-    pub foretold: Foretold,
-    /// Whether it docked, turned by a symmetry of the design or not; nothing where it was not made.
-    pub seen: Option<bool>,
+    /// The number of the trial.
+    pub trial: u64,
+    /// The observed outcome; null where the trial was not made.
+    pub observed: Option<Observed>,
+    /// Whether the outcome contradicts the prediction. Never where the prediction is undecided, the trial was not made, or the pose lies within one
+    /// accuracy of the border: there the error of the robot decides.
+    pub disagrees: bool,
+    /// Its pose and the prediction.
+    #[serde(flatten)]
+    pub point: Point,
+    /// Whether it docked, turned by a symmetry of the design or not; none where it was not made.
+    #[serde(skip)]
+    pub docked: Option<bool>,
+    /// The prediction that the table has.
+    #[serde(skip)]
+    planned: Option<Observed>,
 }
 
 impl Judged {
-    /// Whether the outcome contradicts the prediction. Never where the prediction was undecided, the trial was not made, or the
-    /// pose lies within one accuracy of the border: there the robot's own error decides.
-    pub fn disagrees(&self) -> bool {
-        self.foretold.predicted.is_some()
-            && !self.foretold.is_either()
-            && self.seen.is_some_and(|seen| seen != self.foretold.docks())
+    /// Of a trial, the prediction of its pose, and whether it docked.
+    fn new(tried: &Tried, foretold: Foretold, docked: Option<bool>) -> Self {
+        Self {
+            trial: tried.trial,
+            observed: tried.observed,
+            disagrees: foretold.predicted.is_some()
+                && !foretold.either
+                && docked.is_some_and(|docked| docked != foretold.docks()),
+            point: Point { error: tried.error, line: tried.line as usize, foretold },
+            docked,
+            planned: tried.predicted,
+        }
+    }
+
+    /// The prediction of its pose.
+    pub const fn foretold(&self) -> &Foretold {
+        &self.point.foretold
     }
 }
 
-/// How many trials were predicted and seen how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The number of trials with the same predicted and the same observed outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Count {
-    /// What was predicted; nothing where that was undecided.
+    /// The predicted outcome; null where that was undecided.
     pub predicted: Option<Observed>,
-    /// What was seen.
+    /// The observed outcome.
     pub observed: Observed,
     /// Whether the poses are nearer to the border than the accuracy.
     pub either: bool,
-    /// How many.
+    /// How many trials.
     pub trials: usize,
 }
 
-/// How often trials fared as predicted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// How many trials agree with the prediction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Agreement {
-    /// Trials at least one accuracy from the border that were made.
+    /// Trials that were made at least one accuracy from the border.
     pub trials: usize,
-    /// Of them, as predicted.
+    /// Of these, those that agree with the prediction.
     pub agreed: usize,
-    /// Their share with Clopper and Pearson's 95 % interval.
+    /// Their share, in [0, 1]; null without trials.
+    pub share: Option<f64>,
+    /// The 95 % confidence interval of the share (Clopper and Pearson).
     pub ci95: [f64; 2],
 }
 
 /// Disagreements on one side of the border.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OneSided {
-    /// How many.
+    /// Trials that disagree.
     pub disagreeing: usize,
-    /// Of so many trials on that side, one accuracy from the border or more.
+    /// All trials on that side, one accuracy from the border or more.
     pub trials: usize,
-    /// As many are expected at most of the robot's errors alone.
+    /// The errors of the robot alone make at most so many disagree on average.
     pub expected: f64,
-    /// The chance of so many or more by its errors alone: one-sided.
+    /// The chance that they make so many or more disagree: one-sided, in [0, 1].
     pub p_value: f64,
 }
 
-/// What the trials say.
-#[derive(Debug, Clone, PartialEq)]
+/// What a verdict rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Evidence {
+    /// Trials beyond the limit at poses that are predicted to dock.
+    pub inside: usize,
+    /// Trials beyond the limit at all other poses.
+    pub outside: usize,
+    /// Of both, those that disagree with the prediction.
+    pub beyond: usize,
+    /// The chance that the errors of the robot make so many trials disagree, ones so far from the border, or so many on one side; 1 where none disagrees.
+    pub p_value: f64,
+}
+
+/// A prediction beside the trials of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Validation {
-    /// How it was asked for.
+    /// The settings.
     pub settings: Settings,
+    /// The point of the moving half at which the table gave x and y; the offsets of this report are those of the face centre.
+    pub offsets_at: OffsetsAt,
     /// The verdict.
     pub verdict: Verdict,
-    /// The trials in the order of the table.
-    pub trials: Vec<Judged>,
-    /// Predicted and observed.
+    /// The verdict as a number for requirements: 1 consistent, 0 undecided, −1 inconsistent.
+    pub consistent: i8,
+    /// What the verdict rests on.
+    pub evidence: Evidence,
+    /// Trials by their predicted and observed outcome.
     pub counts: Vec<Count>,
-    /// Trials that were not made.
-    pub blank: usize,
-    /// How often they agree.
+    /// How many trials agree with the prediction, without those that are nearer to the border than the accuracy.
     pub agreement: Agreement,
-    /// Trials beyond the limit, of poses predicted to dock and predicted to fail.
-    pub deciding: [usize; 2],
-    /// Of them, otherwise than predicted.
-    pub beyond: usize,
-    /// The chance that the robot's errors make so many, so far ones, or so many on one side; 1 where there are none.
-    pub p_value: f64,
     /// Failures where docking was predicted.
     pub early: OneSided,
-    /// Docked where it was not.
+    /// Trials that docked where failure was predicted.
     pub late: OneSided,
-    /// Where the border was seen.
+    /// Every trial that disagrees with the prediction, the farthest from the border first.
+    pub disagreements: Vec<Judged>,
+    /// Where the border was observed.
     pub lines: Vec<Line>,
-    /// Which friction explains the trials, if asked for.
-    pub friction: Option<FrictionFound>,
-    /// Trials of which the table says that something else was predicted: another design, or other friction.
+    /// The coefficients of friction that explain the trials; null unless the settings estimate them.
+    pub friction: Option<FrictionInterval>,
+    /// Every trial in the order of the table.
+    pub trials: Vec<Judged>,
+    /// Trials that were not made.
+    pub blank: usize,
+    /// Exact motions that were followed.
+    pub motions: usize,
+    /// Trials of which the table predicts another outcome: it is for another design, or another friction.
+    #[serde(skip)]
     pub otherwise_planned: usize,
     /// Trials that docked turned where docking straight was predicted, or the other way about.
+    #[serde(skip)]
     pub turned: usize,
-    /// Motions that were followed.
-    pub motions: usize,
 }
 
 /// Why there is no verdict.
@@ -236,7 +283,7 @@ pub fn run(
         return Err(ValidateError::NothingMade);
     }
     let turns = problem.alignment().symmetry > 1;
-    let docked = |observed: Observed| match observed {
+    let docks = |observed: Observed| match observed {
         Observed::Aligned => true,
         Observed::AlignedElsewhere => turns,
         Observed::Jammed | Observed::Missed => false,
@@ -256,38 +303,40 @@ pub fn run(
     let part = exec.part([0.0, share], STAGE);
     let (foretold, mut followed) =
         foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
-    let judged = |(trial, number): (&Tried, &usize)| Judged {
-        tried: trial.clone(),
-        foretold: foretold[*number],
-        seen: trial.observed.map(docked),
-    };
+    let judged =
+        |(trial, number): (&Tried, &usize)| Judged::new(trial, foretold[*number], trial.observed.map(docks));
     let trials: Vec<Judged> = tried.iter().zip(&number).map(judged).collect();
     let friction = if settings.estimate_friction {
-        let made: Vec<(Tried, bool)> =
-            trials.iter().filter_map(|trial| Some((trial.tried.clone(), trial.seen?))).collect();
+        let made: Vec<(PoseError, bool)> =
+            trials.iter().filter_map(|trial| Some((trial.point.error, trial.docked?))).collect();
         let (found, more) = friction::estimate(problem, &made, settings, &exec.part([share, 1.0], STAGE))?;
         followed += more;
         Some(found)
     } else {
         None
     };
-    Ok(Validation { friction, motions: followed, ..told(problem, trials, settings) })
+    Ok(Validation { friction, motions: followed, ..summary(problem, trials, settings) })
 }
 
 /// Everything that follows from the trials without another motion.
-fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validation {
-    let made = || trials.iter().filter(|trial| trial.seen.is_some());
-    let clear = || made().filter(|trial| !trial.foretold.is_either());
-    let agreed = clear().filter(|trial| !trial.disagrees()).count();
-    let agreement =
-        Agreement { trials: clear().count(), agreed, ci95: clopper_pearson(agreed, clear().count(), LEVEL) };
-    let beyond_limit = || made().filter(|trial| trial.foretold.margin() >= settings.limit);
-    let docking = beyond_limit().filter(|trial| trial.foretold.docks()).count();
-    let deciding = [docking, beyond_limit().count() - docking];
+fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validation {
+    let made = || trials.iter().filter(|trial| trial.docked.is_some());
+    let clear = || made().filter(|trial| !trial.foretold().either);
+    let agreed = clear().filter(|trial| !trial.disagrees).count();
+    let all = clear().count();
+    let agreement = Agreement {
+        trials: all,
+        agreed,
+        share: (all > 0).then(|| agreed as f64 / all as f64),
+        ci95: clopper_pearson(agreed, all, LEVEL),
+    };
+    let beyond_limit = || made().filter(|trial| trial.foretold().margin() >= settings.limit);
+    let inside = beyond_limit().filter(|trial| trial.foretold().docks()).count();
+    let outside = beyond_limit().count() - inside;
     let beyond: Vec<f64> =
-        beyond_limit().filter(|trial| trial.disagrees()).map(|trial| trial.foretold.margin()).collect();
+        beyond_limit().filter(|trial| trial.disagrees).map(|trial| trial.foretold().margin()).collect();
     let chances = |least: f64| -> Vec<f64> {
-        let margins = made().map(|trial| trial.foretold.margin());
+        let margins = made().map(|trial| trial.foretold().margin());
         margins.filter(|margin| *margin >= least).map(chance).collect()
     };
     let [early, late] = [true, false].map(|docks| one_sided(&trials, docks));
@@ -297,40 +346,43 @@ fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validati
     let all = [of_number, of_farthest, early.p_value, late.p_value];
     // As many tests, each at a share of the level.
     let p_value = (all.len() as f64 * all.into_iter().fold(1.0, f64::min)).min(1.0);
-    let verdict = if p_value < LEVEL {
-        Verdict::Inconsistent
-    } else if deciding[0] + deciding[1] < FEWEST {
-        Verdict::Undecided
+    let (verdict, consistent) = if p_value < LEVEL {
+        (Verdict::Inconsistent, -1)
+    } else if inside + outside < FEWEST {
+        (Verdict::Undecided, 0)
     } else {
-        Verdict::Consistent
+        (Verdict::Consistent, 1)
     };
-    let straight = |observed: Option<Observed>| observed == Some(Observed::Aligned);
+    let straight = |outcome: Option<Observed>| outcome == Some(Observed::Aligned);
     let turned = made().filter(|trial| {
-        let both = trial.seen == Some(true) && trial.foretold.docks();
-        both && straight(trial.tried.observed) != straight(trial.foretold.predicted)
+        let both = trial.docked == Some(true) && trial.foretold().docks();
+        both && straight(trial.observed) != straight(trial.foretold().predicted)
     });
     let otherwise = trials.iter().filter(|trial| {
-        let docks = |observed| matches!(observed, Observed::Aligned | Observed::AlignedElsewhere);
-        let said = trial.tried.predicted.map(docks);
+        let docks = |outcome| matches!(outcome, Observed::Aligned | Observed::AlignedElsewhere);
+        let planned = trial.planned.map(docks);
         // On the border itself rounding decides.
-        said.is_some_and(|said| said != trial.foretold.docks()) && !trial.foretold.is_either()
+        planned.is_some_and(|planned| planned != trial.foretold().docks()) && !trial.foretold().either
     });
+    let mut disagreements: Vec<Judged> = trials.iter().copied().filter(|trial| trial.disagrees).collect();
+    disagreements.sort_by(|a, b| b.foretold().margin().total_cmp(&a.foretold().margin()));
     Validation {
         settings: settings.clone(),
+        offsets_at: OffsetsAt::Face,
         verdict,
+        consistent,
+        evidence: Evidence { inside, outside, beyond: beyond.len(), p_value },
         counts: counts(&trials),
-        blank: trials.len() - made().count(),
         agreement,
-        deciding,
-        beyond: beyond.len(),
-        p_value,
         early,
         late,
+        disagreements,
         lines: lines::lines(problem, &trials),
         friction: None,
+        blank: trials.len() - made().count(),
+        motions: 0,
         otherwise_planned: otherwise.count(),
         turned: turned.count(),
-        motions: 0,
         trials,
     }
 }
@@ -338,11 +390,12 @@ fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validati
 /// Disagreements of the trials that should dock, or of those that should not.
 fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
     let clear = |trial: &&Judged| {
-        trial.seen.is_some() && trial.foretold.docks() == docks && !trial.foretold.is_either()
+        let foretold = trial.foretold();
+        trial.docked.is_some() && foretold.docks() == docks && !foretold.either
     };
     let side: Vec<&Judged> = trials.iter().filter(clear).collect();
-    let chances: Vec<f64> = side.iter().map(|trial| chance(trial.foretold.margin())).collect();
-    let disagreeing = side.iter().filter(|trial| trial.disagrees()).count();
+    let chances: Vec<f64> = side.iter().map(|trial| chance(trial.foretold().margin())).collect();
+    let disagreeing = side.iter().filter(|trial| trial.disagrees).count();
     OneSided {
         disagreeing,
         trials: side.len(),
@@ -360,9 +413,10 @@ fn counts(trials: &[Judged]) -> Vec<Count> {
         for predicted in &predictions {
             for observed in Observed::ALL {
                 let same = |trial: &&Judged| {
-                    trial.foretold.is_either() == either
-                        && trial.foretold.predicted == *predicted
-                        && trial.tried.observed == Some(observed)
+                    let foretold = trial.foretold();
+                    foretold.either == either
+                        && foretold.predicted == *predicted
+                        && trial.observed == Some(observed)
                 };
                 let number = trials.iter().filter(same).count();
                 if number > 0 {
@@ -372,16 +426,4 @@ fn counts(trials: &[Judged]) -> Vec<Count> {
         }
     }
     counts
-}
-
-impl Validation {
-    /// A verdict on nothing: what requirements are tried on.
-    pub fn form(problem: &Problem, settings: &Settings) -> Self {
-        let friction =
-            FrictionFound { fewest: 0, interval: [0.0; 2], open: false, broken: false, tried: Vec::new() };
-        Self {
-            friction: settings.estimate_friction.then_some(friction),
-            ..told(problem, Vec::new(), settings)
-        }
-    }
 }

@@ -4,6 +4,7 @@ use super::*;
 use crate::plan::{self, Pattern};
 use crate::success::normals;
 use catchment_core::acceptance::Stream;
+use catchment_core::document::Subject;
 use catchment_core::exec::Exec;
 use catchment_core::poses::OffsetsAt;
 use std::path::Path;
@@ -66,12 +67,12 @@ fn verdicts(
     let mut counts = [0; 3];
     for seed in 0..runs {
         let made = trials(bench, [real, written], accuracy, friction, seed);
-        let judged = made.into_iter().zip(&foretold).map(|(tried, foretold)| Judged {
-            seen: tried.observed.map(|o| matches!(o, Observed::Aligned | Observed::AlignedElsewhere)),
-            tried,
-            foretold: *foretold,
-        });
-        counts[told(predicting, judged.collect(), &settings).verdict as usize] += 1;
+        let docked = |o| matches!(o, Observed::Aligned | Observed::AlignedElsewhere);
+        let judged = made
+            .iter()
+            .zip(&foretold)
+            .map(|(tried, foretold)| Judged::new(tried, *foretold, tried.observed.map(docked)));
+        counts[summary(predicting, judged.collect(), &settings).verdict as usize] += 1;
     }
     counts
 }
@@ -185,10 +186,10 @@ fn counts_margins_and_lines_are_those_of_the_table() {
         (0.6, MISSED),
         (0.7, None),
     ]);
-    assert_eq!((found.verdict, found.blank, found.beyond), (Verdict::Consistent, 1, 0));
-    assert_eq!(found.deciding, [4, 2]);
+    assert_eq!((found.verdict, found.blank, found.evidence.beyond), (Verdict::Consistent, 1, 0));
+    assert_eq!((found.evidence.inside, found.evidence.outside), (4, 2));
     for (judged, margin) in found.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
-        assert!((judged.foretold.margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
+        assert!((judged.foretold().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
     }
     // The one that may go either way stands apart.
     assert_eq!((found.agreement.agreed, found.agreement.trials), (6, 6));
@@ -200,7 +201,7 @@ fn counts_margins_and_lines_are_those_of_the_table() {
         (line.last_success.unwrap().x, line.first_failure.unwrap().x, line.in_order),
         (0.45, 0.49, true)
     );
-    assert_eq!((line.predicted[0].unwrap().x, line.predicted[1].unwrap().x), (0.49, 0.55));
+    assert_eq!((line.predicted_success.unwrap().x, line.predicted_failure.unwrap().x), (0.49, 0.55));
     // 2Φ(−2.5): the others are next to nothing, and that which may go either way does not count.
     assert!((found.early.expected - 0.012_419).abs() < 1e-3 && found.early.disagreeing == 0);
     assert_eq!((found.early.trials, found.late.trials), (4, 2));
@@ -211,10 +212,10 @@ fn counts_margins_and_lines_are_those_of_the_table() {
 fn a_trial_within_one_accuracy_of_the_border_is_no_disagreement() {
     let rows = [(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)];
     let found = judged(&rows);
-    let disagrees: Vec<bool> = found.trials.iter().map(Judged::disagrees).collect();
+    let disagrees: Vec<bool> = found.trials.iter().map(|trial| trial.disagrees).collect();
     assert_eq!(disagrees, [false, false, false, false, true]);
     // The search ends at a thousandth of an accuracy.
-    assert!(found.trials[2].foretold.margin() < 5e-3);
+    assert!(found.trials[2].foretold().margin() < 5e-3);
 }
 
 #[test]
@@ -226,13 +227,13 @@ fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
     };
     assert_eq!(inside(DOCKED).verdict, Verdict::Consistent);
     let failed = inside(JAMMED);
-    assert_eq!((failed.verdict, failed.beyond), (Verdict::Inconsistent, 1));
-    assert!(failed.p_value < 1e-10 && failed.early.p_value < 1e-10);
+    assert_eq!((failed.verdict, failed.evidence.beyond), (Verdict::Inconsistent, 1));
+    assert!(failed.evidence.p_value < 1e-10 && failed.early.p_value < 1e-10);
     // At 2.05 accuracies one of ten may well fail: 1 − (1 − 0.04)¹⁰ = 0.34.
     let near: Vec<_> = (0..10).map(|k| (0.459, if k == 0 { MISSED } else { DOCKED })).collect();
     let near = judged(&near);
-    assert_eq!((near.verdict, near.beyond), (Verdict::Consistent, 1));
-    assert!((near.early.p_value - 0.34).abs() < 0.03 && near.p_value == 1.0, "{near:?}");
+    assert_eq!((near.verdict, near.evidence.beyond), (Verdict::Consistent, 1));
+    assert!((near.early.p_value - 0.34).abs() < 0.03 && near.evidence.p_value == 1.0, "{near:?}");
     // Half of them may not.
     let half: Vec<_> = (0..10).map(|k| (0.459, if k % 2 == 0 { MISSED } else { DOCKED })).collect();
     assert_eq!(judged(&half).verdict, Verdict::Inconsistent);
@@ -242,7 +243,8 @@ fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
 fn too_few_trials_decide_nothing() {
     let few =
         judged(&[(0.1, DOCKED), (0.2, DOCKED), (0.49, MISSED), (0.51, DOCKED), (0.6, MISSED), (0.3, None)]);
-    assert_eq!((few.verdict, few.deciding), (Verdict::Undecided, [2, 1]));
+    assert_eq!(few.verdict, Verdict::Undecided);
+    assert_eq!((few.evidence.inside, few.evidence.outside), (2, 1));
     let settings = Settings::new(PoseError { x: 0.02, ..PoseError::default() });
     let nothing = run(&v_face(), &[row(1, 0.1, None)], &settings, &Exec::new());
     assert!(matches!(nothing, Err(ValidateError::NothingMade)));
@@ -279,11 +281,8 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     let friction = found.friction.clone().unwrap();
     println!("{friction:?}");
     assert_eq!((found.verdict, friction.fewest), (Verdict::Inconsistent, 0));
-    assert!(
-        friction.interval[0] > 0.0 && friction.interval[0] <= 0.5 && friction.interval[1] >= 0.5,
-        "{friction:?}"
-    );
-    assert!(friction.tried[0].1 > 0 && friction.interval[1] < 0.7, "{friction:?}");
+    assert!(friction.low > 0.0 && friction.low <= 0.5 && friction.high >= 0.5, "{friction:?}");
+    assert!(friction.tried[0].beyond > 0 && friction.high < 0.7, "{friction:?}");
     // With that friction the prediction holds; and threads change nothing.
     let with_friction = Settings { friction: 0.5, estimate_friction: false, ..settings.clone() };
     let again = run(&problem, &made, &with_friction, &Exec::new()).unwrap();
@@ -303,10 +302,25 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let mut design = fourfold.design().clone();
     design.alignment.symmetry = 1;
     let found = run(&fourfold.with(design).unwrap(), &tried, &Settings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.verdict, found.beyond, found.turned), (Verdict::Inconsistent, 6, 0));
+    assert_eq!((found.verdict, found.evidence.beyond, found.turned), (Verdict::Inconsistent, 6, 0));
     // Turned by nearly a quarter it does dock there, and that is predicted.
     let turned =
         Tried { error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() }, ..tried[0].clone() };
     let found = run(&fourfold, &[turned], &Settings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.trials[0].foretold.predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
+    assert_eq!((found.trials[0].foretold().predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
+}
+
+/// Trials within one accuracy of the border are counted apart, and stand neither in the list of disagreements nor in its column.
+#[test]
+fn disagreements_leave_out_trials_within_one_accuracy_of_the_border() {
+    let found = judged(&[(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)]);
+    let listed: Vec<u64> = found.disagreements.iter().map(|trial| trial.trial).collect();
+    assert_eq!(listed, [5]);
+    let document = found.document(v_face().design());
+    let records = document.records().unwrap().records();
+    let column = |name: &str| records[0].iter().position(|head| head == name).unwrap();
+    let both = [column("either"), column("disagrees")];
+    let shown: Vec<[&str; 2]> = records[1..].iter().map(|row| both.map(|k| row[k].as_str())).collect();
+    assert_eq!(shown[1..4], [["true", "false"]; 3]);
+    assert!(!format!("{document:?}").contains("0.00 accuracies"), "{document:?}");
 }

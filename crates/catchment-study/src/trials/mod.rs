@@ -16,6 +16,8 @@
 //!
 //! Source: dissertation, section 4.2.2 and figure 4.4.
 
+mod report;
+
 use catchment_core::acceptance::{Domain, Outcome, Stream};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::landscape::{Grid, Resolution};
@@ -25,12 +27,11 @@ use catchment_core::method::{DecideError, Method, MethodError};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 /// What changes the answer.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone)]
 pub struct Settings {
     /// What decides single poses.
     pub method: Method,
@@ -43,59 +44,71 @@ pub struct Settings {
 }
 
 /// Trials at one resolution and time step.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Round {
     /// Trials along every free translation.
     pub resolution: usize,
     /// Time step in s; null for a method that has none.
     pub timestep: Option<f64>,
-    /// How many trials there were.
+    /// All trials.
     pub trials: usize,
-    /// Not aligned, though the exact region holds them.
+    /// Trials in the exact region that do not dock.
     pub rejected_inside: usize,
-    /// Aligned, though it does not.
+    /// Trials out of the exact region that dock.
     pub accepted_outside: usize,
-    /// Still moving when the time was up; they count as not aligned.
+    /// Trials that still move when the time is up; they count as not docked.
     pub undecided: usize,
-    /// Share of the error box over which trials disagree.
+    /// Share of the error box over which the trials contradict the exact region, in [0, 1].
     pub disagreeing: f64,
-    /// Its 95 % interval.
+    /// Its 95 % confidence interval.
     pub disagreeing_ci95: [f64; 2],
-    /// The same as a measure, in the unit of the study.
+    /// The same as a measure, in `unit`.
     pub measure: f64,
-    /// Its 95 % interval.
+    /// Its 95 % confidence interval.
     pub measure_ci95: [f64; 2],
-    /// Measure of what trials accept.
+    /// Measure of the offsets that dock by trials, in `unit`.
     pub accepted: f64,
 }
 
-/// A trial of the finest grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A trial of the last round. Its rotations are 0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trial {
-    /// Where it began.
-    pub error: PoseError,
-    /// What became of it.
+    /// Offset in x at its start, in D.
+    pub x: f64,
+    /// Offset in y at its start, in D.
+    pub y: f64,
+    /// Its outcome.
     pub outcome: Outcome,
-    /// Whether the exact region holds it.
+    /// Whether it starts in the exact region.
     pub inside: bool,
 }
 
-/// What was found.
-#[derive(Debug, Clone)]
+/// Trials beside the exact region.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trials {
-    /// How.
-    pub settings: Settings,
-    /// The exact region.
-    pub zraa: Zraa,
-    /// Its measure, in D² or D.
+    /// Name of the method that decides the trials.
+    pub method: &'static str,
+    /// Its settings. The time step is that of the first rounds.
+    pub settings: Value,
+    /// Seed of the places in the cells.
+    pub seed: u64,
+    /// `D` or `D²`: the unit of all measures.
+    pub unit: &'static str,
+    /// Measure of the exact region, in `unit`.
     pub exact: f64,
     /// One per resolution and time step, in this order.
     pub rounds: Vec<Round>,
+    /// The trials of the last round, in the order of the cells.
+    pub trials: Vec<Trial>,
+    /// The exact region.
+    #[serde(skip)]
+    pub zraa: Zraa,
     /// The grid of the last round.
+    #[serde(skip)]
     pub grid: Grid,
-    /// Its trials, in the order of the cells.
-    pub last: Vec<Trial>,
 }
 
 /// Why there are none.
@@ -203,7 +216,17 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Trials
         last = Some((grid, trials));
     }
     let (grid, last) = last.unwrap_or_else(|| (Grid::over(alignment, |_| least), Vec::new()));
-    Ok(Trials { settings: settings.clone(), exact: measure(&zraa), zraa, rounds: found, grid, last })
+    Ok(Trials {
+        method: name,
+        settings: settings.method.settings(),
+        seed: settings.seed,
+        unit: if grid.axes.len() == 2 { "D²" } else { "D" },
+        exact: measure(&zraa),
+        rounds: found,
+        trials: last,
+        zraa,
+        grid,
+    })
 }
 
 fn changed(step: f64) -> Map<String, Value> {
@@ -240,7 +263,8 @@ fn trials_of(
     let follow = method.follows().ok_or(TrialsError::Method { method: method.name() })?;
     let (acceptance, _) = follow.follow(problem, Domain::Poses(errors.clone()), exec)?;
     let trial = |(error, outcome): (PoseError, &Outcome)| Trial {
-        error,
+        x: error.x,
+        y: error.y,
         outcome: *outcome,
         inside: zraa.holds(DVec2::new(error.x, error.y)),
     };
@@ -300,13 +324,13 @@ mod tests {
             // 4√2 D of border, and one trial for every cell that it crosses.
             assert!((round.accepted - 2.0).abs() < 4.0 / round.resolution as f64, "{round:?}");
         }
-        let diamond = |trial: &Trial| trial.inside == (trial.error.x.abs() + trial.error.y.abs() < 1.0);
-        assert!(found.last.len() == 400 && found.last.iter().all(diamond));
-        let cells = found.last.iter().enumerate();
+        let diamond = |trial: &Trial| trial.inside == (trial.x.abs() + trial.y.abs() < 1.0);
+        assert!(found.trials.len() == 400 && found.trials.iter().all(diamond));
+        let cells = found.trials.iter().enumerate();
         let in_cell = |(k, trial): (usize, &Trial)| {
             let center = found.grid.pose(k);
             let half = 0.5 * found.grid.axes[0].step();
-            (trial.error.x - center.x).abs() <= half && (trial.error.y - center.y).abs() <= half
+            (trial.x - center.x).abs() <= half && (trial.y - center.y).abs() <= half
         };
         assert!(cells.clone().all(in_cell));
         let line = problem(Family::VFace, DofSet::EMPTY.with(Dof::X));
@@ -324,7 +348,8 @@ mod tests {
                 3..30 => Outcome::Jammed,
                 _ => Outcome::Aligned,
             };
-            Trial { error: grid.pose(k), outcome, inside: (20..95).contains(&k) }
+            let PoseError { x, y, .. } = grid.pose(k);
+            Trial { x, y, outcome, inside: (20..95).contains(&k) }
         };
         let round = counted(10, &grid, &(0..100).map(trial).collect::<Vec<_>>());
         assert_eq!((round.rejected_inside, round.accepted_outside, round.undecided), (10, 5, 3));
@@ -357,8 +382,8 @@ mod tests {
         let steps: Vec<_> = found.rounds.iter().map(|round| round.timestep.unwrap()).collect();
         assert_eq!(steps, [1e-3, 5e-4]);
         assert_eq!((found.rounds[1].resolution, found.rounds[1].trials), (6, 36));
-        for trial in &found.last {
-            let margin = 1.0 - trial.error.x.abs() - trial.error.y.abs();
+        for trial in &found.trials {
+            let margin = 1.0 - trial.x.abs() - trial.y.abs();
             let agrees = trial.inside == (trial.outcome == Outcome::Aligned);
             assert!(agrees || margin.abs() < 5e-3, "{trial:?}");
         }

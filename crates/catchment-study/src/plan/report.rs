@@ -1,0 +1,151 @@
+//! What people and robots read of a plan.
+
+use super::{Counts, Foretold, Pattern, Plan, PoseColumns, accuracy_words};
+use crate::validate::{FEWEST, LIMIT};
+use catchment_core::acceptance::Warning;
+use catchment_core::design::Design;
+use catchment_core::document::{Column, Document, Subject, Table, Units, grouped};
+use catchment_core::pose::{Dof, PoseError};
+
+/// Trials that are shown.
+const SHOWN: usize = 6;
+
+impl Subject for Plan {
+    const KIND: &'static str = "plan";
+
+    fn warnings(&self) -> Vec<Warning> {
+        let Counts { poses, asymmetric, open, .. } = self.counts;
+        let mut warnings = Vec::new();
+        if poses == 0 {
+            return warnings;
+        }
+        let mut warn = |text: String| warnings.push(Warning::Note { text });
+        let deciding = |docks: bool| {
+            let decides = |foretold: &Foretold| foretold.margin() >= LIMIT && foretold.docks() == docks;
+            self.points.iter().filter(|point| decides(&point.foretold)).count()
+        };
+        let [docking, failing] = [true, false].map(deciding);
+        if docking + failing < FEWEST {
+            warn(format!(
+                "only {} poses are {LIMIT} accuracies or more from the border: with fewer than {FEWEST} trials there no verdict is possible",
+                docking + failing
+            ));
+        }
+        if failing == 0 {
+            warn(
+                "no pose beyond the border decides: the trials can show that the border is not nearer than predicted, not that it is no farther"
+                    .to_owned(),
+            );
+        } else if docking == 0 {
+            warn("no pose inside the border decides: the trials can only show that the border is no farther than predicted".to_owned());
+        }
+        if asymmetric > 0 {
+            warn(format!(
+                "{asymmetric} of {poses} poses fare otherwise with other signs of their errors: positive errors do not stand for all"
+            ));
+        }
+        if open > 0 {
+            warn(format!("along {open} directions nothing fails within the error box: they are left out"));
+        }
+        warnings
+    }
+
+    fn document(&self, design: &Design) -> Document {
+        let units = Units::of(design);
+        let settings = &self.settings;
+        let mut document = Document::default();
+        document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
+        if settings.friction > 0.0 {
+            document.row("friction", format!("{} between the halves (Coulomb)", settings.friction));
+        }
+        document.row("pattern", self.pattern(units));
+        document.row("accuracy", accuracy_words(design, &settings.accuracy));
+        self.describe_counts(&mut document, units);
+        document.section("first trials");
+        let mut first = Table::new([
+            Column::new("trial"),
+            Column::new("predicted").left(),
+            Column::new("pose error").left(),
+        ]);
+        for trial in self.trials.iter().take(SHOWN) {
+            let point = &self.points[trial.point];
+            first.push([trial.number.into(), point.foretold.word().into(), units.pose(&point.error).into()]);
+        }
+        document.table(first);
+        if self.trials.len() > SHOWN {
+            document.paragraph(format!("and {} more", grouped(self.trials.len() - SHOWN)));
+        }
+        document.table(self.for_the_robot(design));
+        document
+    }
+}
+
+impl Plan {
+    fn describe_counts(&self, document: &mut Document, units: Units<'_>) {
+        let Counts { trials, poses, lines, docking, failing, either, deciding, .. } = self.counts;
+        let settings = &self.settings;
+        let times =
+            if settings.repeats > 1 { format!(", {} times each", settings.repeats) } else { String::new() };
+        let [trials, poses, lines] = [trials, poses, lines].map(grouped);
+        document.section(None).row("trials", format!("{trials} at {poses} poses on {lines} lines{times}"));
+        let order = if settings.shuffled { "random order" } else { "the order of the pattern" };
+        let blocks =
+            if settings.blocks > 1 { format!(", in {} blocks", settings.blocks) } else { String::new() };
+        document.more(format!("in {order}{blocks}"));
+        document.row("predicted", format!("{docking} poses dock, {failing} do not"));
+        document.row("either", format!("{either} poses, nearer to the border than the accuracy"));
+        document.row("decide", format!("{deciding} poses, {LIMIT} accuracies or more from the border"));
+        let known = self.points.iter().filter_map(|point| {
+            let Foretold { distance_to_border, margin_in_sigma, .. } = point.foretold;
+            let decides = point.foretold.margin() >= LIMIT;
+            Some((margin_in_sigma.filter(|_| decides)?, distance_to_border?, point))
+        });
+        if let Some((margin, distance, point)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            let distance = units.length(distance);
+            document.row("nearest of these", format!("at most {distance} from it, {margin:.2} accuracies"));
+            document.more(units.pose(&point.error));
+        }
+    }
+
+    fn pattern(&self, units: Units<'_>) -> String {
+        let named = |values: &[Option<f64>; 5]| {
+            let words =
+                |axis: Dof| Some(format!("{} {}", axis.name(), units.amount(axis, values[axis.index()]?)));
+            Dof::ALL.into_iter().filter_map(words).collect::<Vec<_>>().join(", ")
+        };
+        let positive = if self.settings.symmetric { ", positive errors" } else { "" };
+        let pattern = match &self.settings.pattern {
+            Pattern::Grid { steps, .. } => {
+                let counts: Vec<String> = steps.iter().flatten().map(ToString::to_string).collect();
+                format!("grid, {} points", counts.join(" × "))
+            }
+            Pattern::Lattice { step, along_border, .. } => {
+                let border = if *along_border { " along the border" } else { "" };
+                format!("lattice{border}, step {}", named(step))
+            }
+            Pattern::Arc { lever, pitch, yaw } => {
+                let lever = units.length(*lever);
+                format!("arc, lever {lever}, {} angles at {} yaws", pitch.len(), yaw.len())
+            }
+            Pattern::Bracket { .. } => format!("bracket, {} lines", self.counts.lines),
+        };
+        pattern + positive
+    }
+
+    /// A row per trial, in units of the design and degrees; `outcome` and `notes` are empty.
+    fn for_the_robot(&self, design: &Design) -> Table {
+        let errors: Vec<PoseError> = self.points.iter().map(|point| point.error).collect();
+        let poses = PoseColumns::new(design, &errors, self.offsets_at);
+        let columns = ["trial", "block", "line"].map(Column::data).into_iter().chain(poses.errors());
+        let columns = columns.chain([Column::data("predicted")]).chain(poses.margins());
+        let mut table = Table::new(columns.chain(["repeat", "outcome", "notes"].map(Column::data)));
+        for trial in &self.trials {
+            let point = &self.points[trial.point];
+            let cells = [trial.number, trial.block, point.line].map(Into::into).into_iter();
+            let cells = cells.chain(poses.values(&point.error)).chain([point.foretold.word().into()]);
+            let cells = cells.chain(poses.margin(&point.foretold));
+            table.push(cells.chain([trial.repeat.into(), "".into(), "".into()]));
+        }
+        table
+    }
+}
