@@ -70,6 +70,8 @@ enum Kind {
     Png,
     Svg,
     Folder,
+    /// What the command writes itself, by its ending.
+    Own(&'static str),
 }
 
 /// Every ending that a file may have.
@@ -84,14 +86,15 @@ const ENDINGS: [(&str, Kind); 7] = [
 ];
 
 impl Kind {
-    /// By the ending of a path; one without an ending is a folder.
-    fn of(path: &Path, drawable: bool) -> Result<Self, Failure> {
+    /// By the ending of a path; one without an ending is a folder. `own` endings precede the others.
+    fn of(path: &Path, drawable: bool, own: &[&'static str]) -> Result<Self, Failure> {
         let Some(ending) = path.extension().and_then(OsStr::to_str) else { return Ok(Self::Folder) };
-        let known = ENDINGS.iter().filter(|(_, kind)| drawable || !kind.is_picture());
+        let own = own.iter().map(|name| (*name, Self::Own(name)));
+        let known = own.chain(ENDINGS.into_iter().filter(|(_, kind)| drawable || !kind.is_picture()));
         match known.clone().find(|(name, _)| name.eq_ignore_ascii_case(ending)) {
-            Some((_, kind)) => Ok(*kind),
+            Some((_, kind)) => Ok(kind),
             None => {
-                let names: Vec<&str> = known.map(|(name, _)| *name).collect();
+                let names: Vec<&str> = known.map(|(name, _)| name).collect();
                 let help =
                     format!("let its name end in .{}, or give a folder without an ending", names.join(", ."));
                 Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
@@ -121,11 +124,21 @@ impl ResultArgs {
     /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
     /// picture of it.
     pub(crate) fn check(&self, report: &'static str, drawable: bool) -> Result<Output<'_>, Failure> {
+        self.check_with(report, drawable, &[])
+    }
+
+    /// The same of a command that writes files with some endings itself; [`Output::own`] says whether one is to be written.
+    pub(crate) fn check_with(
+        &self,
+        report: &'static str,
+        drawable: bool,
+        own: &[&'static str],
+    ) -> Result<Output<'_>, Failure> {
         let file = match &self.output {
-            Some(path) => Some((path.as_path(), Kind::of(path, drawable)?)),
+            Some(path) => Some((path.as_path(), Kind::of(path, drawable, own)?)),
             None => None,
         };
-        let figure = self.figure.as_deref().map(|path| match Kind::of(path, drawable) {
+        let figure = self.figure.as_deref().map(|path| match Kind::of(path, drawable, &[]) {
             Ok(kind) if kind.is_picture() => Ok((path, kind)),
             _ if !drawable => Err(Failure::with_help(
                 "there is no picture of this result".to_owned(),
@@ -170,6 +183,19 @@ impl Output<'_> {
         self.figure.is_some() || self.file.is_some_and(|(_, kind)| kind.is_picture() || kind == Kind::Folder)
     }
 
+    /// The ending of the file that the command writes itself, if there is one.
+    pub(crate) fn own(&self) -> Option<&'static str> {
+        match self.file {
+            Some((_, Kind::Own(ending))) => Some(ending),
+            _ => None,
+        }
+    }
+
+    /// Writes the file of [`Self::own`].
+    pub(crate) fn write_own(&self, bytes: &[u8]) -> Result<(), Failure> {
+        self.file.map_or(Ok(()), |(path, _)| write_file(path, bytes, self.args.force))
+    }
+
     /// Writes and prints a report, and says which requirements it does not meet. `draw` makes its picture, if there is one.
     pub(crate) fn finish<B: Printed + Serialize>(
         self,
@@ -192,6 +218,7 @@ impl Output<'_> {
                 Kind::Markdown => markdown(&document).into_bytes(),
                 Kind::Html => html(&document).into_bytes(),
                 Kind::Text => text(&document, Style::default()).into_bytes(),
+                Kind::Own(_) => continue,
                 Kind::Png | Kind::Svg => image(picture()?, kind.ending())?,
                 Kind::Folder => {
                     let folder = StudyFolder { path, name: B::KIND };

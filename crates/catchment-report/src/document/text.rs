@@ -46,7 +46,7 @@ impl Style {
 pub fn text(described: &Described<'_>, style: Style) -> String {
     let style = Style { columns: style.columns.max(NARROWEST), ..style };
     let mut page = Page { text: String::new(), style };
-    let title = printable(described.title);
+    let title = printable(&described.title);
     let rule = "─".repeat(title.chars().count().clamp(RULE, style.columns));
     page.text.push_str(&style.painted(BOLD, &title));
     page.text.push('\n');
