@@ -6,7 +6,7 @@
 
 use super::region::{Region, place, sides};
 use glam::DVec2;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -20,7 +20,7 @@ const MOST_CELLS: usize = 100_000;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "LargestSquare"))]
 pub struct Square {
     /// Its centre.
-    #[serde(serialize_with = "point")]
+    #[serde(serialize_with = "crate::points::point")]
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub center: DVec2,
     /// Its side.
@@ -28,11 +28,6 @@ pub struct Square {
     /// No square in the region has a longer side than this.
     #[serde(rename = "side_at_most")]
     pub at_most: f64,
-}
-
-/// A point as its coordinates.
-fn point<S: Serializer>(point: &DVec2, serializer: S) -> Result<S::Ok, S::Error> {
-    point.to_array().serialize(serializer)
 }
 
 /// How far one may be off along an axis, from a point, until the region ends first.
