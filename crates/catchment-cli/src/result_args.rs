@@ -177,7 +177,18 @@ impl ResultArgs {
     }
 }
 
-impl Output<'_> {
+impl<'a> Output<'a> {
+    /// The folder, for a command that fills it itself.
+    pub(crate) fn take_folder(&mut self) -> Result<Option<&'a Path>, Failure> {
+        let folder = self.file.take_if(|(_, kind)| *kind == Kind::Folder);
+        if folder.is_some() && self.args.force {
+            let help =
+                "leave it out: a folder that this command wrote is replaced without it, and no other is";
+            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
+        }
+        Ok(folder.map(|(path, _)| path))
+    }
+
     /// Whether a picture is to be written.
     pub(crate) fn wants_picture(&self) -> bool {
         self.figure.is_some() || self.file.is_some_and(|(_, kind)| kind.is_picture() || kind == Kind::Folder)
