@@ -2,7 +2,6 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use catchment::exec::Exec;
 use catchment::report::document::Style;
 use catchment::report::figure::Picture;
 use catchment::report::write::{self, WriteError};
@@ -96,19 +95,6 @@ impl FileArgs {
         };
         check_place(path, self.force)?;
         Ok(Some(kind))
-    }
-
-    /// The path as a folder for many files of this kind, where one is asked for. Refuses what cannot be written in the end,
-    /// before anything is computed.
-    pub(crate) fn folder(&self, kind: &str) -> Result<Option<&Path>, Failure> {
-        if self.force {
-            let help =
-                "leave it out: a folder that this command wrote is replaced without it, and no other is";
-            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
-        }
-        let Some(path) = self.output.as_deref() else { return Ok(None) };
-        write::check_folder(path, kind, &Exec::new())?;
-        Ok(Some(path))
     }
 
     /// Writes a picture of this kind, if a file is asked for.

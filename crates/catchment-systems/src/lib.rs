@@ -19,6 +19,7 @@ pub mod compose;
 pub mod form;
 pub mod invert;
 pub mod latch;
+mod points;
 
 /// Adds the JSON schemas of all reports of systems to a generator.
 #[cfg(feature = "schema")]

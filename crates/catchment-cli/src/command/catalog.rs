@@ -3,9 +3,11 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, OutputArgs, to_stdout};
+use crate::output::{FileArgs, OutputArgs, style, to_stdout};
+use crate::result_args::{ResultArgs, no_picture};
 use catchment::problem::Problem;
-use catchment::report::{csv, figure as figures};
+use catchment::report::document::text;
+use catchment::report::{Body, csv, figure as figures};
 use catchment_systems::catalog::report::{CatalogBody, SystemBody};
 use catchment_systems::catalog::{
     Catalog, Condition, DESIGNS, DesignText, Order, Table, UnknownError, classify, figure,
@@ -80,9 +82,8 @@ struct ShowArgs {
     /// Its name in either table
     #[arg(value_name = "NAME")]
     name: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    result: ResultArgs,
 }
 
 #[derive(Debug, Args)]
@@ -124,10 +125,10 @@ pub(crate) fn run(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     match &args.command {
         None => list(args),
         Some(CatalogCommand::Show(show)) => {
+            let output = show.result.check(SystemBody::KIND, false)?;
             let catalog = Catalog::published()?;
             let report = SystemBody::report(catalog.named(&show.name).map_err(|error| unknown(&error))?);
-            to_stdout(&if show.json { report.to_json()? } else { report.table() })?;
-            Ok(ExitStatus::Done)
+            output.finish(&report, || Err(no_picture()))
         }
         Some(CatalogCommand::Design(design)) => {
             let text = DesignText::named(&design.name).map_or("", |design| design.text);
@@ -175,16 +176,16 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
         Some(Sort::Zraa) => catalog.sorted(Order::Zraa),
     };
     let report = CatalogBody::report(&catalog);
-    let text = if args.json {
+    let printed = if args.json {
         report.to_json()?
     } else if args.csv {
         String::from_utf8_lossy(&csv(&report.records())?).into_owned()
     } else if args.markdown {
         report.markdown()
     } else {
-        report.table()
+        text(&report.described(), style())
     };
-    to_stdout(&text)?;
+    to_stdout(&printed)?;
     Ok(ExitStatus::Done)
 }
 

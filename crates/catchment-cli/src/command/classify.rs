@@ -4,7 +4,8 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::to_stdout;
+use crate::result_args::{ResultArgs, no_picture};
+use catchment::document::Subject;
 use catchment_systems::catalog::report::ClassifyBody;
 use catchment_systems::catalog::{Catalog, classify as classified};
 use clap::Args;
@@ -21,20 +22,19 @@ use clap::Args;
 pub(crate) struct ClassifyArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &ClassifyArgs) -> Result<ExitStatus, Failure> {
+    let output = args.result.check(ClassifyBody::KIND, false)?;
     let catalog = Catalog::published()?;
     let problem = args.design.halves()?;
     let running = args.exec.start()?;
     let found = classified(&problem, &running.exec)?;
     drop(running);
     let report = ClassifyBody::report(problem.design(), &found, &catalog);
-    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    Ok(ExitStatus::Done)
+    output.finish(&report, || Err(no_picture()))
 }

@@ -4,16 +4,15 @@ use crate::args::with_advice;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, tell};
+use crate::result_args::ResultArgs;
 use crate::source::read_table;
 use catchment::design::{Quantity, Unit};
 use catchment::exec::Exec;
-use catchment::report::csv;
 use catchment::report::figure::ensure_fits;
-use catchment::report::schema::WarningReport;
+use catchment::report::{Body, csv};
 use catchment::terminal::shown;
 use catchment_systems::compose::read::{Read, ReadError, read};
-use catchment_systems::compose::{Frames, Settings, compose, figure, outline_records, outline_svg, report};
+use catchment_systems::compose::{ComposeBody, Frames, Settings, compose, figure, outline_svg, report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -30,8 +29,7 @@ use std::path::{Path, PathBuf};
     catchment compose a.csv b.svg --outline -o sum.svg\n                                          the outline alone, to be read again\n\n\
     A region is a table of corners (.csv: x,y or x,y,ring, in mm), the paths of a picture (.svg), a shape and how it \
     moves (.toml with [sweep]: annular-sector, half-ellipse, disc, box, polygon; scale, slide, turn), or a connector \
-    design (.toml with [connector]).\n\n\
-    -o writes the picture (.svg, .png) or the outline (.csv).")]
+    design (.toml with [connector]). Its table for programs (.csv, --csv) is the outline.")]
 pub(crate) struct ComposeArgs {
     /// What the first half sweeps: .csv, .svg, .toml
     #[arg(value_name = "A", value_hint = clap::ValueHint::FilePath)]
@@ -55,17 +53,19 @@ pub(crate) struct ComposeArgs {
     /// Write the outline rather than the picture: .svg or .csv
     #[arg(long, requires = "output")]
     outline: bool,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(if args.outline { &["svg", "csv"] } else { &["svg", "png", "csv"] })?;
+    let outline: &[&'static str] = if args.outline { &["svg", "csv"] } else { &[] };
+    let output = args.result.check_with(ComposeBody::KIND, true, outline)?;
+    if args.outline && output.own().is_none() {
+        let help = "let the name of -o end in .svg or .csv".to_owned();
+        return Err(Failure::with_help("--outline writes no file of this kind".to_owned(), Some(help)));
+    }
     if !matches!(args.keep_out.len(), 0 | 2) {
         let help = "name both bodies, A's first: --keep-out bow.csv,stern.csv".to_owned();
         return Err(Failure::with_help("--keep-out needs two files".to_owned(), Some(help)));
@@ -73,7 +73,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     running.may_be_left();
     let exec = &running.exec;
-    if matches!(kind, Some("svg" | "png")) {
+    if output.wants_picture() {
         ensure_fits(0, exec)?;
     }
     let halves = [region(&args.first, exec)?, region(&args.second, exec)?];
@@ -89,14 +89,12 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
     let found = compose(halves, bodies, &settings, exec)?;
     drop(running);
     let report = report(&found);
-    match kind {
-        Some("csv") => args.file.write(&csv(&outline_records(&found))?)?,
-        Some("svg") if args.outline => args.file.write(outline_svg(&found).as_bytes())?,
-        Some(kind) => args.file.draw(kind, &figure(&found)?)?,
+    match output.own() {
+        Some("csv") => output.write_own(&csv(&report.records())?)?,
+        Some(_) => output.write_own(outline_svg(&found).as_bytes())?,
         None => {}
     }
-    let notes = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
-    tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
+    output.finish(&report, || Ok(figure(&found)?))
 }
 
 fn region(path: &Path, exec: &Exec) -> Result<Read, Failure> {

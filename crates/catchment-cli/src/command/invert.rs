@@ -5,17 +5,17 @@ use crate::args::{quantity, with_advice};
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, tell};
+use crate::result_args::ResultArgs;
 use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Quantity};
+use catchment::document::Subject;
 use catchment::problem::Problem;
 use catchment::report::figure::ensure_fits;
-use catchment::report::schema::WarningReport;
 use catchment::terminal::shown;
 use catchment_systems::invert::{
-    Heights, Limits, MAX_PIECES, Settings, design_file, figure, heights_of, invert, list_of_angles, report,
-    wanted_from_table,
+    Heights, InvertBody, Limits, MAX_PIECES, Settings, design_file, figure, heights_of, invert,
+    list_of_angles, report, wanted_from_table,
 };
 use clap::Args;
 use glam::DMat3;
@@ -33,8 +33,7 @@ use std::path::{Path, PathBuf};
     catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
     catchment invert design.toml --pitch \"-10..10 deg/21\" --yaw 0,\"20 deg\"\n  \
     catchment run new.toml                             what the result accepts\n\n\
-    -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it with\n\
-    the wanted heights (.svg, .png).")]
+    -o FILE.toml writes the pair as a design file, its halves as convex pieces.")]
 pub(crate) struct InvertArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -59,17 +58,14 @@ pub(crate) struct InvertArgs {
     /// Least angle between the surface and the direction of pull
     #[arg(long, value_name = "ANGLE", default_value = "3 deg", value_parser = angle)]
     min_draft: f64,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["toml", "svg", "png"])?;
+    let output = args.result.check_with(InvertBody::KIND, true, &["toml"])?;
     if !(0.0..=100.0).contains(&args.backing) || args.backing == 0.0 {
         let help = "a half needs material: give a number above 0".to_owned();
         return Err(Failure::with_help(format!("--backing {} is no thickness", args.backing), Some(help)));
@@ -83,7 +79,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     running.may_be_left();
     let exec = &running.exec;
-    if matches!(kind, Some("svg" | "png")) {
+    if output.wants_picture() {
         ensure_fits(0, exec)?;
     }
     let of_design =
@@ -102,19 +98,16 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let found = invert(design, connector, level, other.connector(), &settings, exec)?;
     drop(running);
     let report = report(design, &found, Limits { feature_d, draft_rad: args.min_draft });
-    if report.pieces_d.len() > MAX_PIECES && kind == Some("toml") {
-        let help = "want heights on a coarser grid".to_owned();
-        let count = report.pieces_d.len();
-        let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
-        return Err(Failure::with_help(message, Some(help)));
+    if output.own().is_some() {
+        if report.pieces_d.len() > MAX_PIECES {
+            let help = "want heights on a coarser grid".to_owned();
+            let count = report.pieces_d.len();
+            let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
+            return Err(Failure::with_help(message, Some(help)));
+        }
+        output.write_own(design_file(design, &found).as_bytes())?;
     }
-    match kind {
-        Some("toml") => args.file.write(design_file(design, &found).as_bytes())?,
-        Some(kind) => args.file.draw(kind, &figure(design, &found)?)?,
-        None => {}
-    }
-    let notes = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
-    tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
+    output.finish(&report, || Ok(figure(design, &found)?))
 }
 
 /// What a file wants: heights without rotation, or the design whose heights are wanted at every rotation.

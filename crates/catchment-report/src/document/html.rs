@@ -12,7 +12,7 @@ const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf
 
 /// A document as a page; ends with a line break.
 pub fn html(described: &Described<'_>) -> String {
-    let title = described.title;
+    let title = &described.title;
     let mut page = Html::default().fixed(HEAD).text(title).fixed("</title></head><body>\n<h1>");
     page = page.text(title).fixed("</h1>\n");
     for section in &described.document.sections {

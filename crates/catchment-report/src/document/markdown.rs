@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// A document as GitHub's Markdown; ends with a line break.
 pub fn markdown(described: &Described<'_>) -> String {
-    let mut text = format!("# {}\n", escaped(described.title));
+    let mut text = format!("# {}\n", escaped(&described.title));
     for section in &described.document.sections {
         if let Some(title) = &section.title {
             // Writing to a String cannot fail, here and below.

@@ -23,6 +23,7 @@ use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{Document, Subject, Table, rounded};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::ops::{Deref, DerefMut};
 
 /// A result beside the design that it is about. Its fields stand beside `design` in JSON.
@@ -68,15 +69,15 @@ impl<T: Subject> ReportOf<T> {
 /// A report that people read.
 pub trait Printed: Body {
     /// What it is about: the name of the design, as a rule.
-    fn title(&self) -> &str;
+    fn title(&self) -> Cow<'_, str>;
 
     /// Its description, without warnings.
     fn document(&self) -> Document;
 }
 
 impl<T: Subject> Printed for OfDesign<T> {
-    fn title(&self) -> &str {
-        &self.design.name
+    fn title(&self) -> Cow<'_, str> {
+        Cow::Borrowed(&self.design.name)
     }
 
     /// The heading of its design, which what the result says first continues.
@@ -126,8 +127,8 @@ impl<B: Printed> Envelope<B> {
 /// A document with the title and the warnings of its report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Described<'a> {
-    /// The name of the design.
-    pub title: &'a str,
+    /// What the report is about.
+    pub title: Cow<'a, str>,
     /// The document.
     pub document: Document,
     /// Warnings, a sentence or several each.
@@ -180,9 +181,15 @@ pub(crate) mod tests {
         document.table(table);
         document.section(None).paragraph("Every sampled pose of the window docks: 0 failures in 300 000 samples <95 % confidence> and so on to the end of a long line.");
         Described {
+<<<<<<< HEAD
             title: "peg | <socket>\u{1b}[2J",
             document,
             warnings: vec!["2 poses are undecided".to_owned()],
+=======
+            title: "peg | <socket>\u{1b}[2J".into(),
+            document,
+            warnings: vec!["2 poses are undecided"],
+>>>>>>> desc-d
         }
     }
 

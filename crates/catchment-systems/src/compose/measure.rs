@@ -6,6 +6,7 @@
 
 use super::region::{Region, place, sides};
 use glam::DVec2;
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -15,13 +16,17 @@ const SLACK: f64 = 2e-5;
 const MOST_CELLS: usize = 100_000;
 
 /// The largest axis-parallel square in a region.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "LargestSquare"))]
 pub struct Square {
     /// Its centre.
+    #[serde(serialize_with = "crate::points::point")]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub center: DVec2,
     /// Its side.
     pub side: f64,
     /// No square in the region has a longer side than this.
+    #[serde(rename = "side_at_most")]
     pub at_most: f64,
 }
 

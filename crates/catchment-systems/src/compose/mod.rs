@@ -59,7 +59,7 @@ pub use figure::figure;
 pub use overlap::Overlap;
 pub use peak::{Peak, peak};
 pub use region::{REACH, Region, UNIT};
-pub use report::{ComposeBody, ComposeReport, outline_records, outline_svg, report};
+pub use report::{ComposeBody, ComposeReport, outline_svg, report};
 pub use sum::{SumError, minkowski_sum};
 
 use catchment::exec::{Cancelled, Exec};

@@ -1,12 +1,15 @@
-//! What is told of a composition: JSON, a table, outlines for other programs.
+//! The report of a composition: JSON, text, outlines for other programs.
 
+use super::measure::Square;
 use super::read::Read;
 use super::{Composition, Frames, Settings, Slice};
+use catchment::document::{Cell, Column, Document, Table, number, significant};
+use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
-use catchment::report::text::{line, row, significant, wrapped};
-use catchment::report::{Body, Envelope, number};
+use catchment::report::{Body, Envelope};
 use glam::DVec2;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// A composition with its head.
@@ -29,7 +32,7 @@ pub struct ComposeBody {
     /// The region at that heading.
     pub acceptance: RegionReport,
     /// The largest axis-parallel square in it.
-    pub largest_square: Option<SquareReport>,
+    pub largest_square: Option<Square>,
     /// How far −x, +x, −y, +y may be off from the centre of that square.
     pub tolerance: Option<[f64; 4]>,
     /// Side of the largest square about d = 0; null where the halves do not meet there.
@@ -73,26 +76,17 @@ pub struct RegionReport {
     pub holes: usize,
 }
 
-/// A square.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SquareReport {
-    /// Its centre.
-    pub center: [f64; 2],
-    /// Its side.
-    pub side: f64,
-    /// No square in the region has a longer side.
-    pub side_at_most: f64,
-}
-
 /// One heading.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceReport {
     /// Heading.
     pub heading_rad: f64,
     /// Area, within and around.
     pub area: [f64; 2],
+    /// Outlines of its inner region.
+    #[serde(skip)]
+    outlines: Vec<Vec<[f64; 2]>>,
 }
 
 /// The overlap: its largest value, and a grid of it. Bodies that are kept apart take nothing from it.
@@ -143,17 +137,17 @@ impl ComposeBody {
             keep_out: found.bodies.as_ref().map(|[a, b]| [half(a), half(b)]),
             heading_rad: slice.heading,
             acceptance: region(&slice.region),
-            largest_square: found.square.map(|square| SquareReport {
-                center: square.center.to_array(),
-                side: square.side,
-                side_at_most: square.at_most,
-            }),
+            largest_square: found.square,
             tolerance: found.reach.map(|reach| [reach.x[0], reach.x[1], reach.y[0], reach.y[1]]),
             square_about_zero: found.square_about_zero,
             slices: found
                 .slices
                 .iter()
-                .map(|slice| SliceReport { heading_rad: slice.heading, area: slice.region.area() })
+                .map(|slice| SliceReport {
+                    heading_rad: slice.heading,
+                    area: slice.region.area(),
+                    outlines: outlines(slice),
+                })
                 .collect(),
             volume: found.volume,
             overlap: OverlapReport {
@@ -181,7 +175,7 @@ pub(super) fn bracket([inner, outer]: [f64; 2]) -> String {
     if a == b { a } else { format!("{a} … {b}") }
 }
 
-/// What is told of a composition.
+/// The report of a composition.
 pub fn report(found: &Composition) -> ComposeReport {
     let mut warnings: Vec<WarningReport> = Vec::new();
     if found.slices[found.shown].region.inner.parts() == 0 {
@@ -194,110 +188,115 @@ pub fn report(found: &Composition) -> ComposeReport {
     Envelope::of(ComposeBody::new(found), warnings, None)
 }
 
+impl Printed for ComposeBody {
+    fn title(&self) -> Cow<'_, str> {
+        format!("{} and {}: where they meet", self.halves[0].name, self.halves[1].name).into()
+    }
+
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        self.describe_regions(&mut document);
+        self.describe_acceptance(&mut document);
+        if let Some(volume) = self.volume {
+            let [from, to] =
+                [self.slices.first(), self.slices.last()].map(|s| degrees(s.map_or(0.0, |s| s.heading_rad)));
+            document
+                .titled(Some(format!("over {} headings, {from} to {to}", self.slices.len())))
+                .row("volume", format!("{} {}²·rad", bracket(volume), self.unit));
+        }
+        if self.halves.iter().any(|half| !half.notes.is_empty()) {
+            document.section(None);
+        }
+        for half in &self.halves {
+            for note in &half.notes {
+                document.row("note", format!("{}: {note}", half.name));
+            }
+        }
+        document.table(self.outline_table());
+        document
+    }
+}
+
 impl ComposeBody {
-    /// The composition for a person.
-    pub fn table(&self) -> String {
-        let (text, unit) = (&mut String::new(), self.unit);
-        line(text, &format!("{} and {}: where they meet", self.halves[0].name, self.halves[1].name));
+    fn describe_regions(&self, document: &mut Document) {
         let frames = match self.settings.frames {
             Frames::Own => "own: both face +y, the second is mounted by a half turn",
             Frames::World => "world: the second is drawn as it stands before the first",
         };
-        row(text, "frames", frames);
-        let shape = |region: &RegionReport| {
-            let plural = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
-            format!(
-                "{} {unit}²  in {} with {}",
-                bracket(region.area),
-                plural(region.parts, "part"),
-                plural(region.holes, "hole")
-            )
-        };
-        for (name, half) in ["A", "B"].into_iter().zip(&self.halves) {
-            row(text, name, &format!("{}  ({})", shape(&half.region), half.name));
+        document.row("frames", frames);
+        let bodies = self.keep_out.iter().flatten();
+        let names = ["A", "B", "body of A", "body of B"];
+        for (name, half) in names.into_iter().zip(self.halves.iter().chain(bodies)) {
+            document.row(name, format!("{}  ({})", self.shape(&half.region), half.name));
         }
-        for (name, body) in ["body of A", "body of B"].into_iter().zip(self.keep_out.iter().flatten()) {
-            row(text, name, &format!("{}  ({})", shape(&body.region), body.name));
-        }
-        let degrees = |angle: f64| format!("{}°", significant(angle.to_degrees()));
-        line(text, &format!("  at heading {}", degrees(self.heading_rad)));
-        row(text, "acceptance", &shape(&self.acceptance));
+    }
+
+    fn describe_acceptance(&self, document: &mut Document) {
+        let unit = self.unit;
+        document
+            .titled(Some(format!("at heading {}", degrees(self.heading_rad))))
+            .row("acceptance", self.shape(&self.acceptance));
         let bounds = |[[x0, y0], [x1, y1]]: [[f64; 2]; 2]| {
             let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(significant);
             format!("x {x0} … {x1}, y {y0} … {y1} {unit}")
         };
         if let Some(inner) = self.acceptance.bounds.map(bounds) {
-            row(text, "bounds", &inner);
-            if let Some(outer) = self.acceptance.bounds_outer.map(bounds).filter(|outer| *outer != inner) {
-                row(text, "no farther than", &outer);
+            let outer = self.acceptance.bounds_outer.map(bounds).filter(|outer| *outer != inner);
+            document.row("bounds", inner);
+            if let Some(outer) = outer {
+                document.row("no farther than", outer);
             }
         }
         match (self.largest_square, self.tolerance) {
             (Some(square), Some(reach)) => {
-                let [x, y] = square.center.map(significant);
-                row(
-                    text,
-                    "largest square",
-                    &format!("{} {unit} about x {x}, y {y}", significant(square.side)),
-                );
+                let [x, y] = square.center.to_array().map(significant);
+                let side = significant(square.side);
                 let [a, b, c, d] = reach.map(significant);
-                row(text, "from there", &format!("x -{a} … +{b}, y -{c} … +{d} {unit}"));
+                document
+                    .row("largest square", format!("{side} {unit} about x {x}, y {y}"))
+                    .row("from there", format!("x -{a} … +{b}, y -{c} … +{d} {unit}"));
             }
-            _ => row(text, "largest square", "none"),
+            _ => {
+                document.row("largest square", "none");
+            }
         }
         if let Some(side) = self.square_about_zero {
-            row(text, "about d = 0", &format!("a square of {} {unit}", significant(side)));
+            document.row("about d = 0", format!("a square of {} {unit}", significant(side)));
         }
         let [x, y] = self.overlap.at.map(significant);
-        row(
-            text,
-            "overlap",
-            &format!(
-                "largest {} {unit}², at x {x}, y {y}",
-                bracket([self.overlap.largest, self.overlap.at_most])
-            ),
-        );
-        if let Some(volume) = self.volume {
-            let [from, to] =
-                [self.slices.first(), self.slices.last()].map(|s| s.map_or(0.0, |s| s.heading_rad));
-            line(
-                text,
-                &format!("  over {} headings, {} to {}", self.slices.len(), degrees(from), degrees(to)),
-            );
-            row(text, "volume", &format!("{} {unit}²·rad", bracket(volume)));
+        let largest = bracket([self.overlap.largest, self.overlap.at_most]);
+        document.row("overlap", format!("largest {largest} {unit}², at x {x}, y {y}"));
+    }
+
+    fn shape(&self, region: &RegionReport) -> String {
+        let plural = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
+        let (parts, holes) = (plural(region.parts, "part"), plural(region.holes, "hole"));
+        format!("{} {}²  in {parts} with {holes}", bracket(region.area), self.unit)
+    }
+
+    /// Outlines of the inner region, which can be read again: `x,y,ring`, and the heading where there are several.
+    fn outline_table(&self) -> Table {
+        let unit = self.unit;
+        let mut columns = vec![format!("x [{unit}]"), format!("y [{unit}]"), "ring".to_owned()];
+        let several = self.slices.len() > 1;
+        if several {
+            columns.push("heading_deg".to_owned());
         }
-        for half in &self.halves {
-            for note in &half.notes {
-                wrapped(text, "  note: ", &format!("{}: {note}", half.name));
+        let mut table = Table::new(columns.into_iter().map(Column::data));
+        let rings = self.slices.iter().flat_map(|slice| slice.outlines.iter().map(move |ring| (slice, ring)));
+        for (k, (slice, ring)) in rings.enumerate() {
+            let heading = several.then(|| slice.heading_rad.to_degrees().into());
+            for [x, y] in ring {
+                table
+                    .push([Cell::from(*x), Cell::from(*y), Cell::from(k)].into_iter().chain(heading.clone()));
             }
         }
-        std::mem::take(text)
+        table
     }
 }
 
-/// Outlines of the inner region as records, to be read again: `x,y,ring`, and the heading where there are several.
-pub fn outline_records(found: &Composition) -> Vec<Vec<String>> {
-    let unit = found.halves[0].measure.symbol();
-    let mut names = vec![format!("x [{unit}]"), format!("y [{unit}]"), "ring".to_owned()];
-    let several = found.slices.len() > 1;
-    if several {
-        names.push("heading_deg".to_owned());
-    }
-    let mut records = vec![names];
-    let mut ring = 0;
-    for slice in &found.slices {
-        for outline in outlines(slice) {
-            for [x, y] in outline {
-                let mut record = vec![number(x), number(y), ring.to_string()];
-                if several {
-                    record.push(number(slice.heading.to_degrees()));
-                }
-                records.push(record);
-            }
-            ring += 1;
-        }
-    }
-    records
+fn degrees(angle: f64) -> String {
+    format!("{}°", significant(angle.to_degrees()))
 }
 
 /// Outlines of the inner region at the heading shown as a drawing of that size, to be read again.

@@ -254,7 +254,7 @@ fn the_shipped_example_is_the_one_of_the_page() {
     assert!(figure(&found).unwrap().png(1.0).unwrap().len() > 1000);
     // What is written is read again, to the digit.
     let svg = read(SourceText::new("sum.svg", outline_svg(&found)), &Exec::new()).unwrap();
-    let table = catchment::report::csv(&outline_records(&found)).unwrap();
+    let table = catchment::report::csv(&told.records()).unwrap();
     let table = read(SourceText::new("sum.csv", String::from_utf8(table).unwrap()), &Exec::new()).unwrap();
     let inner = found.slices[0].region.inner.area();
     // Corners of the drawing go through a scale of one, rounded.

@@ -6,15 +6,21 @@ use super::{NARROW, REACHED, SIDEWAYS};
 use catchment::connector::Half;
 use catchment::method::zraa::area;
 use glam::{DVec2, DVec3};
+use serde::Serialize;
 
 /// Where heights are wanted that no moving half reaches.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Shortfall {
-    /// Offsets, a convex polygon, in D.
+    /// Corners of the offsets, a convex polygon, in D.
+    #[serde(serialize_with = "crate::points::points")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<[f64; 2]>"))]
     pub polygon: Vec<DVec2>,
     /// Largest h* − h over it, in D.
     pub most: f64,
-    /// Where.
+    /// The offset of that, in D.
+    #[serde(serialize_with = "crate::points::point")]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub at: DVec2,
 }
 
@@ -42,17 +48,17 @@ pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> 
 }
 
 /// The deepest of every place, in order, at most so many: polygons that meet at a corner name it once.
-pub(super) fn places(shortfalls: &[Shortfall], most: usize) -> Vec<&Shortfall> {
-    let mut told: Vec<&Shortfall> = Vec::new();
+pub(super) fn places(shortfalls: &[Shortfall], most: usize) -> Vec<Shortfall> {
+    let mut places: Vec<Shortfall> = Vec::new();
     for short in shortfalls {
-        if told.len() == most {
+        if places.len() == most {
             break;
         }
-        if told.iter().all(|other| other.at.distance(short.at) > 2.0 * SIDEWAYS) {
-            told.push(short);
+        if places.iter().all(|other| other.at.distance(short.at) > 2.0 * SIDEWAYS) {
+            places.push(short.clone());
         }
     }
-    told
+    places
 }
 
 /// Area of the plan on which both surfaces are in contact at offset 0 and this height.

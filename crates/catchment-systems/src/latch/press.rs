@@ -50,6 +50,18 @@ pub enum Contact {
     Latched,
 }
 
+impl Contact {
+    /// Its name, as in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Apart => "apart",
+            Self::Profile => "profile",
+            Self::Wall => "wall",
+            Self::Latched => "latched",
+        }
+    }
+}
+
 /// One layer at one position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

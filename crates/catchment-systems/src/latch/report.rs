@@ -1,14 +1,16 @@
-//! What is found of a latch: as versioned JSON and as text.
+//! The report of a latch: JSON, text, the record of a press.
 
 use super::force::{Failure, Forces, Latching};
 use super::measured::{THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
-use super::press::{Dip, Record};
+use super::press::{Dip, Position, Record};
 use super::rules::{play, rules};
 use super::{Geometry, Latch, Rule, Verdict, stiffness};
+use catchment::document::{Cell, Column, Document, Table};
+use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
-use catchment::report::text::{line, row, wrapped};
 use catchment::report::{Body, Envelope};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// A latch and what is found of it, with its head.
 pub type LatchReport = Envelope<LatchBody>;
@@ -87,20 +89,17 @@ pub struct PressReport {
     pub first_contact_mm: f64,
     /// Where hooks pass.
     pub dips: Vec<Dip>,
+    /// Position by position, the last is the deepest.
+    #[serde(skip)]
+    positions: Vec<Position>,
 }
 
 impl Body for LatchBody {
     const KIND: &'static str = "latch";
 }
 
-/// The report of a latch whose geometry and press are known; `files` were written.
-pub fn report(
-    latch: &Latch,
-    geometry: &Geometry,
-    forces: &Forces,
-    record: &Record,
-    files: Vec<String>,
-) -> LatchReport {
+/// The report of a latch whose geometry and press are known, without files.
+pub fn report(latch: &Latch, geometry: &Geometry, forces: &Forces, record: &Record) -> LatchReport {
     let (lever, profile) = (geometry.lever(), &geometry.profile);
     let (latching, failure) = (forces.latching(latch, geometry), forces.failure(latch));
     let [low, high] = latching.interval_n;
@@ -145,167 +144,165 @@ pub fn report(
             peak_above_mm: record.peak_above,
             first_contact_mm: record.first_contact,
             dips: record.dips.clone(),
+            positions: record.positions.clone(),
         },
         latching,
         failure,
         rules,
-        files,
+        files: Vec::new(),
     };
     Envelope::of(body, warnings.iter().map(WarningReport::note).collect(), None)
 }
 
-impl LatchBody {
-    /// The latch for a person; its doubts are the envelope's.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        let (d, o) = (&self.design, &self.outline);
-        line(&mut text, &d.name);
-        line(&mut text, &"─".repeat(d.name.chars().count().clamp(8, 60)));
-        row(
-            &mut text,
-            "part",
-            &format!(
-                "{} mm wide, overhang {}, neck {}, hook {}, sheet {} mm",
-                d.width, d.overhang, d.neck, d.hook, d.sheet
-            ),
-        );
-        row(
-            &mut text,
-            "profile",
-            &format!(
-                "{:.1}° at the edge, {:.1}° at the hook, {:.2} mm high",
-                o.start_deg, o.end_deg, o.height_mm
-            ),
-        );
-        row(
-            &mut text,
-            "pivot P",
-            &format!(
-                "x {:.2}, y {:.2} mm; hook {:.2} mm across, {:.2} mm up",
-                o.pivot_mm[0], o.pivot_mm[1], o.lever_mm[0], o.lever_mm[1]
-            ),
-        );
-        line(&mut text, "");
-        self.forces(&mut text);
-        line(&mut text, "");
-        line(&mut text, "  rules   D stated by the dissertation, I our reading");
-        for rule in &self.rules {
-            let mark = match rule.verdict {
-                Verdict::Holds => "ok",
-                Verdict::Doubt => "doubt",
-                Verdict::Broken => "broken",
-            };
-            let first = format!("  {mark:<6}{}  ", rule.basis.letter());
-            wrapped(&mut text, &first, &format!("{}: {}", rule.rule, rule.found));
-            wrapped(&mut text, "           ", &format!("because {}", rule.reason));
-        }
-        if !self.files.is_empty() {
-            line(&mut text, "");
-            wrapped(&mut text, "  files          ", &self.files.join(", "));
-        }
-        text
+impl Printed for LatchBody {
+    fn title(&self) -> Cow<'_, str> {
+        Cow::Borrowed(&self.design.name)
     }
 
-    fn forces(&self, text: &mut String) {
+    fn document(&self) -> Document {
+        let (d, o) = (&self.design, &self.outline);
+        let mut document = Document::default();
+        document
+            .row(
+                "part",
+                format!(
+                    "{} mm wide, overhang {}, neck {}, hook {}, sheet {} mm",
+                    d.width, d.overhang, d.neck, d.hook, d.sheet
+                ),
+            )
+            .row(
+                "profile",
+                format!(
+                    "{:.1}° at the edge, {:.1}° at the hook, {:.2} mm high",
+                    o.start_deg, o.end_deg, o.height_mm
+                ),
+            )
+            .row(
+                "pivot P",
+                format!(
+                    "x {:.2}, y {:.2} mm; hook {:.2} mm across, {:.2} mm up",
+                    o.pivot_mm[0], o.pivot_mm[1], o.lever_mm[0], o.lever_mm[1]
+                ),
+            );
+        self.describe_forces(&mut document);
+        document
+            .section("rules")
+            .paragraph("Basis: D stated by the dissertation, I our reading.")
+            .table(self.rule_table());
+        if !self.files.is_empty() {
+            document.section(None).row("files", self.files.join(", "));
+        }
+        document.table(self.press.table());
+        document
+    }
+}
+
+impl LatchBody {
+    fn describe_forces(&self, document: &mut Document) {
         let (latching, failure) = (&self.latching, &self.failure);
-        row(
-            text,
-            "stiffness k",
-            &format!(
-                "{:.4} N·m/rad per layer; a wide neck up to {:.3}",
-                self.stiffness_nm_per_rad, self.stiffness_plane_strain_nm_per_rad
-            ),
-        );
-        wrapped(
-            text,
-            &" ".repeat(17),
-            "l_eq is not stated: its default of 6 mm was set from the stated 4.99 N·m/rad",
-        );
-        let [low, high] = latching.interval_n;
-        row(
-            text,
-            "to latch",
-            &format!(
-                "{:.1} N   ({low:.1} … {high:.1}: one standard error of a new design)",
-                latching.force_n
-            ),
-        );
-        let normal = format!(
-            "the spring alone, friction {}: {:.2} N per layer, too little by the measurements",
-            self.design.press.friction, latching.spring_n
-        );
-        wrapped(text, &" ".repeat(17), &normal);
         let bound = if failure.upper_bound { "at most " } else { "" };
-        row(
-            text,
-            "to break",
-            &format!(
-                "{bound}{:.0} N   mode: {}; necks tear at {:.1} MPa",
-                failure.force_n,
-                failure.mode.name(),
-                self.neck_strength_mpa
-            ),
-        );
+        let [low, high] = latching.interval_n;
+        document
+            .section(None)
+            .row(
+                "stiffness k",
+                format!(
+                    "{:.4} N·m/rad per layer; a wide neck up to {:.3}",
+                    self.stiffness_nm_per_rad, self.stiffness_plane_strain_nm_per_rad
+                ),
+            )
+            .more("l_eq is not stated: its default of 6 mm was set from the stated 4.99 N·m/rad")
+            .row(
+                "to latch",
+                format!(
+                    "{:.1} N   ({low:.1} … {high:.1}: one standard error of a new design)",
+                    latching.force_n
+                ),
+            )
+            .more(format!(
+                "the spring alone, friction {}: {:.2} N per layer, too little by the measurements",
+                self.design.press.friction, latching.spring_n
+            ))
+            .row(
+                "to break",
+                format!(
+                    "{bound}{:.0} N   mode: {}; necks tear at {:.1} MPa",
+                    failure.force_n,
+                    failure.mode.name(),
+                    self.neck_strength_mpa
+                ),
+            );
         let [low, high] = self.bonding_ratio_interval;
-        row(text, "bonding ratio", &format!("{bound}{:.1}   ({low:.1} … {high:.1})", self.bonding_ratio));
-        row(
-            text,
-            "pressed",
-            &format!(
-                "springs and friction: first contact {:.2} mm above the seat,",
-                self.press.first_contact_mm
-            ),
-        );
-        let peak = format!("at most {:.2} N, {:.2} mm above it", self.press.peak_n, self.press.peak_above_mm);
-        wrapped(text, &" ".repeat(17), &peak);
-        if self.press.peak_share_of_latching < 1.0 {
-            let measured = self.press.measured_latching_n;
-            let measured = measured
-                .map_or_else(String::new, |force| format!("; the prototype of these sizes took {force} N"));
-            let less = format!(
-                "that is {:.2} of the {:.1} N to latch, which are fitted to measurements{measured}. Read the shape of \
-                 this record, not its height",
-                self.press.peak_share_of_latching, latching.force_n
-            );
-            wrapped(text, &" ".repeat(17), &less);
-        }
-        for dip in &self.press.dips {
-            let told = format!(
-                "layer {} snaps {:.2} mm beyond the seat: {:.2} → {:.2} N",
-                dip.layer, -dip.above, dip.from, dip.to
-            );
-            wrapped(text, &" ".repeat(17), &told);
-        }
-        row(
-            text,
+        document.row("bonding ratio", format!("{bound}{:.1}   ({low:.1} … {high:.1})", self.bonding_ratio));
+        self.describe_press(document);
+        document.row(
             "neck",
-            &format!(
+            format!(
                 "strain {:.2} % as hooks pass; play in tension {:.2}°",
                 100.0 * self.neck_strain,
                 self.play_deg
             ),
         );
     }
+
+    fn describe_press(&self, document: &mut Document) {
+        let press = &self.press;
+        document.row(
+            "pressed",
+            format!(
+                "springs and friction: first contact {:.2} mm above the seat, at most {:.2} N, {:.2} mm above it",
+                press.first_contact_mm, press.peak_n, press.peak_above_mm
+            ),
+        );
+        if press.peak_share_of_latching < 1.0 {
+            let measured = press
+                .measured_latching_n
+                .map_or_else(String::new, |force| format!("; the prototype of these sizes took {force} N"));
+            document.more(format!(
+                "that is {:.2} of the {:.1} N to latch, which are fitted to measurements{measured}. Read the shape of \
+                 this record, not its height",
+                press.peak_share_of_latching, self.latching.force_n
+            ));
+        }
+        for dip in &press.dips {
+            document.more(format!(
+                "layer {} snaps {:.2} mm beyond the seat: {:.2} → {:.2} N",
+                dip.layer, -dip.above, dip.from, dip.to
+            ));
+        }
+    }
+
+    fn rule_table(&self) -> Table {
+        let mut table = Table::new(["verdict", "basis", "rule"].map(|title| Column::new(title).left()));
+        for Rule { verdict, basis, rule, found, reason, .. } in &self.rules {
+            let verdict = match verdict {
+                Verdict::Holds => "ok",
+                Verdict::Doubt => "doubt",
+                Verdict::Broken => "broken",
+            };
+            let rule = format!("{rule}: {found}, because {reason}");
+            table.push([verdict.into(), basis.letter().into(), rule.into()]);
+        }
+        table
+    }
 }
 
-/// The press as records for programs, the names of the columns first.
-pub fn press_records(record: &Record) -> Vec<Vec<String>> {
-    use catchment::report::number;
-    let layers = record.positions.first().map_or(0, |p| p.layers.len());
-    let mut head = vec!["above_mm".to_owned(), "force_n".to_owned()];
-    for k in 1..=layers {
-        head.extend(["contact", "swing_rad", "force_n"].map(|name| format!("layer_{k}_{name}")));
-    }
-    let mut records = vec![head];
-    for position in &record.positions {
-        let mut cells = vec![number(position.above), number(position.force)];
-        for hold in &position.layers {
-            let contact = format!("{:?}", hold.contact).to_lowercase();
-            cells.extend([contact, number(hold.swing), number(hold.force)]);
+impl PressReport {
+    /// The press for programs.
+    fn table(&self) -> Table {
+        let layers = self.positions.first().map_or(0, |position| position.layers.len());
+        let of_layers = (1..=layers)
+            .flat_map(|k| ["contact", "swing_rad", "force_n"].map(|name| format!("layer_{k}_{name}")));
+        let columns = ["above_mm", "force_n"].map(str::to_owned).into_iter().chain(of_layers);
+        let mut table = Table::new(columns.map(Column::data));
+        for position in &self.positions {
+            let layers = position.layers.iter().flat_map(|hold| -> [Cell; 3] {
+                [hold.contact.name().into(), hold.swing.into(), hold.force.into()]
+            });
+            table.push([position.above.into(), position.force.into()].into_iter().chain(layers));
         }
-        records.push(cells);
+        table
     }
-    records
 }
 
 #[cfg(test)]
@@ -316,11 +313,11 @@ mod tests {
     fn report(latch: &Latch) -> LatchReport {
         let geometry = Geometry::of(latch).unwrap();
         let record = record(latch, &geometry).unwrap();
-        super::report(latch, &geometry, &Forces::new().unwrap(), &record, Vec::new())
+        super::report(latch, &geometry, &Forces::new().unwrap(), &record)
     }
 
     #[test]
-    fn the_defaults_are_told_without_doubt_in_eighty_columns() {
+    fn the_defaults_are_without_doubt_and_fit_eighty_columns() {
         let report = report(&Latch::default());
         let text = report.table();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");

@@ -3,9 +3,11 @@
 use super::fit::{Fit, Law, Point, latching};
 use super::force::Forces;
 use super::measured::{Measured, Mode, THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
-use catchment::report::text::{line, wrapped};
-use catchment::report::{Body, Envelope, number};
+use catchment::document::{Column, Document, Format, Table};
+use catchment::report::document::Printed;
+use catchment::report::{Body, Envelope};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Table 6.1 beside the model, with its head.
 pub type TableReport = Envelope<TableBody>;
@@ -101,117 +103,102 @@ pub fn report(forces: &Forces) -> TableReport {
     Envelope::of(body, Vec::new(), None)
 }
 
-impl TableBody {
-    /// The table for a person.
-    pub fn table(&self) -> String {
-        let mut text = String::new();
-        let out = &mut text;
-        line(out, "Table 6.1: nine prototypes, measured (± 1 N) beside the model");
-        line(out, "");
-        line(out, "                to latch [N]         to break [N]             ratio");
-        line(out, "    o    t  measured  model  1 out  measured  model  mode  printed  model");
-        for row in &self.rows {
-            let m = &row.measured;
-            line(
-                out,
-                &format!(
-                    "  {:>3.1}  {:>3.1}  {:>8.2}  {:>5.1}  {:>5.1}  {:>8.2}  {:>5.0}  {:<4}  {:>7.1}  {:>5.1}",
-                    m.overhang_mm,
-                    m.neck_mm,
-                    m.latching_force_n,
-                    row.latching_model_n,
-                    row.latching_left_out_n,
-                    m.failure_force_n,
-                    row.failure_model_n,
-                    row.mode.name(),
-                    m.bonding_ratio,
-                    row.ratio_model
-                ),
-            );
-        }
-        line(out, "  1 out: by a fit to the other eight");
-        line(out, "");
-        line(out, "  force to latch, natural-log residuals      rms   left out: rms    max");
-        for fit in &self.fits {
-            let parameters: Vec<String> = fit.parameters.iter().map(|p| format!("{p:.4}")).collect();
-            let name = format!("{}   {}", fit.formula, parameters.join(", "));
-            line(
-                out,
-                &format!(
-                    "  {name:<40}{:>6.3}          {:>6.3}  {:>5.2}",
-                    fit.rms, fit.left_out_rms, fit.left_out_max
-                ),
-            );
-        }
-        line(out, "");
-        wrapped(
-            out,
-            "  necks   ",
-            &format!(
-                "{:.1} N/mm · t for the six that broke there, {:.1} MPa over both layers",
-                self.neck_line_n_per_mm, self.neck_strength_mpa
-            ),
-        );
-        let [c, p, q] = self.k_extension.parameters[..] else { return text };
-        wrapped(
-            out,
-            "  k_E     ",
-            &format!(
-                "{c:.1}·o^{p:.2}·t^{q:.2} N/mm, rms {:.2}; k_C scatters (rms {:.2}): no model",
-                self.k_extension.rms, self.k_compression.rms
-            ),
-        );
-        wrapped(
-            out,
-            "  three-sided, o 5.1, t 3.0   ",
-            &format!(
-                "{THREE_SIDED_LATCHING} N to latch, {THREE_SIDED_FAILURE} N to break; softer by design, not modelled"
-            ),
-        );
-        line(out, "");
-        line(out, "  where the source does not agree with itself");
-        for contradiction in &self.contradictions {
-            wrapped(out, "  - ", contradiction);
-        }
-        text
+impl Printed for TableBody {
+    fn title(&self) -> Cow<'_, str> {
+        "Table 6.1: nine prototypes, measured (± 1 N) beside the model".into()
     }
 
-    /// The rows as records for programs, the names of the columns first.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let head = [
-            "overhang_mm",
-            "neck_mm",
-            "latching_force_n",
-            "latching_model_n",
-            "latching_left_out_n",
-            "failure_force_n",
-            "failure_model_n",
-            "mode",
-            "bonding_ratio",
-            "ratio_model",
-            "k_compression_n_per_mm",
-            "k_extension_n_per_mm",
-        ];
-        let mut records = vec![head.map(str::to_owned).to_vec()];
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        document
+            .table(self.prototypes())
+            .paragraph("o: overhang, t: neck, in mm. 1 out: by a fit to the other eight.")
+            .section("force to latch, natural-log residuals")
+            .table(self.fit_table())
+            .section(None)
+            .row(
+                "necks",
+                format!(
+                    "{:.1} N/mm · t for the six that broke there, {:.1} MPa over both layers",
+                    self.neck_line_n_per_mm, self.neck_strength_mpa
+                ),
+            );
+        if let [c, p, q] = self.k_extension.parameters[..] {
+            document.row(
+                "k_E",
+                format!(
+                    "{c:.1}·o^{p:.2}·t^{q:.2} N/mm, rms {:.2}; k_C scatters (rms {:.2}): no model",
+                    self.k_extension.rms, self.k_compression.rms
+                ),
+            );
+        }
+        document.row(
+            "three-sided",
+            format!(
+                "o 5.1, t 3.0: {THREE_SIDED_LATCHING} N to latch, {THREE_SIDED_FAILURE} N to break; softer by design, not modelled"
+            ),
+        );
+        document.section("where the source does not agree with itself");
+        for contradiction in &self.contradictions {
+            document.paragraph(format!("- {contradiction}"));
+        }
+        document
+    }
+}
+
+impl TableBody {
+    fn prototypes(&self) -> Table {
+        let column = |title: &str, key: &str, decimals: usize| {
+            Column::new(title).key(key).format(Format::Fixed(decimals))
+        };
+        let mut table = Table::new([
+            column("o", "overhang_mm", 1),
+            column("t", "neck_mm", 1),
+            column("to latch [N]", "latching_force_n", 2),
+            column("model", "latching_model_n", 1),
+            column("1 out", "latching_left_out_n", 1),
+            column("to break [N]", "failure_force_n", 2),
+            column("model", "failure_model_n", 0),
+            Column::new("mode").key("mode").left(),
+            column("ratio", "bonding_ratio", 1),
+            column("model", "ratio_model", 1),
+            Column::data("k_compression_n_per_mm"),
+            Column::data("k_extension_n_per_mm"),
+        ]);
         for row in &self.rows {
             let m = &row.measured;
-            let mut cells: Vec<String> = [
-                m.overhang_mm,
-                m.neck_mm,
-                m.latching_force_n,
-                row.latching_model_n,
-                row.latching_left_out_n,
-                m.failure_force_n,
-                row.failure_model_n,
-            ]
-            .map(number)
-            .to_vec();
-            cells.push(row.mode.name().to_owned());
-            let rest = [m.bonding_ratio, row.ratio_model, m.k_compression_n_per_mm, m.k_extension_n_per_mm];
-            cells.extend(rest.map(number));
-            records.push(cells);
+            table.push([
+                m.overhang_mm.into(),
+                m.neck_mm.into(),
+                m.latching_force_n.into(),
+                row.latching_model_n.into(),
+                row.latching_left_out_n.into(),
+                m.failure_force_n.into(),
+                row.failure_model_n.into(),
+                row.mode.name().into(),
+                m.bonding_ratio.into(),
+                row.ratio_model.into(),
+                m.k_compression_n_per_mm.into(),
+                m.k_extension_n_per_mm.into(),
+            ]);
         }
-        records
+        table
+    }
+
+    fn fit_table(&self) -> Table {
+        let column = |title: &str, decimals| Column::new(title).format(Format::Fixed(decimals));
+        let mut table = Table::new([
+            Column::new("law, its parameters").left(),
+            column("rms", 3),
+            column("rms, 1 out", 3),
+            column("max, 1 out", 2),
+        ]);
+        for fit in &self.fits {
+            let parameters: Vec<String> = fit.parameters.iter().map(|p| format!("{p:.4}")).collect();
+            let law = format!("{}   {}", fit.formula, parameters.join(", "));
+            table.push([law.into(), fit.rms.into(), fit.left_out_rms.into(), fit.left_out_max.into()]);
+        }
+        table
     }
 }
 

@@ -1,4 +1,4 @@
-//! The catalogue as versioned JSON, as text, as CSV and as Markdown.
+//! Reports of the catalogue, of one of its systems, and of a design among them.
 
 use super::attribute::{Attribute, Oddity};
 use super::classify::{Classified, Ratio};
@@ -6,21 +6,31 @@ use super::data::{Catalog, Source, System};
 use super::facts::{Fact, Number, numbers};
 use super::rule::{Extents, HIGH};
 use catchment::design::Design;
-use catchment::report::text::{line, number, row, significant, wrapped};
-use catchment::report::{Body, Envelope};
+use catchment::document::{Cell, Column, Document, Subject, Table, significant};
+use catchment::report::document::Printed;
+use catchment::report::text::line;
+use catchment::report::{Body, Envelope, ReportOf};
 use catchment::terminal::printable;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The catalogue, with its head.
 pub type CatalogReport = Envelope<CatalogBody>;
 /// A design among the published systems, with its head.
-pub type ClassifyReport = Envelope<ClassifyBody>;
+pub type ClassifyReport = ReportOf<ClassifyBody>;
 /// One system, with its head.
 pub type SystemReport = Envelope<SystemBody>;
 
 /// What stands where nothing is known.
 const NOTHING: &str = "–";
+
+/// What the star stands for.
+const ESTIMATED: &str = "* marked as an estimate in the source";
+
+/// The attributes that say most.
+const OVERVIEW: [Attribute; 4] =
+    [Attribute::Introduced, Attribute::SelfAligningDegree, Attribute::Gendering, Attribute::ConnectionType];
 
 /// Rows of the catalogue.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,8 +76,6 @@ pub struct ValueReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ClassifyBody {
-    /// The design, resolved: lengths in D, angles in radians.
-    pub design: Design,
     /// The degree by the rule.
     pub degree: &'static str,
     /// How far the accepted offsets reach through zero, in D.
@@ -92,10 +100,6 @@ impl Body for CatalogBody {
 
 impl Body for SystemBody {
     const KIND: &'static str = "catalog-system";
-}
-
-impl Body for ClassifyBody {
-    const KIND: &'static str = "classify";
 }
 
 impl SystemBody {
@@ -124,6 +128,11 @@ impl SystemBody {
         self.attributes.as_ref()?.get(attribute.key())
     }
 
+    /// Why the printed value of an attribute has another normal form. What an appended design leaves open is no oddity of the source.
+    fn oddity(&self, attribute: Attribute) -> Option<&'static Oddity> {
+        attribute.oddity(self.printed(attribute)).filter(|_| self.source != Source::Appended)
+    }
+
     fn printed(&self, attribute: Attribute) -> &str {
         self.value(attribute).map_or(NOTHING, |value| value.printed.as_str())
     }
@@ -145,6 +154,36 @@ fn shown(value: f64) -> String {
     }
 }
 
+impl Printed for CatalogBody {
+    fn title(&self) -> Cow<'_, str> {
+        "Published docking systems".into()
+    }
+
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        document.table(self.overview()).paragraph(format!("{} systems", self.systems.len()));
+        if self.systems.iter().any(|system| system.estimated) {
+            document.paragraph(ESTIMATED);
+        }
+        let mut odd: Vec<&Oddity> = Vec::new();
+        let all = self.systems.iter().flat_map(|system| OVERVIEW.map(|attribute| system.oddity(attribute)));
+        for oddity in all.flatten() {
+            if !odd.contains(&oddity) {
+                odd.push(oddity);
+            }
+        }
+        for Oddity { attribute, printed, normal, reason } in odd {
+            let attribute = attribute.title();
+            document.paragraph(format!("! {printed} ({attribute}) is read as {normal} [I]: {reason}"));
+        }
+        if self.systems.iter().any(|system| system.source == Source::Appended) {
+            document.paragraph("The area, degree and gendering of an appended design are computed.");
+        }
+        document.table(self.data());
+        document
+    }
+}
+
 impl CatalogBody {
     /// The report of a catalogue.
     pub fn report(catalog: &Catalog) -> CatalogReport {
@@ -152,73 +191,47 @@ impl CatalogBody {
         Envelope::of(Self { systems }, Vec::new(), None)
     }
 
-    /// For a person: the attributes that say most.
-    pub fn table(&self) -> String {
-        /// Width of the names.
+    /// The attributes that say most, for people.
+    fn overview(&self) -> Table {
+        /// The longest name that is shown in full.
         const NAME: usize = 17;
-        const COLUMNS: [(Attribute, usize); 4] = [
-            (Attribute::Introduced, 11),
-            (Attribute::SelfAligningDegree, 8),
-            (Attribute::Gendering, 11),
-            (Attribute::ConnectionType, 14),
-        ];
-        let text = &mut String::new();
-        line(text, "  system            introduced  degree   gendering   type            ZRAA [D²]");
-        let mut odd: Vec<&Oddity> = Vec::new();
+        let column = |title: &str| Column::new(title).left();
+        let titles = ["system", "introduced", "degree", "gendering", "type"].map(column);
+        let mut table = Table::new(titles.into_iter().chain([Column::new("ZRAA [D²]")]));
         for system in &self.systems {
-            let mut told = vec![format!("  {:<NAME$}", cut(&system.system, NAME))];
-            for (attribute, width) in COLUMNS {
-                let printed = system.printed(attribute);
-                let oddity = attribute.oddity(printed);
-                // What an appended design leaves open is no oddity of the source.
-                let mark = oddity.filter(|_| system.source != Source::Appended).map_or("", |_| "!");
-                odd.extend(oddity.filter(|oddity| !mark.is_empty() && !odd.contains(oddity)));
-                told.push(format!("{:<width$}", format!("{printed}{mark}")));
-            }
-            told.push(format!("{:>9}", system.zraa()));
-            line(text, &told.join(" "));
+            let attributes = OVERVIEW.map(|attribute| {
+                let mark = if system.oddity(attribute).is_some() { "!" } else { "" };
+                Cell::from(format!("{}{mark}", system.printed(attribute)))
+            });
+            let name = Cell::from(cut(&system.system, NAME));
+            table.push([name].into_iter().chain(attributes).chain([system.zraa().into()]));
         }
-        line(text, &format!("{} systems", self.systems.len()));
-        if self.systems.iter().any(|system| system.estimated) {
-            line(text, "* marked as an estimate in the source");
-        }
-        for Oddity { attribute, printed, normal, reason } in odd {
-            let first = format!("! {printed} ");
-            wrapped(text, &first, &format!("({}) is read as {normal} [I]: {reason}", attribute.title()));
-        }
-        if self.systems.iter().any(|system| system.source == Source::Appended) {
-            line(text, "The area, degree and gendering of an appended design are computed.");
-        }
-        std::mem::take(text)
+        table
     }
 
-    /// Every attribute as printed and in its normal form, and the area, as records for programs.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let mut head = vec!["system".to_owned(), "source".to_owned()];
-        for attribute in Attribute::ALL {
-            head.extend([attribute.key().to_owned(), format!("{}_normal", attribute.key())]);
-        }
-        head.extend(["zraa_d2", "estimated", "provenance", "stated_onaa_d"].map(str::to_owned));
-        let mut records = vec![head];
+    /// Every attribute as printed and in its normal form, and the area, for programs.
+    fn data(&self) -> Table {
+        let attributes =
+            Attribute::ALL.into_iter().flat_map(|a| [a.key().to_owned(), format!("{}_normal", a.key())]);
+        let first = ["system", "source"].map(str::to_owned);
+        let last = ["zraa_d2", "estimated", "provenance", "stated_onaa_d"].map(str::to_owned);
+        let mut table = Table::new(first.into_iter().chain(attributes).chain(last).map(Column::data));
         for system in &self.systems {
-            let mut record = vec![printable(&system.system), source(&system.source).to_owned()];
-            for attribute in Attribute::ALL {
+            let values = Attribute::ALL.into_iter().flat_map(|attribute| -> [Cell; 2] {
                 let value = system.value(attribute);
-                record.extend(
-                    [value.map(|v| v.printed.clone()), value.map(|v| v.normal.clone())]
-                        .map(Option::unwrap_or_default),
-                );
-            }
+                [value.map(|v| v.printed.clone()).into(), value.map(|v| v.normal.clone()).into()]
+            });
             let stated = system.numbers.iter().find(|n| n.name == "ONAA" && n.basis.starts_with("section"));
-            record.extend([
-                system.zraa_d2.map(number).unwrap_or_default(),
-                u8::from(system.estimated).to_string(),
-                system.numbers.first().map_or("", |n| n.provenance.mark()).to_owned(),
-                stated.map(|n| number(n.value)).unwrap_or_default(),
-            ]);
-            records.push(record);
+            let first = [printable(&system.system).into(), source(&system.source).into()];
+            let last = [
+                system.zraa_d2.into(),
+                usize::from(system.estimated).into(),
+                system.numbers.first().map_or("", |n| n.provenance.mark()).into(),
+                stated.map(|n| n.value).into(),
+            ];
+            table.push(first.into_iter().chain(values).chain(last));
         }
-        records
+        table
     }
 
     /// Every attribute as a table in Markdown; a normal form that differs stands behind an arrow.
@@ -270,52 +283,62 @@ impl SystemBody {
         Envelope::of(Self::of(system), Vec::new(), None)
     }
 
-    /// For a person: every attribute, every number with its provenance.
-    pub fn table(&self) -> String {
-        /// Width of the titles of attributes.
-        const TITLE: usize = 25;
-        let text = &mut String::new();
+    fn attribute_table(&self) -> Table {
+        let mut table = Table::new(["attribute", "value"].map(|title| Column::new(title).left()));
+        for attribute in Attribute::ALL {
+            let Some(ValueReport { printed, normal, reason }) = self.value(attribute) else { continue };
+            let value = match reason {
+                None => printed.clone(),
+                Some(reason) => format!("{printed}, read as {normal} [I]: {reason}"),
+            };
+            table.push([attribute.title().into(), value.into()]);
+        }
+        table
+    }
+
+    fn number_table(&self) -> Table {
+        let mut table = Table::new(["number", "value", "source"].map(|title| Column::new(title).left()));
+        for Number { name, value, unit, provenance, basis } in &self.numbers {
+            let (value, source) =
+                (format!("{} {unit}", shown(*value)), format!("{} {basis}", provenance.mark()));
+            table.push([(*name).into(), value.into(), source.into()]);
+        }
+        table
+    }
+}
+
+impl Printed for SystemBody {
+    fn title(&self) -> Cow<'_, str> {
         let other = match &self.source {
             Source::Connectors(Some(name)) if *name != self.system => format!(" (as {name})"),
             _ => String::new(),
         };
-        line(text, &format!("{}: {}{other}", self.system, source(&self.source)));
-        if self.attributes.is_none() {
+        format!("{}: {}{other}", self.system, source(&self.source)).into()
+    }
+
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        if self.attributes.is_some() {
+            document.table(self.attribute_table());
+        } else {
             let known = match self.source {
                 Source::Section412 => "section 4.1 calls it ungendered and states nothing else",
                 _ => "its attributes are not stated",
             };
-            wrapped(text, "  ", &format!("table 1.1 does not have it: {known}"));
+            document.paragraph(format!("table 1.1 does not have it: {known}"));
         }
-        for attribute in Attribute::ALL {
-            if let Some(value) = self.value(attribute) {
-                let first = format!("  {:<TITLE$}", attribute.title());
-                match value.reason {
-                    None => line(text, &format!("{first}{}", value.printed)),
-                    Some(reason) => {
-                        wrapped(
-                            text,
-                            &first,
-                            &format!("{}, read as {} [I]: {reason}", value.printed, value.normal),
-                        );
-                    }
-                }
-            }
-        }
-        for found in &self.numbers {
-            let value = format!("{} {}", shown(found.value), found.unit);
-            let first = format!("  {:<10}{value:<12}  {} ", found.name, found.provenance.mark());
-            wrapped(text, &first, &found.basis);
+        document.section(None);
+        if self.numbers.is_empty() {
+            document.paragraph("table 2.1 does not have it: its area is not stated");
+        } else {
+            document
+                .table(self.number_table())
+                .paragraph("[D] stated by the dissertation  [R] computed here from that  [I] our reading");
         }
         if let Some(doubt) = self.doubt {
-            wrapped(text, "  note  ", doubt);
+            document.section(None).row("note", doubt);
         }
-        if self.numbers.is_empty() {
-            line(text, "  table 2.1 does not have it: its area is not stated");
-        } else {
-            line(text, "[D] stated by the dissertation  [R] computed here from that  [I] our reading");
-        }
-        std::mem::take(text)
+        document
     }
 }
 
@@ -323,7 +346,6 @@ impl ClassifyBody {
     /// The report of a design that was classified.
     pub fn report(design: &Design, found: &Classified, catalog: &Catalog) -> ClassifyReport {
         let body = Self {
-            design: design.clone(),
             degree: found.degree.name(),
             extents_d: found.extents,
             longest_d: found.extents.longest(),
@@ -333,48 +355,65 @@ impl ClassifyBody {
             onaa_d: found.square.edge,
             ratios: found.ratios(catalog),
         };
-        Envelope::of(body, Vec::new(), None)
+        ReportOf::new(design, body, Vec::new(), None)
     }
 
-    /// For a person.
-    pub fn table(&self) -> String {
-        let text = &mut String::new();
-        line(text, &self.design.name);
-        row(text, "degree", self.degree);
+    fn ratio_table(&self) -> Table {
+        let mut table = Table::new([
+            Column::new("beside").left(),
+            Column::new("stated area").left(),
+            Column::new("× area"),
+            Column::new("stated ONAA").left(),
+            Column::new("× ONAA"),
+        ]);
+        for ratio in &self.ratios {
+            let star = if ratio.estimated { "*" } else { "" };
+            let some = |value: Option<f64>| value.map_or_else(|| NOTHING.to_owned(), shown);
+            table.push([
+                ratio.system.as_str().into(),
+                format!("{} D²{star}", shown(ratio.area_d2)).into(),
+                some(ratio.area_ratio).into(),
+                ratio.onaa_d.map_or_else(|| NOTHING.to_owned(), |onaa| format!("{} D", shown(onaa))).into(),
+                some(ratio.onaa_ratio).into(),
+            ]);
+        }
+        table
+    }
+}
+
+impl Subject for ClassifyBody {
+    const KIND: &'static str = "classify";
+
+    fn document(&self, _: &Design) -> Document {
         let reach = |axis: &str, extent: Option<[f64; 2]>| {
             extent.map(|[from, to]| format!("{axis} {} … {} D", shown(from), shown(to)))
         };
         let reaches: Vec<String> =
             [reach("x", self.extents_d.x), reach("y", self.extents_d.y)].into_iter().flatten().collect();
-        row(text, "", &format!("corrected through zero: {}", reaches.join(", ")));
-        row(text, "", &format!("High is more than {HIGH:.2} D from side to side [I]"));
-        row(text, "gendering", self.gendering);
         let halves = if self.gendering == "Ungendered" { "the fixed half" } else { "not the fixed half" };
-        row(text, "", &format!("the moving half, half turned, is {halves}"));
-        if let Some(area) = self.zraa_d2 {
-            row(text, "ZRAA", &format!("{} D²", shown(area)));
-        }
-        let edge = match self.zraa_d2 {
-            Some(_) => "edge of the largest axis-parallel square",
-            None => "length of the corrected interval",
+        let mut document = Document::default();
+        document
+            .row("degree", self.degree)
+            .more(format!("corrected through zero: {}", reaches.join(", ")))
+            .more(format!("High is more than {HIGH:.2} D from side to side [I]"))
+            .row("gendering", self.gendering)
+            .more(format!("the moving half, half turned, is {halves}"));
+        let onaa = shown(self.onaa_d);
+        let Some(area) = self.zraa_d2 else {
+            document
+                .row("ONAA", format!("{onaa} D, length of the corrected interval"))
+                .section(None)
+                .paragraph("One translation is locked, so the region is an interval, not an area.")
+                .paragraph("A length has no ratio to published areas.");
+            return document;
         };
-        row(text, "ONAA", &format!("{} D, {edge}", shown(self.onaa_d)));
-        if self.zraa_d2.is_none() {
-            line(text, "  One translation is locked, so the region is an interval, not an area: a");
-            line(text, "  length has no ratio to published areas.");
-            return std::mem::take(text);
-        }
-        line(text, "  beside            stated area     × area   stated ONAA    × ONAA");
-        for ratio in &self.ratios {
-            let star = if ratio.estimated { "*" } else { "" };
-            let some = |value: Option<f64>| value.map_or_else(|| NOTHING.to_owned(), shown);
-            let area = format!("{} D²{star}", shown(ratio.area_d2));
-            let onaa = ratio.onaa_d.map_or_else(|| NOTHING.to_owned(), |onaa| format!("{} D", shown(onaa)));
-            let (areas, onaas) = (some(ratio.area_ratio), some(ratio.onaa_ratio));
-            line(text, &format!("  {:<18}{area:<12}{areas:>10}   {onaa:<12}{onaas:>9}", ratio.system));
-        }
-        line(text, "* marked as an estimate in the source");
-        std::mem::take(text)
+        document
+            .row("ZRAA", format!("{} D²", shown(area)))
+            .row("ONAA", format!("{onaa} D, edge of the largest axis-parallel square"))
+            .section(None)
+            .table(self.ratio_table())
+            .paragraph(ESTIMATED);
+        document
     }
 }
 
