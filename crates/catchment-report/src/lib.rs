@@ -38,7 +38,6 @@ mod faces;
 pub mod figure;
 pub mod folder;
 pub mod gltf;
-mod hold;
 mod html;
 mod jams;
 pub mod json_schema;
@@ -72,6 +71,7 @@ pub mod zarr;
 mod zraa;
 
 use catchment_study::friction::Friction;
+use catchment_study::hold::Hold;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -90,9 +90,6 @@ pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
-pub use hold::{
-    HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
-};
 pub use jams::{
     ContactReport, ExaminedReport, ExtentReport, JamReport, JamsBody, JamsFound, JamsReport, PairReport,
     WayOutReport,
@@ -132,3 +129,5 @@ pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 
 /// The effect of friction, with its head.
 pub type FrictionReport = ReportOf<Friction>;
+/// What a half withstands, with its head.
+pub type HoldReport = ReportOf<Hold>;

@@ -3,14 +3,24 @@
 use crate::acceptance::Outcome;
 use crate::pose::PoseError;
 use glam::DVec3;
+use serde::{Serialize, Serializer};
 
 /// A point where the halves touch.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Touch {
     /// Where, in the world frame, in D.
+    #[serde(rename = "point_d", serialize_with = "components")]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub point: DVec3,
     /// Unit normal, from the fixed half to the moving one.
+    #[serde(serialize_with = "components")]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub normal: DVec3,
+}
+
+fn components<S: Serializer>(vector: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
+    vector.to_array().serialize(serializer)
 }
 
 /// One moment of a motion.
