@@ -55,7 +55,6 @@ mod sensitivity;
 pub mod set;
 mod slices;
 pub mod solids;
-mod success;
 mod sweep;
 mod table;
 pub mod text;
@@ -72,6 +71,7 @@ mod zraa;
 
 use catchment_study::friction::Friction;
 use catchment_study::hold::Hold;
+use catchment_study::success::Success;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
@@ -105,10 +105,6 @@ pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
-pub use success::{
-    AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
-    ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
-};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};
@@ -131,3 +127,5 @@ pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
 pub type FrictionReport = ReportOf<Friction>;
 /// What a half withstands, with its head.
 pub type HoldReport = ReportOf<Hold>;
+/// Whether robots dock, with its head.
+pub type SuccessesReport = ReportOf<Success>;
