@@ -12,6 +12,7 @@ use catchment_core::pose::{Dof, DofSet, PoseError};
 use catchment_core::problem::Problem;
 use glam::{DAffine3, DVec3};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// What a check has to say, with its head.
 pub type CheckReport = Envelope<CheckBody>;
@@ -165,8 +166,8 @@ impl CheckReport {
 }
 
 impl Printed for CheckBody {
-    fn title(&self) -> &str {
-        &self.file
+    fn title(&self) -> Cow<'_, str> {
+        (&self.file).into()
     }
 
     /// The design as it was understood, or the table of problems.

@@ -7,6 +7,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::document::{Cell, Column, Document, Format, Table, grouped, percent, significant};
 use catchment_core::merit::comparison::{Comparison, Distances};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// One of the two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,8 +41,8 @@ impl Body for ComparisonBody {
 }
 
 impl Printed for ComparisonBody {
-    fn title(&self) -> &'static str {
-        "comparison"
+    fn title(&self) -> Cow<'_, str> {
+        "comparison".into()
     }
 
     fn document(&self) -> Document {

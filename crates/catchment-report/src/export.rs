@@ -7,6 +7,7 @@ use catchment_core::design::Design;
 use catchment_core::document::Document;
 use catchment_core::pose::PoseError;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// What was exported, with its head.
 pub type ExportReport = Envelope<ExportBody>;
@@ -41,8 +42,8 @@ impl ExportReport {
 }
 
 impl Printed for ExportBody {
-    fn title(&self) -> &str {
-        &self.design.name
+    fn title(&self) -> Cow<'_, str> {
+        (&self.design.name).into()
     }
 
     fn document(&self) -> Document {

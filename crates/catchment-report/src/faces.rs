@@ -6,6 +6,7 @@ use super::zraa::{AcceptedOffsets, ZraaBody};
 use catchment_core::document::{Document, Table};
 use catchment_core::pose::Dof;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Designs side by side, with their head.
 pub type FacesReport = Envelope<FacesBody>;
@@ -63,8 +64,8 @@ impl FacesReport {
 }
 
 impl Printed for FacesBody {
-    fn title(&self) -> &'static str {
-        "offsets along x that are corrected without rotation"
+    fn title(&self) -> Cow<'_, str> {
+        "offsets along x that are corrected without rotation".into()
     }
 
     /// A section per design; the table for programs has a bound where the halves meet along one profile.

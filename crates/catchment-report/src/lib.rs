@@ -35,7 +35,6 @@ mod faces;
 pub mod figure;
 pub mod folder;
 pub mod gltf;
-mod hold;
 mod html;
 pub mod json_schema;
 mod lever;
@@ -51,7 +50,6 @@ pub mod schema;
 pub mod set;
 mod slices;
 pub mod solids;
-mod success;
 mod table;
 pub mod text;
 mod trajectory;
@@ -66,8 +64,10 @@ use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
 use catchment_study::agreement::Agreement;
 use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
+use catchment_study::hold::Hold;
 use catchment_study::plan::Plan;
 use catchment_study::sensitivity::Sensitivity;
+use catchment_study::success::Success;
 use catchment_study::sweep::Sweep;
 use catchment_study::trials::Trials;
 use catchment_study::validate::Validation;
@@ -85,9 +85,6 @@ pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
-pub use hold::{
-    HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
-};
 pub use lever::{CornerContact, FirstContact, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
@@ -98,10 +95,6 @@ pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_
 pub use schema::{Report, RunBody};
 pub use slices::{SliceReport, SlicesFound, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
-pub use success::{
-    AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
-    ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
-};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use version::{Version, VersionError};
@@ -139,3 +132,9 @@ pub type TrialsReport = ReportOf<Trials>;
 
 /// A prediction beside the trials of a robot, with its head.
 pub type ValidationReport = ReportOf<Validation>;
+
+/// What a half withstands, with its head.
+pub type HoldReport = ReportOf<Hold>;
+
+/// Whether robots dock, with its head.
+pub type SuccessesReport = ReportOf<Success>;

@@ -1,20 +1,17 @@
 //! `catchment hold`: how hard a docked half may be pushed and twisted.
 
 use crate::args::{DesignArgs, quantity};
-use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use catchment::design::Quantity;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{HoldReport, csv, figure};
-use catchment::study::hold::{HoldError, Settings, run as find};
+use catchment::report::figure;
+use catchment::study::hold::{Hold, HoldError, Settings, run as find};
 use clap::Args;
-use std::time::Instant;
 
 /// How hard a docked half may be pushed and twisted until it leaves
 ///
@@ -29,7 +26,7 @@ use std::time::Instant;
     catchment hold design.toml --pose 'x=0.1,pitch=100 deg'\n                                                  where that pose comes to rest\n  \
     catchment hold design.toml --require 'least_force>=0.3'\n  \
     catchment hold design.toml --json | jq '.weakest.smooth_free'\n\n\
-    -o writes .png and .svg (pictures), .csv (a line per load) and .json. Forces are shares of the preload, torques of the preload times D, and angles \
+    Forces are shares of the preload, torques of the preload times D, and angles \
     in radians in CSV and JSON.")]
 pub(crate) struct HoldArgs {
     #[command(flatten)]
@@ -53,33 +50,22 @@ pub(crate) struct HoldArgs {
     #[arg(long, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(4..=3600))]
     directions: u32,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
-    let problem = args.design.problem()?;
-    let settings = args.settings(&problem)?;
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let found = find(&problem, &settings, &running.exec).map_err(refused)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = HoldReport::new(problem.design(), &found, args.preload, doubts, Some(timing));
-    args.asked.check(&report)?;
-    match kind {
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(kind) => args.file.draw(kind, &figure::hold(&report)?)?,
-        None => {}
-    }
-    args.asked.tell(&report, HoldReport::table)
+    study(
+        &args.design,
+        &args.result,
+        &args.exec,
+        Some(|report, _| Ok(figure::hold(report)?)),
+        |problem, exec| {
+            let found = find(problem, &args.settings(problem)?, exec).map_err(refused)?;
+            Ok(Hold { preload_n: args.preload, ..found })
+        },
+    )
 }
 
 impl HoldArgs {

@@ -1,23 +1,20 @@
 //! `catchment success`: whether a robot's errors are corrected.
 
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::error_args::robots_of;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Findings};
 use catchment::poses::{Distribution, Robot, Spread};
 use catchment::problem::Problem;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{SuccessesReport, csv, figure};
-use catchment::study::success::{Settings, Success, run as ask};
+use catchment::report::figure;
+use catchment::study::success::{Settings, run as follow};
 use clap::Args;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Will it dock? How likely a robot's errors are corrected, and which of them to improve first
 ///
@@ -28,7 +25,7 @@ use std::time::Instant;
 #[command(after_long_help = "Examples:\n  \
     catchment success design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n  \
     catchment success design.toml --error-measured errors.csv --required 0.999\n  \
-    catchment success design.toml --robots robots.toml -o success.png\n                                                  several robots, covariances; or as .svg, .csv, .json\n  \
+    catchment success design.toml --robots robots.toml -o success.png\n                                                  several robots, covariances\n  \
     catchment success design.toml --robots robots.toml --require 'success.probability>=0.95'\n                                                  of the robot that docks most seldom\n  \
     catchment success design.toml --robots robots.toml --require 'robots.arm A.tolerable.factor>=1'\n  \
     catchment success design.toml --error-sigma x=0.1 --json | jq '.robots[0].improve'\n\n\
@@ -58,9 +55,7 @@ pub(crate) struct SuccessArgs {
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -84,33 +79,25 @@ struct ExpectedArgs {
 }
 
 pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["svg", "png", "csv", "json"])?;
-    let problem = args.design.problem()?;
-    let robots = args.errors.robots(&problem)?;
-    let form = SuccessesReport::new(problem.design(), &Success::form(&robots), Vec::new(), None);
-    args.asked.check(&form)?;
-    let settings = Settings {
-        motions: args.motions.map(|motions| motions as usize),
-        seed: args.seed,
-        required: args.required,
-        cells: args.cells.map(|cells| cells as usize),
-        friction: args.friction,
-    };
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let found = ask(&problem, &robots, &settings, &running.exec)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = SuccessesReport::new(problem.design(), &found, doubts, Some(timing));
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::success(&report))?,
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
-        None => {}
+    study(
+        &args.design,
+        &args.result,
+        &args.exec,
+        Some(|report, _| Ok(figure::success(report))),
+        |problem, exec| Ok(follow(problem, &args.errors.robots(problem)?, &args.settings(), exec)?),
+    )
+}
+
+impl SuccessArgs {
+    fn settings(&self) -> Settings {
+        Settings {
+            motions: self.motions.map(|motions| motions as usize),
+            seed: self.seed,
+            required: self.required,
+            cells: self.cells.map(|cells| cells as usize),
+            friction: self.friction,
+        }
     }
-    args.asked.tell(&report, SuccessesReport::table)
 }
 
 impl ExpectedArgs {

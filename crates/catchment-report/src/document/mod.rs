@@ -181,15 +181,9 @@ pub(crate) mod tests {
         document.table(table);
         document.section(None).paragraph("Every sampled pose of the window docks: 0 failures in 300 000 samples <95 % confidence> and so on to the end of a long line.");
         Described {
-<<<<<<< HEAD
-            title: "peg | <socket>\u{1b}[2J",
-            document,
-            warnings: vec!["2 poses are undecided".to_owned()],
-=======
             title: "peg | <socket>\u{1b}[2J".into(),
             document,
-            warnings: vec!["2 poses are undecided"],
->>>>>>> desc-d
+            warnings: vec!["2 poses are undecided".to_owned()],
         }
     }
 

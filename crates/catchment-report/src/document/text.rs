@@ -46,13 +46,8 @@ impl Style {
 /// A document as text; ends with a line break.
 pub fn text(described: &Described<'_>, style: Style) -> String {
     let style = Style { columns: style.columns.max(NARROWEST), ..style };
-<<<<<<< HEAD
     let mut page = Page { text: String::new(), style, names: NAMES };
-    let title = printable(described.title);
-=======
-    let mut page = Page { text: String::new(), style };
     let title = printable(&described.title);
->>>>>>> desc-d
     let rule = "─".repeat(title.chars().count().clamp(RULE, style.columns));
     page.text.push_str(&style.painted(BOLD, &title));
     page.text.push('\n');

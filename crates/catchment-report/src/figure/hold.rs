@@ -3,8 +3,9 @@
 use super::draw::colour::{CURVES, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline};
 use super::{FigureError, Picture};
+use crate::HoldReport;
 use crate::text::significant;
-use crate::{HoldReport, WithstoodReport};
+use catchment_study::hold::Both;
 
 /// The middle of the polar chart, and its radius.
 const MIDDLE: [f64; 2] = [250.0, 330.0];
@@ -18,28 +19,26 @@ const BEYOND: f64 = 4.0;
 /// Shares of the preload below this are nothing: rounding.
 const NOTHING: f64 = 1e-6;
 
-/// A column of the report: its name, the values over directions and over torques, colour and stroke.
+/// A column of [`Both::columns`]: its name, colour and stroke.
 struct Column {
     name: &'static str,
-    /// Infinite for any; `None` where it was not asked.
-    of: fn(&Two) -> Option<f64>,
+    number: usize,
     colour: usize,
     dashed: bool,
 }
 
-/// Without friction, and with it.
-type Two = [Option<WithstoodReport>; 2];
-
 const COLUMNS: [Column; 4] = [
-    Column { name: "guided", of: |two| two[0].map(|of| any(of.guided)), colour: 0, dashed: true },
-    Column { name: "free", of: |two| two[0].map(|of| any(of.free)), colour: 0, dashed: false },
-    Column { name: "guided, friction", of: |two| two[1].map(|of| any(of.guided)), colour: 1, dashed: true },
-    Column { name: "free, friction", of: |two| two[1].map(|of| any(of.free)), colour: 1, dashed: false },
+    Column { name: "guided", number: 0, colour: 0, dashed: true },
+    Column { name: "free", number: 1, colour: 0, dashed: false },
+    Column { name: "guided, friction", number: 2, colour: 1, dashed: true },
+    Column { name: "free, friction", number: 3, colour: 1, dashed: false },
 ];
 
-/// A number for what is withstood.
-fn any(value: Option<f64>) -> f64 {
-    value.unwrap_or(f64::INFINITY)
+impl Column {
+    /// Infinite where any load is withstood; none where nothing is known.
+    fn of(&self, withstood: &Both) -> Option<f64> {
+        withstood.columns()[self.number]
+    }
 }
 
 /// Draws what a half withstands over the direction of the force, and torques beside it.
@@ -93,7 +92,7 @@ fn rim(values: impl Iterator<Item = f64>) -> f64 {
 fn polar(svg: &mut Svg, report: &HoldReport) {
     let [cx, cy] = MIDDLE;
     let scale = report.preload_n.unwrap_or(1.0);
-    let unit = if report.preload_n.is_some() { "N" } else { "F" };
+    let unit = report.force_unit();
     svg.text(
         [cx, cy - RADIUS - 36.0],
         LABEL,
@@ -101,13 +100,13 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
         INK,
         &format!("sideways forces that it withstands [{unit}]"),
     );
-    let sides: Vec<(f64, Two)> =
-        report.sideways.iter().map(|side| (side.direction_rad, [side.smooth, side.rough])).collect();
+    let sides: Vec<(f64, Both)> =
+        report.sideways.iter().map(|side| (side.direction_rad, side.withstood)).collect();
     if sides.is_empty() {
         svg.text([cx, cy], LABEL, Anchor::Middle, SOFT, "x and y are locked");
         return;
     }
-    let finite = sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
+    let finite = sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| column.of(two)));
     let rim = rim(finite);
     let at = |direction: f64, value: f64| {
         let r = RADIUS * (value / rim).min(1.0);
@@ -128,7 +127,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
     let mut beyond = false;
     for column in &COLUMNS {
         let values: Vec<(f64, f64)> =
-            sides.iter().filter_map(|(direction, two)| Some((*direction, (column.of)(two)?))).collect();
+            sides.iter().filter_map(|(direction, two)| Some((*direction, column.of(two)?))).collect();
         beyond |= values.iter().any(|(_, value)| *value > rim * (1.0 + NOTHING));
         if sides.len() > 2 {
             let points = values.iter().map(|(direction, value)| at(*direction, *value));
@@ -158,7 +157,7 @@ fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]
     let (Some(side), Some(force)) = (found, report.least_force) else { return };
     let place = at(side.direction_rad, force);
     svg.circle(place, 5.0, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="2""##));
-    let unit = if report.preload_n.is_some() { "N" } else { "F" };
+    let unit = report.force_unit();
     let told =
         if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
     let words = format!("○ weakest: {told} {unit} at {:.1}°", side.direction_rad.to_degrees());
@@ -189,7 +188,7 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
     let Rect { x, y, w, h } = BARS;
     let width = if report.design.unit.is_some() { report.design.width } else { 1.0 };
     let scale = report.preload_n.unwrap_or(1.0) * width;
-    let force = if report.preload_n.is_some() { "N" } else { "F" };
+    let force = report.force_unit();
     let unit = report.design.unit.map_or("D", |unit| unit.symbol());
     let head = format!("torques that it withstands [{force} {unit}]");
     svg.text([x, MIDDLE[1] - RADIUS - 36.0], LABEL, Anchor::Start, INK, &head);
@@ -197,17 +196,17 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
         svg.text([x, y + 20.0], LABEL, Anchor::Start, SOFT, "rotations are locked");
         return;
     }
-    let torques: Vec<(String, Two)> = report
+    let torques: Vec<(String, Both)> = report
         .torques
         .iter()
         .map(|torque| {
             let sign = if torque.sign > 0.0 { '+' } else { '−' };
-            (format!("{sign}{}", torque.axis.name()), [torque.smooth, torque.rough])
+            (format!("{sign}{}", torque.axis.name()), torque.withstood)
         })
         .collect();
-    let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
+    let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| column.of(two)));
     let most = rim(finite);
-    let asked = |column: &&Column| torques.iter().any(|(_, two)| (column.of)(two).is_some());
+    let asked = |column: &&Column| torques.iter().any(|(_, two)| column.of(two).is_some());
     let columns: Vec<&Column> = COLUMNS.iter().filter(asked).collect();
     let each = (h / torques.len() as f64).min(80.0);
     let thick = (0.8 * each / columns.len().max(1) as f64).min(14.0);
@@ -215,7 +214,7 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
         let top = y + each * k as f64;
         svg.text([x - 8.0, top + 0.5 * thick * columns.len() as f64 + 4.0], LABEL, Anchor::End, INK, name);
         for (j, column) in columns.iter().enumerate() {
-            let Some(value) = (column.of)(two) else { continue };
+            let Some(value) = column.of(two) else { continue };
             let length = w * (value / most).min(1.0);
             let colour = hex(CURVES[column.colour % CURVES.len()]);
             let opacity = if column.dashed { 0.35 } else { 0.85 };
@@ -253,13 +252,14 @@ mod tests {
     use catchment_core::design::read;
     use catchment_core::exec::Exec;
     use catchment_core::problem::Problem;
-    use catchment_study::hold::{Settings, run};
+    use catchment_study::hold::{Hold, Settings, run};
     use std::path::Path;
 
     fn drawn(text: &str, friction: f64, preload: Option<f64>) -> Picture {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let found = run(&problem, &Settings { friction, ..Settings::default() }, &Exec::new()).unwrap();
-        let report = HoldReport::new(problem.design(), &found, preload, Vec::new(), None);
+        let found = Hold { preload_n: preload, ..found };
+        let report = HoldReport::new(problem.design(), found, Vec::new(), None);
         hold(&report).unwrap()
     }
 

@@ -5,8 +5,8 @@ use super::draw::axis::{Units, short};
 use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
-use crate::success::chance;
-use crate::{DockingReport, SuccessesReport};
+use crate::SuccessesReport;
+use catchment_study::success::{Docking, in_percent};
 
 /// Colour of what is required.
 const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
@@ -22,13 +22,14 @@ pub fn success(report: &SuccessesReport) -> Picture {
     let mut svg = Svg::new(bars.x + bars.w + 70.0, top + size[1] + 56.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let head = &report.success;
-    let [lo, hi] = head.ci95.map(chance);
+    let [lo, hi] = head.ci95.map(in_percent);
     let of = if report.robots.len() > 1 {
         format!(" of {}, the least of all,", head.robot)
     } else {
         String::new()
     };
-    let story = format!("success{of} {}, from {lo} to {hi} with 95 % confidence", chance(head.probability));
+    let story =
+        format!("success{of} {}, from {lo} to {hi} with 95 % confidence", in_percent(head.probability));
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines = lines(report);
     let rect = Rect { x: left, y: top, w: size[0], h: size[1] };
@@ -50,7 +51,7 @@ pub fn success(report: &SuccessesReport) -> Picture {
 
 fn lines(report: &SuccessesReport) -> Vec<Line> {
     let percent = |share: f64| 100.0 * share;
-    let of = |(k, robot): (usize, &DockingReport)| Line {
+    let of = |(k, robot): (usize, &Docking)| Line {
         name: robot.robot.clone(),
         colour: CURVES[k % CURVES.len()],
         points: robot
@@ -77,7 +78,7 @@ fn lines(report: &SuccessesReport) -> Vec<Line> {
 }
 
 /// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
-fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &DockingReport, rect: Rect) {
+fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &Docking, rect: Rect) {
     let units = Units::of(&report.design);
     let head = if report.robots.len() > 1 {
         format!("halved, one by one: {}", robot.robot)
@@ -136,7 +137,7 @@ mod tests {
     use catchment_core::pose::{Dof, PoseError};
     use catchment_core::poses::{Robot, Spread};
     use catchment_core::problem::Problem;
-    use catchment_study::success::{Settings, run};
+    use catchment_study::success::{Factor, Settings, run};
 
     #[test]
     fn curves_and_gains_are_drawn() {
@@ -147,14 +148,33 @@ mod tests {
         };
         let settings = Settings { motions: Some(400), required: 0.9, ..Settings::default() };
         let found = run(&problem, &[robot("arm A", 0.15), robot("arm B", 0.1)], &settings, &Exec::new());
-        let report = SuccessesReport::new(problem.design(), &found.unwrap(), Vec::new(), None);
+        let report = SuccessesReport::new(problem.design(), found.unwrap(), Vec::new(), None);
         let picture = success(&report);
         look("success", &picture);
         assert!(picture.svg().contains("90 % required") && picture.svg().contains("arm B"));
-        let head = chance(report.success.probability);
+        let head = in_percent(report.success.probability);
         assert!(
             picture.svg().contains(&format!("success of {}, the least of all, {head}", report.success.robot))
         );
         assert!(!picture.svg().contains("NaN"));
+    }
+
+    /// An interval that begins at 0 has only an upper end.
+    #[test]
+    fn a_factor_that_is_known_from_above_alone_is_shown_so() {
+        let problem = Problem::of(design([Dof::X].into_iter().collect())).unwrap();
+        let errors = Spread::normal(PoseError { x: 0.2, ..PoseError::default() });
+        let robots = [Robot { name: "robot".to_owned(), errors }];
+        let settings = Settings { motions: Some(100), ..Settings::default() };
+        let found = run(&problem, &robots, &settings, &Exec::new()).unwrap();
+        let mut report = SuccessesReport::new(problem.design(), found, Vec::new(), None);
+        let all = &mut report.robots[0].tolerable.all;
+        *all = Factor { factor: 1.08, ci95: [0.0, 1.12], is_more: false, is_less: false };
+        let text = report.table();
+        assert!(text.contains("times 1.08 (95 % CI: at most 1.12)\n"), "{text}");
+        assert!(text.contains("more motions would bound") && text.lines().all(|l| l.chars().count() <= 80));
+        report.robots[0].tolerable.all.ci95[0] = 0.9;
+        let text = report.table();
+        assert!(text.contains("(95 % CI 0.90 … 1.12)") && !text.contains("more motions"), "{text}");
     }
 }

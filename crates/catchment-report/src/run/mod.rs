@@ -13,13 +13,14 @@ use catchment_core::document::{
 use catchment_core::pose::Dof;
 use catchment_core::run::Upright;
 use catchment_core::run::jams::{Jams, contacts_in_words};
+use std::borrow::Cow;
 
 /// Jams that are shown.
 const JAMS: usize = 3;
 
 impl Printed for RunBody {
-    fn title(&self) -> &str {
-        &self.design.name
+    fn title(&self) -> Cow<'_, str> {
+        (&self.design.name).into()
     }
 
     fn document(&self) -> Document {

@@ -22,6 +22,7 @@ use catchment_core::document::{Column, Document, Format, Table, grouped};
 use catchment_core::method::partition::{Settings, Solid, Solids, Subject};
 use glam::DVec3;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// A shape, with its head.
 pub type SolidsReport = Envelope<SolidsBody>;
@@ -84,8 +85,8 @@ impl SolidsReport {
 }
 
 impl Printed for SolidsBody {
-    fn title(&self) -> &str {
-        &self.design.name
+    fn title(&self) -> Cow<'_, str> {
+        (&self.design.name).into()
     }
 
     fn document(&self) -> Document {

@@ -21,12 +21,15 @@
 //! Not promised: anything beyond rigid halves and Coulomb's law, see [`Holding`]. The weakest direction is looked for near the weakest of those that are tried: a
 //! notch between two of them that is narrower is not seen.
 
+mod report;
 #[cfg(test)]
 mod tests;
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::{Cancelled, Exec};
-use catchment_core::method::descent::{self, Follower, FrictionOutOfRange, Guide, Holding, Load, TOUCHING};
+use catchment_core::method::descent::{
+    self, Follower, FrictionOutOfRange, Guide, Holding, Load, TOUCHING, Touch,
+};
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
 use catchment_core::problem::Problem;
 use glam::DVec3;
@@ -64,62 +67,90 @@ pub const ANY: f64 = catchment_core::method::descent::MOST_LOAD;
 const DIRECTIONS: [usize; 2] = [4, 3600];
 
 /// What a half withstands of a kind of load: shares of the preload, or of it times D.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Withstood {
-    /// Where it can move the way of the load alone, and up; `None`: any.
+    /// Where it can move the way of the load alone, and up; null: any.
     pub guided: Option<f64>,
-    /// Where it can move in all free errors, and up; `None`: any.
+    /// Where it can move in all free errors, and up; null: any.
     pub free: Option<f64>,
 }
 
 /// What it withstands, without friction and with it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Both {
-    /// Without friction; `None` where friction alone holds the preload.
+    /// Without friction; null where friction alone holds the preload.
     pub smooth: Option<Withstood>,
-    /// With the friction that was asked for; `None` where none was.
+    /// With the friction of the settings; null where that is 0.
     pub rough: Option<Withstood>,
 }
 
 /// A force sideways.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sideways {
     /// Its direction from x towards y, in radians, in [0, 2π).
-    pub direction: f64,
+    pub direction_rad: f64,
     /// What the half withstands of it.
+    #[serde(flatten)]
     pub withstood: Both,
 }
 
 /// A torque about the axis of a free error.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Torque {
     /// About which axis: roll x, pitch y, yaw z.
     pub axis: Dof,
     /// 1 or −1.
     pub sign: f64,
     /// What the half withstands of it.
+    #[serde(flatten)]
     pub withstood: Both,
 }
 
-/// What a half withstands.
-#[derive(Debug, Clone, PartialEq)]
+/// The weakest directions sideways; null where any force is withstood.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Weakest {
+    /// Without friction, guided.
+    pub smooth_guided: Option<Sideways>,
+    /// Without friction, free.
+    pub smooth_free: Option<Sideways>,
+    /// With friction, guided.
+    pub rough_guided: Option<Sideways>,
+    /// With friction, free.
+    pub rough_free: Option<Sideways>,
+}
+
+/// What a half withstands: forces as shares of the preload, torques of the preload times D.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hold {
-    /// How it was asked for.
+    /// The settings.
     pub settings: Settings,
+    /// The preload, in N; null where it is not known. People read forces in N where it is.
+    pub preload_n: Option<f64>,
     /// The pose error in which it rests.
     pub pose: PoseError,
     /// Whether that counts as docked.
     pub outcome: Outcome,
     /// z of the centre of rotation there, in D.
-    pub height: f64,
-    /// Points in which it touches, from the fixed half to the moving one: where, and the unit normal.
-    pub contacts: Vec<[DVec3; 2]>,
+    pub height_d: f64,
+    /// Points in which it touches.
+    pub contacts: Vec<Touch>,
     /// Forces sideways, by their directions; those along x or y alone where only one is free.
     pub sideways: Vec<Sideways>,
-    /// The weakest of them in each column: without friction guided and free, with it guided and free.
-    pub weakest: [Option<Sideways>; 4],
+    /// The weakest direction of every column.
+    pub weakest: Weakest,
     /// Torques about free axes, either way.
     pub torques: Vec<Torque>,
+    /// The least of all forces sideways in free errors, with friction where the settings have some; 10⁶ where any is withstood,
+    /// null where none can act: x and y are locked.
+    pub least_force: Option<f64>,
+    /// The same of torques; null where rotations are locked.
+    pub least_torque: Option<f64>,
 }
 
 /// Why nothing can be said of what a half withstands.
@@ -248,16 +279,22 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Hold, 
         Ok((sideways, torques, weakest))
     })?;
     exec.report(1.0, STAGE);
-    let weakest = std::array::from_fn(|column| weakest[column]);
-    let contacts = tried.holding.contacts().iter().map(|(contact, _)| [contact.point, contact.normal]);
+    let [smooth_guided, smooth_free, rough_guided, rough_free] =
+        std::array::from_fn(|column| weakest[column]);
+    let contacts = tried.holding.contacts().iter();
+    let refined = [rough_free, smooth_free].into_iter().flatten();
+    let forces = sideways.iter().copied().chain(refined);
     Ok(Hold {
         settings: settings.clone(),
+        preload_n: None,
         pose,
         outcome,
-        height: tried.holding.cor().z,
-        contacts: contacts.collect(),
+        height_d: tried.holding.cor().z,
+        contacts: contacts.map(|(c, _)| Touch { point: c.point, normal: c.normal }).collect(),
+        least_force: least(forces.map(|side| side.withstood)),
+        least_torque: least(torques.iter().map(|torque| torque.withstood)),
         sideways,
-        weakest,
+        weakest: Weakest { smooth_guided, smooth_free, rough_guided, rough_free },
         torques,
     })
 }
@@ -305,7 +342,7 @@ impl Tried {
         let force = DVec3::new(snapped(cos), snapped(sin), 0.0);
         let arm = self.arm();
         let load = Load { force, moment: arm.cross(force) };
-        Sideways { direction, withstood: self.withstood(&load) }
+        Sideways { direction_rad: direction, withstood: self.withstood(&load) }
     }
 
     /// From the centre of rotation to where forces sideways act.
@@ -344,7 +381,7 @@ impl Tried {
             return Some(best);
         }
         let step = TAU / tried.len() as f64;
-        let [mut from, mut to] = [best.direction - step, best.direction + step];
+        let [mut from, mut to] = [best.direction_rad - step, best.direction_rad + step];
         let at = |direction: f64| {
             let side = self.sideways(direction.rem_euclid(TAU));
             (of(&side).unwrap_or(f64::INFINITY), side)
@@ -381,9 +418,33 @@ fn snapped(part: f64) -> f64 {
 }
 
 impl Both {
-    /// A column of the table: without friction guided and free, with it guided and free.
-    pub fn column(&self, column: usize) -> Option<f64> {
-        let of = if column < 2 { self.smooth } else { self.rough }?;
-        if column.is_multiple_of(2) { of.guided } else { of.free }
+    /// Without friction guided and free, with it guided and free: infinite where any load is withstood; none where nothing is known.
+    pub fn columns(&self) -> [Option<f64>; COLUMNS] {
+        let of = |withstood: Option<Withstood>, value: fn(Withstood) -> Option<f64>| {
+            withstood.map(|withstood| value(withstood).unwrap_or(f64::INFINITY))
+        };
+        let (guided, free): (fn(Withstood) -> _, fn(Withstood) -> _) = (|of| of.guided, |of| of.free);
+        [of(self.smooth, guided), of(self.smooth, free), of(self.rough, guided), of(self.rough, free)]
     }
+
+    /// One of them where it is finite.
+    pub fn column(&self, column: usize) -> Option<f64> {
+        self.columns()[column].filter(|value| value.is_finite())
+    }
+}
+
+impl Weakest {
+    /// The directions in the order of [`Both::columns`].
+    pub const fn columns(&self) -> [Option<Sideways>; COLUMNS] {
+        [self.smooth_guided, self.smooth_free, self.rough_guided, self.rough_free]
+    }
+}
+
+/// The least load that is withstood in free errors, with friction where it is known.
+fn least(all: impl Iterator<Item = Both>) -> Option<f64> {
+    let of = |both: Both| {
+        let columns = both.columns();
+        columns[3].or(columns[1]).map(|value| value.min(ANY))
+    };
+    all.filter_map(of).min_by(f64::total_cmp)
 }

@@ -33,14 +33,14 @@ fn the_spatial_x_face_at_thirty_degrees() {
     let found = found(&problem, &Settings::default());
     for side in &found.sideways {
         // |x| + |y| = AR bounds what is withstood, as h = AR·max(|x|, |y|).
-        let expected = ratio / (side.direction.cos().abs() + side.direction.sin().abs());
-        let slope = ratio * side.direction.cos().abs().max(side.direction.sin().abs());
+        let expected = ratio / (side.direction_rad.cos().abs() + side.direction_rad.sin().abs());
+        let slope = ratio * side.direction_rad.cos().abs().max(side.direction_rad.sin().abs());
         assert!((guided(&side.withstood) - slope).abs() < EXACT, "{side:?}");
         assert!(free(&side.withstood) < expected + EXACT, "{side:?}");
     }
-    let weakest = found.weakest[0].unwrap();
+    let weakest = found.weakest.smooth_guided.unwrap();
     assert!((guided(&weakest.withstood) - ratio / SQRT_2).abs() < EXACT, "{weakest:?}");
-    assert!((weakest.direction.rem_euclid(2.0 * FRAC_PI_4) - FRAC_PI_4).abs() < 1e-3, "{weakest:?}");
+    assert!((weakest.direction_rad.rem_euclid(2.0 * FRAC_PI_4) - FRAC_PI_4).abs() < 1e-3, "{weakest:?}");
     for torque in found.torques.iter().filter(|torque| torque.axis == Dof::Yaw) {
         assert!((guided(&torque.withstood) - ratio / 2.0).abs() < EXACT, "{torque:?}");
     }

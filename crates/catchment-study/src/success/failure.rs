@@ -20,6 +20,7 @@ use super::{AlongAxis, Failures, First};
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, Follower};
+use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use rayon::prelude::*;
 
@@ -55,12 +56,16 @@ pub(super) fn failures(
     let all = jammed + missed + undecided;
     let of_failures = |part: f64| if all > 0.0 { part / all } else { 0.0 };
     let (first, motions) = first(problem, source, sample, exec)?;
+    let along = along(source, sample);
+    let excess = |along: &AlongAxis| Some((along.axis, along.failed? - along.docked.unwrap_or(0.0)));
+    let dominating = along.iter().filter_map(excess).max_by(|a, b| a.1.total_cmp(&b.1));
     let found = Failures {
         share: 1.0 - sample.probability,
         jammed: of_failures(jammed),
         missed: of_failures(missed),
         undecided: of_failures(undecided),
-        along: along(source, sample),
+        dominating: dominating.map(|(axis, _)| axis),
+        along,
         first,
     };
     Ok((found, motions))
@@ -207,7 +212,7 @@ fn told(problem: &Problem, source: &Source<'_>, failing: Failing) -> First {
     let last = path.waypoints.last();
     First {
         error,
-        sigmas: source.in_sigmas(&failing.z),
+        sigmas: PoseError::from_array(source.in_sigmas(&failing.z)),
         distance: failing.distance,
         outcome: failing.outcome,
         end: last.map_or(error, |waypoint| waypoint.error),

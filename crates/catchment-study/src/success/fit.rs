@@ -41,14 +41,14 @@ pub(super) fn fit(spread: &Spread) -> Option<Fit> {
     let level = LEVEL / axes.len().max(1) as f64;
     let trending = axes.iter().filter(|axis| both_tails(axis.lag * (poses.len() as f64).sqrt()) < level);
     Some(Fit {
-        moments,
         rejected: p_value < LEVEL,
         p_value,
         kurtosis: kurtosis.map(|[b, _]| b),
         kurtosis_p_value: kurtosis.map(|[_, p]| p),
         trending: trending.map(|axis| axis.axis).collect(),
         axes,
-        success: None,
+        probability: None,
+        ci95: None,
     })
 }
 

@@ -1,62 +1,97 @@
-//! What is found of robots: the words of the answer.
+//! Results of robots.
 
-use super::{Settings, fit};
+use super::Settings;
 use catchment_core::acceptance::Outcome;
 use catchment_core::method::descent::Touch;
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::{Moments, Robot};
+use catchment_core::poses::Moments;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of the robots.
-#[derive(Debug, Clone, PartialEq)]
+/// Whether robots dock.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Success {
-    /// How it was asked for, everything filled in.
+    /// The settings, everything filled in.
     pub settings: Settings,
-    /// Each of them, in their order; at least one.
+    /// The robot that docks most seldom.
+    pub success: Headline,
+    /// Each robot, in the order of their file; at least one.
     pub robots: Vec<Docking>,
-    /// Motions in all, those of grids left out.
+    /// Exact motions in all, those of grids left out.
     pub motions: usize,
 }
 
-/// Whether a robot docks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Docking {
-    /// What it is called.
+/// The robot that docks most seldom.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Headline {
+    /// The name of the robot.
     pub robot: String,
-    /// How its errors spread: `normal`, `uniform` or `measured`.
-    pub kind: &'static str,
-    /// Their mean, standard deviations and correlations.
-    pub moments: Moments,
-    /// Rows, of measured errors.
-    pub rows: Option<usize>,
     /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Motions that this took.
+    /// By how much all its σ may be multiplied for the success that is required.
+    pub tolerable: f64,
+}
+
+/// Whether a robot docks. Lengths in D, angles in radians.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Docking {
+    /// The name of the robot.
+    pub robot: String,
+    /// Which errors are expected of it.
+    pub errors: Errors,
+    /// Probability of docking, in [0, 1].
+    pub probability: f64,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
+    /// Exact motions that this took.
     pub motions: usize,
-    /// How many of them could not be followed to their end.
+    /// How many of them could not be followed to their end: they count as failures.
     pub undecided: usize,
     /// Plain motions of random errors whose interval would be as wide.
     pub plain_motions: f64,
-    /// Cells of the grid that said where to look, and the motions that it took, to their end or not.
-    pub grid: [usize; 2],
-    /// Share of the errors that lie outside of the design's error box.
-    pub outside: f64,
-    /// What was seen of each stratum.
+    /// The grid that decided where motions are followed most.
+    pub grid: GridCost,
+    /// Share of the errors that lie outside of the design's error box, in [0, 1].
+    pub outside_box: f64,
+    /// The sample, by stratum.
     pub strata: Vec<Stratum>,
     /// What fails.
     pub failures: Failures,
     /// What it helps to improve each error, the most helpful first.
     pub improve: Vec<Improvement>,
-    /// How much larger all σ may be.
-    pub tolerable: Factor,
-    /// How much larger each alone may be, in the order of the errors.
-    pub tolerable_alone: Vec<(Dof, Factor)>,
+    /// How much larger σ may be.
+    pub tolerable: Tolerable,
     /// The probability with all σ multiplied by some factors, in ascending order.
     pub curve: Vec<AtFactor>,
-    /// Of measured errors, whether they are normal; none of fewer than eight rows.
+    /// Whether measured errors are normal; null of others, and of fewer than eight rows.
     pub fit: Option<Fit>,
+}
+
+/// Which errors are expected.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Errors {
+    /// `normal`, `uniform` or `measured`.
+    pub kind: &'static str,
+    /// Rows of measured errors; null of others.
+    pub rows: Option<usize>,
+    /// Mean, standard deviations and correlations, in the order x, y, roll, pitch, yaw.
+    #[serde(flatten)]
+    pub moments: Moments,
+}
+
+/// The effort of a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct GridCost {
+    /// Cells that were decided; 0 where there was no grid.
+    pub cells: usize,
+    /// Motions that this took, to their end or not.
+    pub motions: usize,
 }
 
 /// What was seen of a stratum of errors.
@@ -78,7 +113,8 @@ pub struct Stratum {
 }
 
 /// What fails.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failures {
     /// Share of all errors, in [0, 1].
     pub share: f64,
@@ -88,9 +124,11 @@ pub struct Failures {
     pub missed: f64,
     /// The share that could not be followed to its end.
     pub undecided: f64,
+    /// The error that is larger, in σ, where docking fails than where it does not, by more than any other; null where nothing fails.
+    pub dominating: Option<Dof>,
     /// Where failures lie, error by error.
     pub along: Vec<AlongAxis>,
-    /// The likeliest failure that was found; none where nothing failed.
+    /// The likeliest failure that was found; null where nothing failed.
     pub first: Option<First>,
 }
 
@@ -107,25 +145,26 @@ pub struct AlongAxis {
 }
 
 /// The failing error that is nearest to the mean.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct First {
     /// The pose error.
     pub error: PoseError,
-    /// The same in σ from the mean (half-widths of uniform errors), in the order of [`Dof::ALL`].
-    pub sigmas: [f64; 5],
+    /// The same in σ from the mean (half-widths of uniform errors).
+    pub sigmas: PoseError,
     /// Mahalanobis' distance from the mean; of uniform errors the largest of their half-widths.
     pub distance: f64,
-    /// What becomes of it.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Where it ends.
     pub end: PoseError,
-    /// What touches there.
+    /// What touches there, in the world frame of the fixed face centre.
     pub touches: Vec<Touch>,
 }
 
 /// dP/dσ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slope {
+pub(crate) struct Slope {
     /// By the σ (or half-width) of which error.
     pub axis: Dof,
     /// In 1/D or 1/rad.
@@ -135,14 +174,17 @@ pub struct Slope {
 }
 
 /// What it helps to improve an error.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Improvement {
     /// Which.
     pub axis: Dof,
-    /// Its standard deviation.
+    /// Its standard deviation, in D or radians.
     pub sigma: f64,
-    /// dP/dσ, where it is known; by the half-width of uniform errors.
-    pub slope: Option<Slope>,
+    /// dP/dσ (by the half-width of uniform errors), in 1/D or 1/rad; null where it is not known.
+    pub slope: Option<f64>,
+    /// Its 95 % interval.
+    pub slope_ci95: Option<[f64; 2]>,
     /// Probability of docking with this σ halved.
     pub halved: f64,
     /// Its 95 % interval.
@@ -151,6 +193,32 @@ pub struct Improvement {
     pub gain: f64,
     /// Its 95 % interval, as of two independent probabilities: common random errors make it narrower than stated, never wider.
     pub gain_ci95: [f64; 2],
+}
+
+/// How much larger σ may be.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Tolerable {
+    /// The success that is required.
+    pub required: f64,
+    /// All of them together.
+    #[serde(flatten)]
+    pub all: Factor,
+    /// Each alone, in the order of the errors.
+    pub alone: Vec<Alone>,
+}
+
+/// How much larger one σ may be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Alone {
+    /// Which.
+    pub axis: Dof,
+    /// The standard deviation then, in D or radians.
+    pub sigma: f64,
+    /// The factor.
+    #[serde(flatten)]
+    pub factor: Factor,
 }
 
 /// By how much σ may be multiplied for the success that is required.
@@ -180,24 +248,25 @@ pub struct AtFactor {
 }
 
 /// A normal fit to measured errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fit {
-    /// Mean, standard deviations, correlations.
-    pub moments: Moments,
     /// Whether it is rejected at 5 %.
     pub rejected: bool,
     /// Chance of normal errors to look so little normal, in [0, 1], however many tests there are.
     pub p_value: f64,
     /// Each error by itself.
     pub axes: Vec<AxisFit>,
-    /// Mardia's kurtosis; none where errors follow from each other.
+    /// Mardia's kurtosis; null where errors follow from each other.
     pub kurtosis: Option<f64>,
     /// Its p-value.
     pub kurtosis_p_value: Option<f64>,
     /// Errors of which neighbouring rows are alike: rows that are no independent measurements.
     pub trending: Vec<Dof>,
-    /// Probability of docking if errors were as the fit has them, and its 95 % interval.
-    pub success: Option<(f64, [f64; 2])>,
+    /// Probability of docking if errors were as the fit has them.
+    pub probability: Option<f64>,
+    /// Its 95 % interval.
+    pub ci95: Option<[f64; 2]>,
 }
 
 /// One error of a fit.
@@ -217,67 +286,22 @@ pub struct AxisFit {
 impl Success {
     /// The robot that docks most seldom.
     pub fn worst(&self) -> Option<&Docking> {
-        self.robots.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))
+        worst(&self.robots)
     }
+}
 
-    /// With every place that an answer about these robots has, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(robots: &[Robot]) -> Self {
-        let docking = |robot: &Robot| {
-            let sigma = robot.errors.moments().sigma.to_array();
-            let axes: Vec<Dof> = Dof::ALL.into_iter().filter(|dof| sigma[dof.index()] > 0.0).collect();
-            let slope = |axis| Slope { axis, slope: 0.0, ci95: [0.0; 2] };
-            let improvement = |axis: &Dof| Improvement {
-                axis: *axis,
-                sigma: 0.0,
-                slope: Some(slope(*axis)),
-                halved: 0.0,
-                halved_ci95: [0.0; 2],
-                gain: 0.0,
-                gain_ci95: [0.0; 2],
-            };
-            let mut fit = fit::fit(&robot.errors);
-            if let Some(fit) = &mut fit {
-                fit.success = Some((0.0, [0.0; 2]));
-            }
-            Docking {
-                robot: robot.name.clone(),
-                kind: robot.errors.kind(),
-                moments: robot.errors.moments(),
-                rows: Some(0),
-                probability: 0.0,
-                ci95: [0.0; 2],
-                motions: 0,
-                undecided: 0,
-                plain_motions: 0.0,
-                grid: [0; 2],
-                outside: 0.0,
-                strata: Vec::new(),
-                failures: Failures {
-                    share: 0.0,
-                    jammed: 0.0,
-                    missed: 0.0,
-                    undecided: 0.0,
-                    along: axes
-                        .iter()
-                        .map(|axis| AlongAxis { axis: *axis, failed: Some(0.0), docked: Some(0.0) })
-                        .collect(),
-                    first: Some(First {
-                        error: PoseError::default(),
-                        sigmas: [0.0; 5],
-                        distance: 0.0,
-                        outcome: Outcome::Aligned,
-                        end: PoseError::default(),
-                        touches: Vec::new(),
-                    }),
-                },
-                improve: axes.iter().map(improvement).collect(),
-                tolerable: Factor::default(),
-                tolerable_alone: axes.iter().map(|axis| (*axis, Factor::default())).collect(),
-                curve: Vec::new(),
-                fit,
-            }
-        };
-        let robots = robots.iter().map(docking).collect();
-        Self { settings: Settings { motions: Some(0), ..Settings::default() }, robots, motions: 0 }
+impl Headline {
+    pub(super) fn of(robots: &[Docking]) -> Self {
+        let worst = worst(robots);
+        Self {
+            robot: worst.map_or_else(String::new, |robot| robot.robot.clone()),
+            probability: worst.map_or(0.0, |robot| robot.probability),
+            ci95: worst.map_or([0.0, 1.0], |robot| robot.ci95),
+            tolerable: worst.map_or(0.0, |robot| robot.tolerable.all.factor),
+        }
     }
+}
+
+fn worst(robots: &[Docking]) -> Option<&Docking> {
+    robots.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))
 }

@@ -51,10 +51,12 @@ pub(super) fn gains(
         );
         let halved = sample(problem, source, &alone(*axis, HALF), strata, motions, &part)?;
         followed += halved.motions;
+        let slope = slopes.iter().find(|slope| slope.axis == *axis);
         improvements.push(Improvement {
             axis: *axis,
             sigma: source.sigma(*axis),
-            slope: slopes.iter().find(|slope| slope.axis == *axis).copied(),
+            slope: slope.map(|slope| slope.slope),
+            slope_ci95: slope.map(|slope| slope.ci95),
             halved: halved.probability,
             halved_ci95: halved.ci95,
             gain: halved.probability - found.probability,

@@ -27,6 +27,7 @@ mod failure;
 mod fit;
 mod found;
 mod gain;
+mod report;
 pub(crate) mod source;
 pub(crate) mod strata;
 #[cfg(test)]
@@ -39,9 +40,12 @@ use catchment_core::method::{Decide, DecideError};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Moments, Robot, Spread};
 use catchment_core::problem::Problem;
+pub(crate) use found::Slope;
 pub use found::{
-    AlongAxis, AtFactor, AxisFit, Docking, Factor, Failures, First, Fit, Improvement, Slope, Stratum, Success,
+    Alone, AlongAxis, AtFactor, AxisFit, Docking, Errors, Factor, Failures, First, Fit, GridCost, Headline,
+    Improvement, Stratum, Success, Tolerable,
 };
+pub use report::in_percent;
 use serde::{Deserialize, Serialize};
 use source::Source;
 pub(crate) use source::normals;
@@ -172,7 +176,7 @@ pub fn run(
         followed += more;
         found.push(docking);
     }
-    Ok(Success { settings, robots: found, motions: followed })
+    Ok(Success { settings, success: Headline::of(&found), robots: found, motions: followed })
 }
 
 const STAGE: &str = "motions";
@@ -237,26 +241,29 @@ fn of_robot(
     for factor in CURVE {
         all.look(factor, &step(0))?;
     }
-    let tolerable = all.factor(settings.required, &step(0))?;
+    let together = all.factor(settings.required, &step(0))?;
     followed += all.followed();
-    let mut tolerable_alone = Vec::new();
+    let moments = robot.errors.moments();
+    let Moments { mean, sigma, correlation } = moments;
+    let mut each = Vec::new();
     for (k, axis) in axes.iter().enumerate() {
         let mut changed = [false; 5];
         changed[axis.index()] = true;
         let mut alone = Curve::new(problem, &source, &strata, quarter, changed);
         alone.know(&found);
-        tolerable_alone.push((*axis, alone.factor(settings.required, &step(k + 1))?));
+        let factor = alone.factor(settings.required, &step(k + 1))?;
+        let sigma = factor.factor * sigma.to_array()[axis.index()];
+        each.push(Alone { axis: *axis, sigma, factor });
         followed += alone.followed();
     }
     let mut fit = fit::fit(&robot.errors);
     if let Some(fit) = &mut fit {
-        let Moments { mean, sigma, correlation } = fit.moments;
         let spread = Spread::Normal { mean, sigma, correlation };
         let source = Source::of(&spread, 0, settings.seed).followed_by(&followed_by);
         let strata = Strata::decide(problem, &source, settings.cells, &fit_part)?;
         let found = estimate::as_expected(problem, &source, &strata, motions.div_ceil(2), &fit_part)?;
         followed += found.motions;
-        fit.success = Some((found.probability, found.ci95));
+        (fit.probability, fit.ci95) = (Some(found.probability), Some(found.ci95));
     }
     let rows = match &robot.errors {
         Spread::Measured { poses, .. } => Some(poses.len()),
@@ -264,21 +271,18 @@ fn of_robot(
     };
     let docking = Docking {
         robot: robot.name.clone(),
-        kind: robot.errors.kind(),
-        moments: robot.errors.moments(),
-        rows,
+        errors: Errors { kind: robot.errors.kind(), rows, moments },
         probability: found.probability,
         ci95: found.ci95,
         motions: found.motions,
         undecided: found.undecided,
         plain_motions: found.plain,
-        grid: [strata.cells(), strata.motions()],
-        outside: outside(problem, &source, &found, exec)?,
+        grid: GridCost { cells: strata.cells(), motions: strata.motions() },
+        outside_box: outside(problem, &source, &found, exec)?,
         strata: found.strata,
         failures,
         improve,
-        tolerable,
-        tolerable_alone,
+        tolerable: Tolerable { required: settings.required, all: together, alone: each },
         curve: all.points().to_vec(),
         fit,
     };

@@ -79,15 +79,15 @@ fn of_one_offset_everything_is_the_closed_form() {
     assert!(within(robot.ci95, p(0.3)), "{:?}", robot.ci95);
     let improve = robot.improve[0];
     assert!(within(improve.halved_ci95, p(0.15)) && within(improve.gain_ci95, p(0.15) - p(0.3)));
-    let slope = improve.slope.unwrap();
+    let (slope, ci95) = (improve.slope.unwrap(), improve.slope_ci95.unwrap());
     let density = (-0.5 * (0.5f64 / 0.3).powi(2)).exp() / std::f64::consts::TAU.sqrt();
     let exact = -density / (0.3 * 0.3);
-    assert!(within(slope.ci95, exact) && (slope.slope / exact - 1.0).abs() < 0.1, "{slope:?} for {exact}");
+    assert!(within(ci95, exact) && (slope / exact - 1.0).abs() < 0.1, "{slope} in {ci95:?} for {exact}");
     // 99 % of normal errors lie within 2.5758 σ.
     let factor = 0.5 / (2.575_829 * 0.3);
-    assert!(within(robot.tolerable.ci95, factor), "{:?} for {factor}", robot.tolerable);
-    assert!((robot.tolerable.factor / factor - 1.0).abs() < 0.03);
-    assert_eq!(robot.tolerable_alone[0].0, Dof::X);
+    assert!(within(robot.tolerable.all.ci95, factor), "{:?} for {factor}", robot.tolerable);
+    assert!((robot.tolerable.all.factor / factor - 1.0).abs() < 0.03);
+    assert_eq!(robot.tolerable.alone[0].axis, Dof::X);
     let first = robot.failures.first.as_ref().unwrap();
     assert!((first.error.x.abs() - 0.5).abs() < 0.002 && (first.distance - 0.5 / 0.3).abs() < 0.01);
     assert!((robot.failures.share - (1.0 - robot.probability)).abs() < 1e-12);
@@ -103,13 +103,13 @@ fn of_uniform_offsets_too() {
     let robot = &found.robots[0];
     let within = |[lo, hi]: [f64; 2], value: f64| lo <= value && value <= hi;
     assert!(within(robot.ci95, 0.625));
-    let slope = robot.improve[0].slope.unwrap();
-    assert!(within(slope.ci95, -0.625 / 0.8), "{slope:?}");
+    let slope = robot.improve[0].slope_ci95.unwrap();
+    assert!(within(slope, -0.625 / 0.8), "{slope:?}");
     assert_eq!(robot.improve[0].halved, 1.0);
     assert!((robot.improve[0].sigma - 0.8 / 3f64.sqrt()).abs() < 1e-12);
     // 0.5/0.99 of the half-width.
-    assert!(within(robot.tolerable.ci95, 0.5 / 0.99 / 0.8), "{:?}", robot.tolerable);
-    assert!((robot.tolerable.factor * 0.8 * 0.99 / 0.5 - 1.0).abs() < 0.04, "{:?}", robot.tolerable);
+    assert!(within(robot.tolerable.all.ci95, 0.5 / 0.99 / 0.8), "{:?}", robot.tolerable);
+    assert!((robot.tolerable.all.factor * 0.8 * 0.99 / 0.5 - 1.0).abs() < 0.04, "{:?}", robot.tolerable);
 }
 
 /// Correlated and measured errors, against plain motions of the same: both intervals meet.
@@ -227,7 +227,7 @@ fn a_mean_that_does_not_dock_is_said() {
     let spread = Spread::Normal { mean, sigma, correlation: IDENTITY };
     let found = run(&v_face(), &one(spread), &quick(), &Exec::new()).unwrap();
     let robot = &found.robots[0];
-    assert!(robot.probability < 0.01 && robot.tolerable.is_less && robot.tolerable.factor == 0.0);
+    assert!(robot.probability < 0.01 && robot.tolerable.all.is_less && robot.tolerable.all.factor == 0.0);
     assert_eq!(robot.failures.first.as_ref().unwrap().distance, 0.0);
 }
 

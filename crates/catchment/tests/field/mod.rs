@@ -94,7 +94,7 @@ fn the_industreal_peg_slides_until_its_play_is_used() {
     let least = |play: f64| {
         let settings = hold::Settings { play, ..hold::Settings::default() };
         let found = hold::run(&problem, &settings, &Exec::new()).unwrap();
-        found.weakest[1].and_then(|side| side.withstood.smooth).and_then(|force| force.free)
+        found.weakest.smooth_free.and_then(|side| side.withstood.smooth).and_then(|force| force.free)
     };
     assert!(least(hold::Settings::default().play).unwrap() < 1e-6);
     let play = geometry("industreal-peg", "play") / D;

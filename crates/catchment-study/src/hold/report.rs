@@ -1,0 +1,165 @@
+//! What people and tables read of what a half withstands.
+
+use super::{Both, COLUMNS, Hold};
+use catchment_core::acceptance::Outcome;
+use catchment_core::design::Design;
+use catchment_core::document::{Cell, Column, Document, Subject, Table, Units, significant};
+
+/// Directions that people see.
+const SHOWN: usize = 8;
+/// Shares of the preload below this are nothing: rounding.
+const NOTHING: f64 = 1e-6;
+
+impl Subject for Hold {
+    const KIND: &'static str = "hold";
+
+    fn document(&self, design: &Design) -> Document {
+        let units = Units::of(design);
+        let mut document = Document::default();
+        self.describe_rest(units, &mut document);
+        document.table(self.records());
+        let force = self.force_unit();
+        if !self.sideways.is_empty() {
+            document.titled(Some(format!("withstood force sideways, in {force}"))).table(self.forces());
+        }
+        if !self.torques.is_empty() {
+            document
+                .titled(Some(format!("withstood torque, in {force} {}", units.unit())))
+                .table(self.moments(units));
+        }
+        let at = if self.settings.lever == 0.0 {
+            "at".to_owned()
+        } else {
+            format!("{} above", units.length(self.settings.lever))
+        };
+        document.section(None).paragraph(format!(
+            "Forces sideways act {at} the face centre of the moving half, torques about the centre of rotation. Guided: the half moves as it is pushed and \
+             up, nothing else. Free: it moves in all free errors."
+        ));
+        if self.slides() {
+            document.paragraph(
+                "0: the half slides sideways as it stands, on level ground or until the play of its fit is used.",
+            );
+        }
+        document
+    }
+}
+
+impl Hold {
+    fn describe_rest(&self, units: Units<'_>, document: &mut Document) {
+        let preload = self.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
+        document.row("preload", format!("{preload} along -z, through the centre of rotation"));
+        let place =
+            if self.settings.pose.is_none() { "the mated pose".to_owned() } else { units.pose(&self.pose) };
+        let docked = if self.outcome == Outcome::Aligned { "" } else { ", not docked" };
+        document.row("rests", format!("{place}{docked}, touching in {} points", self.contacts.len()));
+        if self.settings.friction > 0.0 {
+            let friction = self.settings.friction;
+            document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
+            let mut loads = self.loads();
+            if loads.all(|withstood| withstood.smooth.is_none()) {
+                document.more("without it the preload alone moves the half");
+            }
+        }
+    }
+
+    /// What is withstood of every load.
+    fn loads(&self) -> impl Iterator<Item = Both> {
+        let forces = self.sideways.iter().map(|side| side.withstood);
+        forces.chain(self.torques.iter().map(|torque| torque.withstood))
+    }
+
+    /// Every load, as shares of the preload, and of it times D; infinite where any is withstood.
+    fn records(&self) -> Table {
+        let mut table =
+            Table::data("load direction_rad sign smooth_guided smooth_free rough_guided rough_free");
+        let mut push = |head: [Cell; 3], withstood: &Both| {
+            table.push(head.into_iter().chain(withstood.columns().map(Cell::from)));
+        };
+        for side in &self.sideways {
+            push(["sideways".into(), side.direction_rad.into(), Cell::Empty], &side.withstood);
+        }
+        for torque in &self.torques {
+            push([torque.axis.name().into(), Cell::Empty, torque.sign.into()], &torque.withstood);
+        }
+        table
+    }
+
+    fn forces(&self) -> Table {
+        let mut table = self.table("direction");
+        let step = self.sideways.len().div_ceil(SHOWN).max(1);
+        let scale = self.preload_n.unwrap_or(1.0);
+        for side in self.sideways.iter().step_by(step) {
+            self.push(&mut table, degrees(side.direction_rad), side.withstood.columns(), scale);
+        }
+        let weakest = self.weakest.columns();
+        let values: [Option<f64>; COLUMNS] = std::array::from_fn(|k| {
+            let is_known = self.sideways.iter().any(|side| side.withstood.columns()[k].is_some());
+            let force = weakest[k].map_or(Some(f64::INFINITY), |side| side.withstood.columns()[k]);
+            force.filter(|_| is_known)
+        });
+        self.push(&mut table, "weakest".to_owned(), values, scale);
+        if weakest.iter().any(Option::is_some) {
+            let at = weakest.map(|side| side.map(|side| format!("at {}", degrees(side.direction_rad))));
+            table.push(std::iter::once(Cell::Empty).chain(self.of_columns(at).map(Cell::from)));
+        }
+        table
+    }
+
+    fn moments(&self, units: Units<'_>) -> Table {
+        let mut table = self.table("about");
+        let scale = self.preload_n.unwrap_or(1.0) * units.scale();
+        for torque in &self.torques {
+            let sign = if torque.sign > 0.0 { '+' } else { '-' };
+            let name = format!("{sign}{}", torque.axis.name());
+            self.push(&mut table, name, torque.withstood.columns(), scale);
+        }
+        table
+    }
+
+    /// A table of loads: the columns without friction, and those with it where there is some.
+    fn table(&self, name: &str) -> Table {
+        let friction = self.settings.friction;
+        let columns = if friction > 0.0 {
+            let rough = [format!("guided, μ = {friction}"), format!("free, μ = {friction}")];
+            ["guided, μ = 0", "free, μ = 0"].map(str::to_owned).into_iter().chain(rough).collect()
+        } else {
+            vec!["guided".to_owned(), "free".to_owned()]
+        };
+        Table::new(std::iter::once(Column::new(name).left()).chain(columns.into_iter().map(Column::new)))
+    }
+
+    fn push(&self, table: &mut Table, name: String, values: [Option<f64>; COLUMNS], scale: f64) {
+        let shown = |value: f64| match value {
+            f64::INFINITY => "any".to_owned(),
+            value if value < NOTHING => "0".to_owned(),
+            value => significant(value * scale),
+        };
+        let cells = self.of_columns(values).map(|value| value.map(shown).into());
+        table.push(std::iter::once(name.into()).chain(cells));
+    }
+
+    /// Those of the columns that the table has.
+    fn of_columns<T>(&self, all: [T; COLUMNS]) -> impl Iterator<Item = T> {
+        let count = if self.settings.friction > 0.0 { COLUMNS } else { COLUMNS / 2 };
+        all.into_iter().take(count)
+    }
+
+    /// Whether a force however small moves it sideways where there is no friction.
+    fn slides(&self) -> bool {
+        let least = self.weakest.smooth_free.and_then(|side| side.withstood.column(1));
+        least.is_some_and(|force| force <= NOTHING)
+    }
+
+    /// The unit of forces: N, or the preload F.
+    pub const fn force_unit(&self) -> &'static str {
+        if self.preload_n.is_some() { "N" } else { "F" }
+    }
+}
+
+/// A direction in degrees, to a tenth where that matters.
+fn degrees(direction: f64) -> String {
+    let degrees = direction.to_degrees();
+    let whole = degrees.round();
+    if (degrees - whole).abs() < 0.05 { format!("{}°", whole + 0.0) } else { format!("{degrees:.1}°") }
+}
