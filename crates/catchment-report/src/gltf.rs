@@ -39,8 +39,7 @@ pub fn glb(trace: &TraceReport, connector: &Connector) -> Option<Vec<u8>> {
     let fixed = file.half(&connector.fixed, metres, "fixed half", 0);
     let moving = file.half(&connector.moving, metres, "moving half", 1);
     let way: Vec<DVec3> = trace.waypoints.iter().map(|waypoint| waypoint.frame(cor).1 * metres).collect();
-    let touching: Vec<DVec3> =
-        last.touches.iter().map(|touch| DVec3::from_array(touch.point_d) * metres).collect();
+    let touching: Vec<DVec3> = last.touches.iter().map(|touch| touch.point * metres).collect();
     let mut nodes = vec![json!({ "name": "fixed half", "mesh": fixed }), Value::Null];
     if way.len() > 1 {
         let mesh = file.marks(&way, "way", LINE_STRIP);

@@ -96,7 +96,7 @@ pub use schema::{Report, RunBody};
 pub use slices::{SliceReport, SlicesFound, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
 pub use text::{csv, number};
-pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
+pub use trajectory::{TraceBody, TraceReport, WaypointReport};
 pub use version::{Version, VersionError};
 pub use zraa::{AcceptedOffsets, CatchReport, NilssonReport, ZraaBody, ZraaReport};
 

@@ -6,5 +6,8 @@ use catchment_core::design::Design;
 /// The heading of a design.
 pub(super) fn heading(out: &mut String, design: &Design) {
     let document = described(design);
-    out.push_str(&text(&Described { title: (&design.name).into(), document, warnings: Vec::new() }, Style::default()));
+    out.push_str(&text(
+        &Described { title: (&design.name).into(), document, warnings: Vec::new() },
+        Style::default(),
+    ));
 }

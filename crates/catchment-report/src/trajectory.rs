@@ -1,18 +1,20 @@
 //! The way of one pose from first contact to its end: as versioned JSON, as text, as a table for programs.
 
+use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::{decimals, fixed, line, number};
 use catchment_core::acceptance::{Outcome, Reason};
 use catchment_core::design::Design;
+use catchment_core::document::{Cell, Column, Document, Format, Table, decimals};
 use catchment_core::method::descent::{Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
 use catchment_core::problem::Problem;
 use glam::{DMat3, DVec3};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 
 /// Lines of the text, about.
 const LINES: usize = 24;
@@ -57,17 +59,7 @@ pub struct WaypointReport {
     /// z of the COR in the world frame, in D.
     pub height_d: f64,
     /// Where the halves touch.
-    pub touches: Vec<TouchReport>,
-}
-
-/// A point where the halves touch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct TouchReport {
-    /// Where, in the world frame, in D.
-    pub point_d: [f64; 3],
-    /// Unit normal, from the fixed half to the moving one.
-    pub normal: [f64; 3],
+    pub touches: Vec<Touch>,
 }
 
 impl Body for TraceBody {
@@ -76,8 +68,7 @@ impl Body for TraceBody {
 
 impl From<&Waypoint> for WaypointReport {
     fn from(w: &Waypoint) -> Self {
-        let touch = |t: &Touch| TouchReport { point_d: t.point.to_array(), normal: t.normal.to_array() };
-        let touches = w.touches.iter().map(touch).collect();
+        let touches = w.touches.clone();
         Self { travelled_d: w.travelled, time_s: None, error: w.error, height_d: w.height, touches }
     }
 }
@@ -141,89 +132,99 @@ impl TraceReport {
         };
         Self::of(body, warnings, None)
     }
+}
 
-    /// Waypoints spread over the path for a person: lengths in the design's unit, or D; degrees.
-    pub fn table(&self) -> String {
+impl Printed for TraceBody {
+    fn title(&self) -> Cow<'_, str> {
+        (&self.design.name).into()
+    }
+
+    /// Waypoints spread over the path: lengths in the design's unit, or D; degrees.
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
+        document.row("method", self.method);
+        document.row("outcome", format!("{}{reason}", self.outcome.name()));
+        document.section(None);
+        if self.waypoints.is_empty() {
+            document.paragraph("The halves never meet.");
+        } else {
+            let shown = self.waypoint_table();
+            let counts = (shown.rows.len(), self.waypoints.len());
+            document.table(shown);
+            document.paragraph(format!(
+                "{} of {} waypoints; height is that of the centre of rotation",
+                counts.0, counts.1
+            ));
+        }
+        document.section(None).table(self.contact_table());
+        document
+    }
+}
+
+impl TraceBody {
+    fn is_timed(&self) -> bool {
+        self.waypoints.iter().any(|w| w.time_s.is_some())
+    }
+
+    fn waypoint_table(&self) -> Table {
         let design = &self.design;
         let (width, symbol) = design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()));
         // A digit more than figures of merit have: neighbouring waypoints are to differ.
-        let decimals = decimals(width) + 1;
-        let length = |value: f64| fixed(value * width, decimals);
+        let length = Format::Fixed(decimals(width) + 1);
         let moves = |dof: &Dof| {
             design.alignment.free.contains(*dof)
                 || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
         };
         let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(moves).collect();
-        let timed = self.waypoints.iter().any(|w| w.time_s.is_some());
-        let mut lines = vec![vec!["path [D]".to_owned()]];
-        lines[0].extend(timed.then(|| "time [s]".to_owned()));
-        lines[0].extend(
-            dofs.iter().map(|d| format!("{} [{}]", d.name(), if d.is_rotation() { "deg" } else { symbol })),
-        );
-        lines[0].extend([format!("height [{symbol}]"), "contacts".to_owned()]);
+        let timed = self.is_timed();
+        let mut columns = vec![Column::new("path [D]").format(Format::Fixed(4))];
+        columns.extend(timed.then(|| Column::new("time [s]").format(Format::Fixed(4))));
+        columns.extend(dofs.iter().map(|dof| {
+            let unit = if dof.is_rotation() { "deg" } else { symbol };
+            let format = if dof.is_rotation() { Format::Fixed(3) } else { length };
+            Column::new(format!("{} [{unit}]", dof.name())).format(format)
+        }));
+        columns.extend([Column::new(format!("height [{symbol}]")).format(length), Column::new("contacts")]);
+        let mut table = Table::new(columns);
         for w in spread(&self.waypoints) {
-            let mut cells = vec![format!("{:.4}", w.travelled_d)];
-            cells.extend(w.time_s.map(|time| format!("{time:.4}")));
-            cells.extend(dofs.iter().map(|dof| {
+            let mut row: Vec<Cell> = vec![w.travelled_d.into()];
+            row.extend(timed.then(|| w.time_s.into()));
+            row.extend(dofs.iter().map(|dof| {
                 let value = w.error.to_array()[dof.index()];
-                if dof.is_rotation() { fixed(value.to_degrees(), 3) } else { length(value) }
+                Cell::from(if dof.is_rotation() { value.to_degrees() } else { value * width })
             }));
-            cells.extend([length(w.height_d), w.touches.len().to_string()]);
-            lines.push(cells);
+            row.extend([Cell::from(w.height_d * width), w.touches.len().into()]);
+            table.push(row);
         }
-        let widths: Vec<usize> = (0..lines[0].len())
-            .map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0))
-            .collect();
-        let mut text = String::new();
-        line(&mut text, &design.name);
-        if self.waypoints.is_empty() {
-            line(&mut text, "the halves never meet");
-        } else {
-            for cells in &lines {
-                let cells: Vec<String> = cells.iter().zip(&widths).map(|(c, w)| format!("{c:>w$}")).collect();
-                line(&mut text, &format!("  {}", cells.join("  ")));
-            }
-            let (shown, all) = (lines.len() - 1, self.waypoints.len());
-            let words = format!("{shown} of {all} waypoints; height is that of the centre of rotation");
-            line(&mut text, &words);
-        }
-        let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
-        line(&mut text, &format!("outcome: {}{reason}", self.outcome.name()));
-        text
+        table
     }
 
-    /// A record per contact point for programs, the names of the columns first, in D and radians; a waypoint that
-    /// touches nowhere has one record without a point.
-    pub fn records(&self) -> Vec<Vec<String>> {
-        let head =
-            "waypoint travelled x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z";
-        let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<_>>()];
-        let timed = self.waypoints.iter().any(|w| w.time_s.is_some());
-        if timed {
-            records[0].insert(TIME, "time".to_owned());
-        }
-        for (k, w) in self.waypoints.iter().enumerate() {
-            let mut record = vec![k.to_string(), number(w.travelled_d)];
-            record.extend(w.error.to_array().map(number));
-            record.push(number(w.height_d));
-            if timed {
-                record.insert(TIME, w.time_s.map_or_else(String::new, number));
-            }
-            for touch in &w.touches {
-                let contact = touch.point_d.into_iter().chain(touch.normal).map(number);
-                records.push(record.iter().cloned().chain(contact).collect());
-            }
-            if w.touches.is_empty() {
-                record.extend(std::iter::repeat_n(String::new(), 6));
-                records.push(record);
+    /// A row per contact point for programs, in D and radians; a waypoint that touches nowhere has one row without a point.
+    fn contact_table(&self) -> Table {
+        let timed = self.is_timed();
+        let mut table = Table::data(if timed {
+            "waypoint travelled time x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z"
+        } else {
+            "waypoint travelled x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z"
+        });
+        for (number, w) in self.waypoints.iter().enumerate() {
+            let mut row: Vec<Cell> = vec![number.into(), w.travelled_d.into()];
+            row.extend(timed.then(|| w.time_s.into()));
+            row.extend(w.error.to_array().map(Cell::from));
+            row.push(w.height_d.into());
+            let points = w.touches.iter().map(|touch| {
+                touch.point.to_array().into_iter().chain(touch.normal.to_array()).map(Cell::from).collect()
+            });
+            let nowhere = w.touches.is_empty().then(|| vec![Cell::Empty; 6]);
+            for point in points.chain(nowhere) {
+                let point: Vec<Cell> = point;
+                table.push(row.iter().cloned().chain(point));
             }
         }
-        records
+        table
     }
 }
-
-/// Column of the time, where there is one.
-const TIME: usize = 2;
 
 /// Waypoints spread evenly over the path, the first and the last among them.
 fn spread(waypoints: &[WaypointReport]) -> Vec<&WaypointReport> {
@@ -265,8 +266,8 @@ mod tests {
         };
         let told = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
         let text = told.table();
-        assert!(text.starts_with("a?[2Jb\n") && text.ends_with("outcome: aligned\n"), "{text}");
-        assert!(text.contains("  0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
+        assert!(text.starts_with("a?[2Jb\n") && text.contains("  outcome        aligned\n"), "{text}");
+        assert!(text.contains("    0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
         let records = told.records();
         assert_eq!(records.len(), 1 + 2 + 1);
         assert!(records.iter().all(|record| record.len() == 14));
@@ -278,7 +279,7 @@ mod tests {
     #[test]
     fn halves_that_never_meet_have_no_path() {
         let told = report(Vec::new());
-        assert_eq!(told.table(), "a?[2Jb\nthe halves never meet\noutcome: aligned\n");
+        assert!(told.table().contains("\n  The halves never meet.\n"), "{}", told.table());
         assert!(told.end.is_none() && told.records().len() == 1);
     }
 }

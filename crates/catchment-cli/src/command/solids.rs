@@ -4,10 +4,9 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, tell};
+use crate::result_args::{ResultArgs, warnings};
 use catchment::method::partition::{Settings, Subject, shapes};
-use catchment::report::schema::WarningReport;
-use catchment::report::{SolidsReport, figure, solids};
+use catchment::report::{Body, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 
@@ -24,7 +23,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, Value
     catchment solids design.toml --free x,pitch --slices 15 -o shape.vtp\n  \
     catchment solids design.toml --shape swept --cor \"-0.1\" -o swept.png\n  \
     catchment solids design.toml --free x,y --json | jq .bodies\n\n\
-    -o writes .vtp (VTK PolyData: numbers per face say which pieces and which slice), .obj (a group per body), .svg and .png.\n\
+    -o also writes .vtp (VTK PolyData: numbers per face say which pieces and which slice) and .obj (a group per body).\n\
     Lengths are in D and angles in radians; z is the approach, and an angle takes the axis that no free length has.")]
 pub(crate) struct SolidsArgs {
     #[command(flatten)]
@@ -38,11 +37,8 @@ pub(crate) struct SolidsArgs {
     /// Strips per D into which the moving half is cut before its slices are joined; 1 is the dissertation's method
     #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.strips)]
     strips: usize,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -64,23 +60,20 @@ fn shape_parser() -> ValueParser {
 }
 
 pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["vtp", "obj", "svg", "png"])?;
+    let output = args.result.check_with(SolidsBody::KIND, true, &["vtp", "obj"])?;
     let problem = args.design.halves()?;
     let running = args.exec.start()?;
-    if matches!(kind, Some("svg" | "png")) {
+    if output.wants_picture() {
         figure::ensure_fits(0, &running.exec)?;
     }
     let settings = Settings { slices: args.slices, strips: args.strips };
     let shape = shapes(problem.pair(), args.shape, &settings, &running.exec)?;
     drop(running);
-    match kind {
-        Some("vtp") => args.file.write(solids::vtp(&shape).as_bytes())?,
-        Some("obj") => args.file.write(solids::obj(&shape).as_bytes())?,
-        Some(picture) => args.file.draw(picture, &figure::bodies(problem.design(), &shape)?)?,
+    match output.own() {
+        Some("vtp") => output.write_own(solids::vtp(&shape).as_bytes())?,
+        Some(_) => output.write_own(solids::obj(&shape).as_bytes())?,
         None => {}
     }
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = SolidsReport::new(problem.design(), &shape, doubts);
-    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
-    tell(&if args.json { report.to_json()? } else { report.table() }, &said)
+    let report = SolidsReport::new(problem.design(), &shape, warnings(&problem));
+    output.finish(&report, || Ok(figure::bodies(problem.design(), &shape)?))
 }

@@ -22,7 +22,7 @@ pub fn motion(trace: &TraceReport, connector: &Connector) -> Option<Vec<u8>> {
     let mut file = Motion::default();
     for (k, waypoint) in trace.waypoints.iter().enumerate() {
         for touch in &waypoint.touches {
-            let point = file.point(DVec3::from_array(touch.point_d), Some((k, waypoint)), touch.normal);
+            let point = file.point(touch.point, Some((k, waypoint)), touch.normal.to_array());
             file.verts.push(vec![point]);
         }
     }

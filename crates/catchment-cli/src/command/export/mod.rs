@@ -11,14 +11,14 @@ use crate::args::{DesignArgs, dofs};
 use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout, written};
+use crate::output::written;
+use crate::result_args::{PrintArgs, warnings};
 use crate::signals;
 use catchment::exec::Exec;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
 use catchment::pose::DofSet;
 use catchment::poses::parse_pose;
 use catchment::report::folder::{Files, save_files};
-use catchment::report::schema::WarningReport;
 use catchment::report::{ExportBody, ExportReport, write};
 use clap::Args;
 use std::path::PathBuf;
@@ -63,9 +63,8 @@ pub(crate) struct ExportArgs {
     /// Of a result: replace the file if it exists
     #[arg(long)]
     force: bool,
-    /// Of a design: print what was written as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    print: PrintArgs,
     #[command(flatten)]
     drop: DropArgs,
 }
@@ -109,7 +108,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     save_files(&args.output, KIND, &files, &exec)?;
     written(&args.output);
     let file = |name: &str| args.output.join(name).display().to_string();
-    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let body = ExportBody {
         design: design.clone(),
         settings: serde_json::to_value(&settings)?,
@@ -118,8 +116,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         sdf: file(SDF),
         meshes,
     };
-    let report = ExportReport::new(body, problem.objections().iter().map(WarningReport::note).collect());
-    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    to_stderr(&said);
-    Ok(ExitStatus::Done)
+    let report = ExportReport::new(body, warnings(&problem));
+    args.print.print(&report, &report.described())
 }

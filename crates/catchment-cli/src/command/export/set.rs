@@ -54,7 +54,7 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
 
 /// The first option that only a drop test has.
 fn of_a_design(args: &ExportArgs) -> Option<&'static str> {
-    let own = [("--pose", args.pose.is_some()), ("--json", args.json)];
+    let own = [("--pose", args.pose.is_some()), ("--json", args.print.json)];
     own.into_iter()
         .find_map(|(option, given)| given.then_some(option))
         .or_else(|| args.design.changed().next().map(|(option, _)| option))
