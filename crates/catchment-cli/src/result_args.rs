@@ -167,6 +167,11 @@ impl ResultArgs {
         Ok(Output { args: self, file, figure, drawable })
     }
 
+    /// What must hold of the report.
+    pub(crate) fn requirements(&self) -> &[Requirement] {
+        &self.require
+    }
+
     fn check_requirements(&self, report: &str) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
         for requirement in &self.require {
