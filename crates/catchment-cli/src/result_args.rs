@@ -215,6 +215,11 @@ impl ResultArgs {
     pub(crate) fn check_requirements(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         self.print.check(report, absent)
     }
+
+    /// What must hold of the report.
+    pub(crate) fn requirements(&self) -> &[Requirement] {
+        &self.print.require
+    }
 }
 
 impl<'a> Output<'a> {

@@ -4,13 +4,14 @@ use crate::args::with_advice;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::result_args::ResultArgs;
 use catchment::design::{Quantity, SourceText, load};
 use catchment::exec::Stopwatch;
-use catchment::report::csv;
+use catchment::report::Body;
 use catchment::report::schema::Timing;
-use catchment::run::{Requirement, Verdict};
+use catchment::run::Requirement;
 use catchment_systems::chain::file::{ChainFile, MOST_MODULES};
+use catchment_systems::chain::report::{ChainBody, ChainReport};
 use catchment_systems::chain::study::{self, Settings};
 use catchment_systems::chain::{figure, report};
 use clap::Args;
@@ -24,7 +25,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment chain chain.toml\n  \
-    catchment chain p-sequence.toml -o steps.svg     the chain after every step (.svg, .png), or as .csv, .json\n  \
+    catchment chain p-sequence.toml -o steps.svg     the chain after every step\n  \
     catchment chain chain.toml --modules 2..20 --joint-sigma 0.5deg,1deg,2deg\n                                                   \
     how many modules still dock\n  \
     catchment chain chain.toml --require 'probability>=0.99'\n  \
@@ -46,14 +47,8 @@ pub(crate) struct ChainArgs {
     /// Seed of the random chains
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "probability>=0.99"; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = crate::asked::requirement)]
-    require: Vec<Requirement>,
     #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -101,7 +96,7 @@ fn angles(text: &str) -> Result<Angles, String> {
 }
 
 pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["svg", "png", "csv", "json"])?;
+    let output = args.result.check(ChainBody::KIND, true)?;
     let file = ChainFile::read(SourceText::new(&args.path, load(&args.path)?))?;
     let settings = Settings {
         chains: args.chains,
@@ -114,33 +109,23 @@ pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     let study = study::run(&file, &settings, &running.exec)?;
     drop(running);
     let timing = Timing { total_s: watch.seconds(), threads };
-    let report = report::report(&study, &args.require, Some(timing));
-    let verdicts = judged(&args.require, &report)?;
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::draw(&report, &study))?,
-        Some("csv") => args.file.write(&csv(&report.records(&study))?)?,
-        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
-        None => {}
-    }
-    to_stdout(&if args.json { report.to_json()? } else { report::table(&report) })?;
-    let missed: Vec<String> = verdicts.iter().filter(|v| !v.met).map(ToString::to_string).collect();
-    to_stderr(&missed);
-    Ok(if missed.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+    let report = report::report(&study, args.result.requirements(), Some(timing));
+    check_requirements(args.result.requirements(), &report)?;
+    output.finish(&report, || Ok(figure::draw(&report, &study)))
 }
 
-/// What became of every requirement.
-fn judged(requirements: &[Requirement], report: &report::ChainReport) -> Result<Vec<Verdict>, Failure> {
-    let value = serde_json::to_value(report)?;
-    let judge = |requirement: &Requirement| {
-        requirement.judge(&value).map_err(|error| {
+/// Refuses requirements on what this report has not.
+fn check_requirements(requirements: &[Requirement], report: &ChainReport) -> Result<(), Failure> {
+    for requirement in requirements {
+        report.verdicts(std::slice::from_ref(requirement)).map_err(|error| {
             Failure::with_help(format!("--require '{requirement}': {error}"), advice(report))
-        })
-    };
-    requirements.iter().map(judge).collect()
+        })?;
+    }
+    Ok(())
 }
 
 /// Why there may be no probability.
-fn advice(report: &report::ChainReport) -> Option<String> {
+fn advice(report: &ChainReport) -> Option<String> {
     let text = "a probability needs a [connector] in the file: design = \"x-face.toml\"";
     report.connector.is_none().then(|| text.to_owned())
 }

@@ -187,9 +187,10 @@ fn files_hold_poses_chains_and_pictures() {
     assert!(write("lengths.png", &["--modules", "2..4"]).starts_with(b"\x89PNG"));
     let stored: Value = serde_json::from_slice(&write("report.json", &[])).unwrap();
     assert_eq!(stored["kind"], "chain");
-    let told = run(home.path(), &["chain", "c.toml", "-o", "steps.txt"]);
+    let told = run(home.path(), &["chain", "c.toml", "-o", "steps.stl"]);
     assert!(
-        told.starts_with("exit 2") && told.contains("let its name end in .svg, .png, .csv, .json"),
+        told.starts_with("exit 2")
+            && told.contains("let its name end in .json, .csv, .md, .html, .txt, .png, .svg"),
         "{told}"
     );
     let told = run(home.path(), &["chain", "c.toml", "-o", "steps.svg"]);

@@ -18,6 +18,7 @@ use super::shape::{Latch, Shape};
 use catchment::design::Findings;
 use catchment::exec::{Cancelled, Exec};
 use catchment::problem::{Draft, Problem, ProblemError};
+use serde::{Deserialize, Serialize};
 
 /// What changes the answer beside the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,39 +39,57 @@ impl Default for Settings {
     }
 }
 
-/// Errors at one face that arrives at another, and what becomes of them.
-#[derive(Debug, Clone)]
+/// Errors of a face where it arrives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Arrival {
-    /// The latch; none for the last face of a straight chain.
+    /// The latch; null for the last face of a straight chain.
     pub latch: Option<Latch>,
     /// Joints that may be wrong.
     pub joints: Vec<usize>,
-    /// To first order.
+    /// Standard deviation across the face, to first order, in mm.
+    pub lateral_sigma_mm: f64,
+    /// The same in D.
+    pub lateral_sigma_d: f64,
+    /// Standard deviation of the gap, which is not in the area of acceptance, in mm.
+    pub normal_sigma_mm: f64,
+    /// Standard deviation of the angle, in radians.
+    pub angle_sigma_rad: f64,
+    /// Correlation of lateral offset and angle.
+    pub correlation: f64,
+    /// Mean and covariance to first order: lateral mm, normal mm, angle rad.
     pub first_order: Covariance,
-    /// Of the random chains.
+    /// The same of the random chains, by exact kinematics.
     pub exact: Covariance,
-    /// Lateral, normal and angle of every random chain.
-    pub cloud: Vec<[f64; 3]>,
-    /// Which of them dock.
-    pub docked: Option<Vec<bool>>,
-    /// The probability that the lateral offset alone is corrected without any rotation, to first order.
+    /// Share of the chains that dock here.
+    pub docking: Option<Probability>,
+    /// The probability that the lateral offset alone is corrected without rotation, to first order.
     pub offset_probability: Option<f64>,
     /// Pressing force along the normal that the joints can hold, in N.
     pub press_n: f64,
+    /// Lateral mm, normal mm and angle rad of every random chain.
+    #[serde(skip)]
+    pub cloud: Vec<[f64; 3]>,
+    /// Which of them dock.
+    #[serde(skip)]
+    pub docked: Option<Vec<bool>>,
 }
 
 /// A row of the table over numbers of modules.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Length {
     /// Standard deviation of a joint's angle, in radians.
-    pub joint_sigma: f64,
+    pub joint_sigma_rad: f64,
     /// Modules of the straight chain.
     pub modules: usize,
-    /// Of the last face, to first order.
-    pub first_order: Covariance,
-    /// The share that docks.
-    pub probability: Option<Probability>,
-    /// The probability for the lateral offset alone, without rotation.
+    /// Standard deviation of the last face across, to first order, in D.
+    pub lateral_sigma_d: f64,
+    /// Standard deviation of its heading, in radians.
+    pub heading_sigma_rad: f64,
+    /// Share of the chains that dock.
+    pub docking: Option<Probability>,
+    /// The probability that the lateral offset alone is corrected without rotation, to first order.
     pub offset_probability: Option<f64>,
 }
 
@@ -98,7 +117,7 @@ pub struct Study {
     pub straight: Arrival,
     /// Every latch, in the order of the sequence.
     pub arrivals: Vec<Arrival>,
-    /// What became of the sequence.
+    /// How the chain folds by its sequence.
     pub folded: Option<Folded>,
     /// The choices of corners, for an O.
     pub corners: Vec<Corners>,
@@ -216,15 +235,23 @@ impl Work<'_> {
     fn arrival(&self, latch: Option<Latch>, closing: &Closing, decide: bool) -> Result<Arrival, Cancelled> {
         let cloud = self.cloud(closing, &self.file.errors)?;
         let first_order = closing.first_order(&self.file.errors);
+        let [lateral_sigma_mm, normal_sigma_mm, angle_sigma_rad] = first_order.sigmas();
+        let docked = if decide { self.docks(&cloud)? } else { None };
         Ok(Arrival {
             latch,
             joints: closing.joints(),
+            lateral_sigma_mm,
+            lateral_sigma_d: lateral_sigma_mm / self.file.body.face,
+            normal_sigma_mm,
+            angle_sigma_rad,
+            correlation: first_order.correlation(),
             first_order,
             exact: Covariance::of(&cloud),
-            docked: if decide { self.docks(&cloud)? } else { None },
+            docking: docked.as_deref().map(Probability::of),
             offset_probability: self.offset_probability(&first_order),
             press_n: ring::forces(closing, self.file.servo.torque, &[]).0,
             cloud,
+            docked,
         })
     }
 
@@ -249,11 +276,13 @@ impl Work<'_> {
                     Some(_) => self.docks(&self.cloud(&closing, &errors)?)?,
                     None => None,
                 };
+                let [lateral_sigma, _, heading_sigma_rad] = first_order.sigmas();
                 found.push(Length {
-                    joint_sigma,
+                    joint_sigma_rad: joint_sigma,
                     modules: *modules,
-                    first_order,
-                    probability: docked.as_deref().map(Probability::of),
+                    lateral_sigma_d: lateral_sigma / self.file.body.face,
+                    heading_sigma_rad,
+                    docking: docked.as_deref().map(Probability::of),
                     offset_probability: self.offset_probability(&first_order),
                 });
             }

@@ -1,7 +1,7 @@
 //! Errors of random chains at a face, and which of them dock.
 
 use super::super::accumulation::Covariance;
-use super::super::report::{ArrivalReport, ChainReport};
+use super::super::report::ChainReport;
 use super::super::study::Arrival;
 use catchment::acceptance::Outcome;
 use catchment::report::figure::draw::axis::{Frame, Scale};
@@ -13,10 +13,10 @@ use catchment::report::text::percent;
 const MOST: usize = 2000;
 
 /// Draws x and pitch of the chains with the ellipses of one and two standard deviations.
-pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, told: &ArrivalReport, found: &Arrival) {
+pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &Arrival) {
     let face = report.body.body.face;
     let at = |e: &[f64; 3]| [-e[0] / face, e[2].to_degrees()];
-    let shown = &found.cloud[..found.cloud.len().min(MOST)];
+    let shown = &arrival.cloud[..arrival.cloud.len().min(MOST)];
     let reach = |k: usize, least: f64| 1.1 * shown.iter().map(|e| at(e)[k].abs()).fold(least, f64::max);
     let (x, pitch) = (reach(0, 1e-3), reach(1, 0.1));
     let frame = Frame {
@@ -29,7 +29,7 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, told: &Arriv
     svg.line([frame.px(0.0), rect.y], [frame.px(0.0), rect.y + rect.h], &fine);
     svg.begin_clip(rect);
     for (k, error) in shown.iter().enumerate() {
-        let colour = match found.docked.as_ref().map(|docked| docked[k]) {
+        let colour = match arrival.docked.as_ref().map(|docked| docked[k]) {
             Some(true) => hex(outcome(Outcome::Aligned)),
             Some(false) => "#d55e00".to_owned(),
             None => hex(FIXED_EDGE),
@@ -37,14 +37,14 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, told: &Arriv
         svg.circle(frame.at(at(error)), 1.6, &format!(r#"fill="{colour}" fill-opacity="0.75""#));
     }
     for sigmas in [1.0, 2.0] {
-        let points = ellipse(&told.first_order, sigmas).into_iter().map(|e| frame.at(at(&e)));
+        let points = ellipse(&arrival.first_order, sigmas).into_iter().map(|e| frame.at(at(&e)));
         svg.path(&polyline(points, true), &format!(r#"fill="none" stroke="{INK}" stroke-width="1.3""#));
     }
     svg.end();
     frame.draw(svg);
     let where_ =
-        told.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
-    let said = match told.docking {
+        arrival.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
+    let said = match arrival.docking {
         Some(docking) => format!("{where_}: {} of {} dock", percent(docking.probability), report.chains),
         None => format!("{where_}: {} chains", report.chains),
     };

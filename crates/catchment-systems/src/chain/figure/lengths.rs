@@ -1,6 +1,7 @@
 //! Error and probability over the number of modules.
 
-use super::super::report::{ChainReport, LengthReport};
+use super::super::report::ChainReport;
+use super::super::study::Length;
 use super::{SIDE, TOP, WIDTH, degrees, headed};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{Frame, Scale, short};
@@ -19,7 +20,7 @@ pub(super) fn draw(report: &ChainReport) -> Picture {
         None => "straight chains".to_owned(),
     };
     let mut svg = headed(report, TOP + CHART + 100.0, &story);
-    let rows: Vec<&[LengthReport]> =
+    let rows: Vec<&[Length]> =
         report.lengths.chunk_by(|a, b| a.joint_sigma_rad == b.joint_sigma_rad).collect();
     let mut x = SIDE;
     for (k, rows) in rows.iter().enumerate() {
@@ -35,7 +36,7 @@ pub(super) fn draw(report: &ChainReport) -> Picture {
     chart(&mut svg, lateral, "lateral error, σ [D]", &rows, None, |row| Some((row.lateral_sigma_d, None)));
     if has_docking {
         let rect = Rect { x: 84.0 + w + 100.0, ..lateral };
-        let probability = |row: &LengthReport| row.docking.map(|d| (d.probability, Some(d.ci95)));
+        let probability = |row: &Length| row.docking.map(|d| (d.probability, Some(d.ci95)));
         chart(&mut svg, rect, "probability of docking", &rows, Some(1.0), probability);
     }
     Picture::of(svg)
@@ -45,9 +46,9 @@ fn chart(
     svg: &mut Svg,
     rect: Rect,
     label: &str,
-    rows: &[&[LengthReport]],
+    rows: &[&[Length]],
     top: Option<f64>,
-    value: impl Fn(&LengthReport) -> Option<(f64, Option<[f64; 2]>)>,
+    value: impl Fn(&Length) -> Option<(f64, Option<[f64; 2]>)>,
 ) {
     let all = || rows.iter().copied().flatten();
     let (first, last) =

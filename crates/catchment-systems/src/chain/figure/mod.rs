@@ -33,7 +33,7 @@ pub fn draw(report: &ChainReport, study: &Study) -> Picture {
     let colours = if report.connector.is_some() { ": blue docks, orange does not" } else { "" };
     let mut svg = headed(report, 470.0, &format!("straight chain of {} modules{colours}", report.modules));
     let rect = Rect { x: 90.0, y: TOP + 26.0, w: WIDTH - 180.0, h: 330.0 };
-    cloud::draw(&mut svg, rect, report, &report.straight, &study.straight);
+    cloud::draw(&mut svg, rect, report, &report.straight);
     Picture::of(svg)
 }
 

@@ -57,8 +57,8 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
         Rect { x: 84.0 + 456.0 * column, y: charts + row * CHART_ROW, w: 330.0, h: CHART }
     };
     track(&mut svg, place(0), folding, study);
-    for (k, (told, found)) in folding.latches.iter().zip(&study.arrivals).enumerate() {
-        cloud::draw(&mut svg, place(k + 1), report, told, found);
+    for (k, arrival) in folding.latches.iter().enumerate() {
+        cloud::draw(&mut svg, place(k + 1), report, arrival);
     }
     Picture::of(svg)
 }

@@ -1,22 +1,19 @@
-//! What was found about a chain: as versioned JSON, as a table for people, as records for programs.
+//! The report of a chain: JSON, text, tables for programs.
 
-use super::accumulation::{Covariance, Errors};
+use super::accumulation::Errors;
 use super::docking::Probability;
 use super::fold::{Event, Hooks, Servo, State, off_lattice, open_latches};
 use super::kinematics::{Body, rotors};
 use super::ring::Corners;
-use super::shape::{Latch, Shape, cells};
+use super::shape::{Shape, cells};
 use super::study::{Arrival, Length, Study};
-use catchment::report::number;
+use catchment::document::{number, rounded};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Body as ReportBody, Envelope};
 use catchment::run::Requirement;
 use serde::{Deserialize, Serialize};
 
-mod records;
-mod table;
-
-pub use table::table;
+mod document;
 
 /// A chain's report, with its head.
 pub type ChainReport = Envelope<ChainBody>;
@@ -25,7 +22,7 @@ pub type ChainReport = Envelope<ChainBody>;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ChainBody {
-    /// What the person called it.
+    /// Its name.
     pub name: String,
     /// Modules.
     pub modules: usize,
@@ -48,13 +45,13 @@ pub struct ChainBody {
     /// Its 95 % interval.
     pub ci95: Option<[f64; 2]>,
     /// The last face of the straight chain.
-    pub straight: ArrivalReport,
+    pub straight: Arrival,
     /// What the chain folds into, if it folds.
     pub folding: Option<FoldingReport>,
     /// Choices of corners, for an O.
     pub corners: Vec<Corners>,
     /// The table over numbers of modules.
-    pub lengths: Vec<LengthReport>,
+    pub lengths: Vec<Length>,
     /// How many modules still meet what is required, for each joint error of the table.
     pub reach: Vec<Reach>,
 }
@@ -75,37 +72,7 @@ pub struct ConnectorReport {
     pub offsets_d: Option<[f64; 2]>,
 }
 
-/// Errors of a face where it arrives.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ArrivalReport {
-    /// The latch; null for the last face of a straight chain.
-    pub latch: Option<Latch>,
-    /// Joints that may be wrong.
-    pub joints: Vec<usize>,
-    /// Standard deviation across the face, to first order, in mm.
-    pub lateral_sigma_mm: f64,
-    /// The same in D.
-    pub lateral_sigma_d: f64,
-    /// Standard deviation of the gap, which is not in the area of acceptance, in mm.
-    pub normal_sigma_mm: f64,
-    /// Standard deviation of the angle, in radians.
-    pub angle_sigma_rad: f64,
-    /// Correlation of lateral offset and angle.
-    pub correlation: f64,
-    /// Mean and covariance to first order: lateral mm, normal mm, angle rad.
-    pub first_order: Covariance,
-    /// The same of the random chains, by exact kinematics.
-    pub exact: Covariance,
-    /// Share of the chains that dock here.
-    pub docking: Option<Probability>,
-    /// The probability that the lateral offset alone is corrected without rotation, to first order.
-    pub offset_probability: Option<f64>,
-    /// Pressing force along the normal that the joints can hold, in N.
-    pub press_n: f64,
-}
-
-/// A sequence and what became of it.
+/// A sequence, and how the chain folds by it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FoldingReport {
@@ -120,7 +87,7 @@ pub struct FoldingReport {
     /// Cells of the rotors.
     pub cells: Vec<[i64; 2]>,
     /// Every latch in the order of the sequence.
-    pub latches: Vec<ArrivalReport>,
+    pub latches: Vec<Arrival>,
     /// The chain after every step.
     pub steps: Vec<StepReport>,
     /// What latched.
@@ -169,24 +136,6 @@ pub struct ModuleReport {
     pub commanded_mm: [f64; 2],
 }
 
-/// A row of the table over numbers of modules.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LengthReport {
-    /// Standard deviation of a joint's angle, in radians.
-    pub joint_sigma_rad: f64,
-    /// Modules of the straight chain.
-    pub modules: usize,
-    /// Standard deviation of the last face across, to first order, in D.
-    pub lateral_sigma_d: f64,
-    /// Standard deviation of its heading, in radians.
-    pub heading_sigma_rad: f64,
-    /// Share of the chains that dock.
-    pub docking: Option<Probability>,
-    /// The probability that the lateral offset alone is corrected without rotation, to first order.
-    pub offset_probability: Option<f64>,
-}
-
 /// How many modules still meet a requirement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -207,40 +156,6 @@ impl ReportBody for ChainBody {
 
 /// What a reach is about, where nothing else is required.
 const USUAL: &str = "probability>=0.99";
-
-impl ArrivalReport {
-    fn of(arrival: &Arrival, body: &Body) -> Self {
-        let [lateral, normal, angle] = arrival.first_order.sigmas();
-        Self {
-            latch: arrival.latch,
-            joints: arrival.joints.clone(),
-            lateral_sigma_mm: lateral,
-            lateral_sigma_d: lateral / body.face,
-            normal_sigma_mm: normal,
-            angle_sigma_rad: angle,
-            correlation: arrival.first_order.correlation(),
-            first_order: arrival.first_order,
-            exact: arrival.exact,
-            docking: arrival.docked.as_deref().map(Probability::of),
-            offset_probability: arrival.offset_probability,
-            press_n: arrival.press_n,
-        }
-    }
-}
-
-impl LengthReport {
-    fn of(length: &Length, body: &Body) -> Self {
-        let [lateral, _, heading] = length.first_order.sigmas();
-        Self {
-            joint_sigma_rad: length.joint_sigma,
-            modules: length.modules,
-            lateral_sigma_d: lateral / body.face,
-            heading_sigma_rad: heading,
-            docking: length.probability,
-            offset_probability: length.offset_probability,
-        }
-    }
-}
 
 impl FoldingReport {
     fn of(study: &Study) -> Option<Self> {
@@ -276,7 +191,7 @@ impl FoldingReport {
             commands_from: folding.sequence.source.to_owned(),
             turned: turns.map(|(_, joint)| joint).collect(),
             cells: cells(&folding.lattice),
-            latches: study.arrivals.iter().map(|arrival| ArrivalReport::of(arrival, body)).collect(),
+            latches: study.arrivals.clone(),
             steps: steps.collect(),
             events: folded.events.clone(),
             pressed_n: folded.pressed.clone(),
@@ -291,8 +206,6 @@ impl ChainBody {
     /// Of a study; the reach is that of every requirement about `probability`, or of 99 %.
     fn of(study: &Study, requirements: &[Requirement]) -> Self {
         let file = &study.file;
-        let lengths: Vec<LengthReport> =
-            study.lengths.iter().map(|length| LengthReport::of(length, &file.body)).collect();
         let connector = study.docking.as_ref().map(|docking| ConnectorReport {
             name: docking.problem.design().name.clone(),
             center_of_rotation_d: docking.problem.alignment().center_of_rotation,
@@ -312,17 +225,17 @@ impl ChainBody {
             connector,
             probability: study.probability.map(|p| p.probability),
             ci95: study.probability.map(|p| p.ci95),
-            straight: ArrivalReport::of(&study.straight, &file.body),
+            straight: study.straight.clone(),
             folding: FoldingReport::of(study),
             corners: study.corners.clone(),
-            reach: reach(&lengths, requirements),
-            lengths,
+            reach: reach(&study.lengths, requirements),
+            lengths: study.lengths.clone(),
         }
     }
 }
 
 /// How many modules still meet every requirement about `probability`.
-fn reach(lengths: &[LengthReport], requirements: &[Requirement]) -> Vec<Reach> {
+fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<Reach> {
     let about = |requirement: &&Requirement| requirement.to_string().starts_with("probability ");
     let mut wanted: Vec<Requirement> = requirements.iter().filter(about).cloned().collect();
     if wanted.is_empty() {
@@ -330,12 +243,12 @@ fn reach(lengths: &[LengthReport], requirements: &[Requirement]) -> Vec<Reach> {
     }
     let mut found = Vec::new();
     for rows in lengths.chunk_by(|a, b| a.joint_sigma_rad == b.joint_sigma_rad) {
-        let mut rows: Vec<&LengthReport> = rows.iter().filter(|row| row.docking.is_some()).collect();
+        let mut rows: Vec<&Length> = rows.iter().filter(|row| row.docking.is_some()).collect();
         rows.sort_by_key(|row| row.modules);
         let Some(first) = rows.first() else { continue };
         for requirement in &wanted {
             let up_to = |met: &dyn Fn(&Probability) -> bool| {
-                let meets = |row: &&&LengthReport| row.docking.as_ref().is_some_and(met);
+                let meets = |row: &&&Length| row.docking.as_ref().is_some_and(met);
                 rows.iter().take_while(meets).last().map(|row| row.modules)
             };
             let met = |value: f64| requirement.is_met_by(value);
@@ -396,10 +309,6 @@ fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
         }
     }
     told
-}
-
-fn rounded(value: f64) -> String {
-    catchment::report::text::rounded(value)
 }
 
 #[cfg(test)]

@@ -6,10 +6,10 @@ use super::*;
 use catchment::design::SourceText;
 use catchment::exec::Exec;
 
-fn told(text: &str, settings: &Settings) -> (ChainReport, Study) {
+fn reported(text: &str, settings: &Settings) -> ChainReport {
     let file = ChainFile::read(SourceText::new("c.toml", text)).unwrap();
     let study = run(&file, settings, &Exec::new()).unwrap();
-    (report(&study, &[], None), study)
+    report(&study, &[], None)
 }
 
 #[test]
@@ -21,21 +21,21 @@ fn a_report_reads_back_and_keeps_to_its_columns() {
         "[sequence]\nname = 'Block'\nreading = 'B'",
     ];
     for text in texts {
-        let (report, _) = told(text, &few);
+        let report = reported(text, &few);
         let json = report.to_json().unwrap();
         let back = ChainReport::from_json(&json).unwrap();
         assert_eq!(back.to_json().unwrap(), json);
         assert!(json.contains("\"kind\": \"chain\""));
-        let table = table(&report);
+        let table = report.table();
         let widest = table.lines().map(|line| line.chars().count()).max().unwrap();
         assert!(widest <= 80, "{widest} columns:\n{table}");
     }
 }
 
 #[test]
-fn poses_are_told_step_by_step() {
-    let (report, study) = told("[sequence]\nname = 'P'", &Settings { chains: 1, ..Settings::default() });
-    let records = report.records(&study);
+fn poses_are_listed_step_by_step() {
+    let report = reported("[sequence]\nname = 'P'", &Settings { chains: 1, ..Settings::default() });
+    let records = report.records();
     assert_eq!(records[0], ["t", "module", "x", "y", "heading", "command", "state"]);
     assert_eq!(records.len(), 1 + 6 * 6);
     assert_eq!(records[1], ["0", "1", "0", "0", "0", "0", "holding"]);
@@ -46,8 +46,10 @@ fn poses_are_told_step_by_step() {
 
 #[test]
 fn a_latch_that_does_not_hold_is_a_doubt() {
-    let (report, _) =
-        told("[sequence]\nname = 'P'\n[servo]\ntorque = 0.8", &Settings { chains: 1, ..Settings::default() });
+    let report = reported(
+        "[sequence]\nname = 'P'\n[servo]\ntorque = 0.8",
+        &Settings { chains: 1, ..Settings::default() },
+    );
     assert_eq!(report.warnings.len(), 1);
     let said = &report.warnings[0].message;
     assert!(
@@ -59,7 +61,7 @@ fn a_latch_that_does_not_hold_is_a_doubt() {
 
 #[test]
 fn the_reach_is_the_last_row_before_the_first_that_fails() {
-    let row = |modules, probability| LengthReport {
+    let row = |modules, probability| Length {
         joint_sigma_rad: 0.1,
         modules,
         lateral_sigma_d: 0.0,
