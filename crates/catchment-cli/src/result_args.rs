@@ -22,7 +22,7 @@ use catchment::report::folder::{Files, StudyFolder, encode};
 use catchment::report::json_schema;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Envelope, ReportOf, csv};
-use catchment::run::Requirement;
+use catchment::run::{Requirement, RequirementError};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use serde::Serialize;
@@ -150,15 +150,34 @@ impl ResultArgs {
                 Some("leave it out, or give -o".to_owned()),
             ));
         }
-        self.check_requirements(report)?;
+        self.check_requirements(report, &[])?;
         Ok(Output { args: self, file, figure, drawable })
     }
 
-    fn check_requirements(&self, report: &str) -> Result<(), Failure> {
+    /// Whether a file is named that holds a picture.
+    pub(crate) fn names_picture(&self) -> bool {
+        let of = |path: &PathBuf| Kind::of(path, true).is_ok_and(Kind::is_picture);
+        self.figure.is_some() || self.output.as_ref().is_some_and(of)
+    }
+
+    /// Refuses requirements that no report of this kind answers, and those on places that are null in this one.
+    pub(crate) fn check_requirements(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
+        self.check_each(|requirement| requirement.check(&schema, absent))
+    }
+
+    /// Refuses requirements on items that a list of the report does not have.
+    pub(crate) fn check_items(&self, list: &str, names: &[&str]) -> Result<(), Failure> {
+        self.check_each(|requirement| requirement.check_items(list, names))
+    }
+
+    fn check_each(
+        &self,
+        check: impl Fn(&Requirement) -> Result<(), RequirementError>,
+    ) -> Result<(), Failure> {
         for requirement in &self.require {
-            let tried = requirement.check(&schema, &[]);
-            tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+            let refused = |error| Failure::with_help(format!("--require '{requirement}': {error}"), None);
+            check(requirement).map_err(refused)?;
         }
         Ok(())
     }

@@ -23,8 +23,6 @@ mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
 mod cells;
-#[cfg(feature = "drop")]
-mod chance;
 mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
@@ -69,17 +67,14 @@ pub mod write;
 pub mod zarr;
 mod zraa;
 
+#[cfg(feature = "drop")]
+use catchment_study::chance::Chance;
 use catchment_study::friction::Friction;
 use catchment_study::hold::Hold;
 use catchment_study::success::Success;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
-#[cfg(feature = "drop")]
-pub use chance::{
-    AtSpeedReport, ChanceBody, ChanceReport, CircumstanceReport, MapReport, OverallReport, PoseChanceReport,
-    PresetReport,
-};
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
 pub use comparison::{
     Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
@@ -129,3 +124,6 @@ pub type FrictionReport = ReportOf<Friction>;
 pub type HoldReport = ReportOf<Hold>;
 /// Whether robots dock, with its head.
 pub type SuccessesReport = ReportOf<Success>;
+/// How likely drop tests dock, with its head.
+#[cfg(feature = "drop")]
+pub type ChanceReport = ReportOf<Chance>;
