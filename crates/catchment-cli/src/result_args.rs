@@ -22,7 +22,7 @@ use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Envelope, ReportOf, csv};
-use catchment::run::Requirement;
+use catchment::run::{Requirement, RequirementError};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use serde::Serialize;
@@ -216,6 +216,17 @@ impl ResultArgs {
         self.print.check(report, absent)
     }
 
+    /// Whether a file is named that holds a picture.
+    pub(crate) fn names_picture(&self) -> bool {
+        let of = |path: &PathBuf| Kind::of(path, true, &[]).is_ok_and(Kind::is_picture);
+        self.figure.is_some() || self.output.as_ref().is_some_and(of)
+    }
+
+    /// Refuses requirements on items that a list of the report does not have.
+    pub(crate) fn check_items(&self, list: &str, names: &[&str]) -> Result<(), Failure> {
+        self.print.check_each(|requirement| requirement.check_items(list, names))
+    }
+
     /// What must hold of the report.
     pub(crate) fn requirements(&self) -> &[Requirement] {
         &self.print.require
@@ -353,9 +364,16 @@ impl PrintArgs {
     /// Refuses requirements that no report of this kind answers. `absent` are places that are null with the options at hand.
     fn check(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
+        self.check_each(|requirement| requirement.check(&schema, absent))
+    }
+
+    fn check_each(
+        &self,
+        check: impl Fn(&Requirement) -> Result<(), RequirementError>,
+    ) -> Result<(), Failure> {
         for requirement in &self.require {
-            let tried = requirement.check(&schema, absent);
-            tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+            let refused = |error| Failure::with_help(format!("--require '{requirement}': {error}"), None);
+            check(requirement).map_err(refused)?;
         }
         Ok(())
     }

@@ -21,8 +21,6 @@ mod answer;
 #[cfg(feature = "zarr")]
 mod bounded;
 mod cells;
-#[cfg(feature = "drop")]
-mod chance;
 mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
@@ -63,6 +61,8 @@ mod zraa;
 use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
 use catchment_study::agreement::Agreement;
 use catchment_study::convergence::Convergence;
+#[cfg(feature = "drop")]
+use catchment_study::chance::Chance;
 use catchment_study::friction::Friction;
 use catchment_study::hold::Hold;
 use catchment_study::plan::Plan;
@@ -74,11 +74,6 @@ use catchment_study::validate::Validation;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
-#[cfg(feature = "drop")]
-pub use chance::{
-    AtSpeedReport, ChanceBody, ChanceReport, CircumstanceReport, MapReport, OverallReport, PoseChanceReport,
-    PresetReport,
-};
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
 pub use comparison::{Compared, ComparisonBody, ComparisonReport};
 pub use document::{OfDesign, ReportOf};
@@ -138,3 +133,6 @@ pub type HoldReport = ReportOf<Hold>;
 
 /// Whether robots dock, with its head.
 pub type SuccessesReport = ReportOf<Success>;
+/// How likely drop tests dock, with its head.
+#[cfg(feature = "drop")]
+pub type ChanceReport = ReportOf<Chance>;

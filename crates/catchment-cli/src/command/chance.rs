@@ -1,25 +1,24 @@
 //! `catchment chance`: dynamics as a probability.
 
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::drop_args::DropArgs;
 use crate::error_args::SpreadArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr};
+use crate::output::to_stderr;
+use crate::result_args::{Draw, ResultArgs, study};
 use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Findings, SourceText, load, parse_dofs};
+use catchment::document::Subject;
 use catchment::pose::Dof;
 use catchment::poses::{Circumstance, Dynamics, OffsetsAt, PoseTable, parse_draw, parse_pose, read_dynamics};
 use catchment::problem::Problem;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{ChanceReport, csv, figure};
-use catchment::study::chance::{Chance, Question, Settings, run as ask};
+use catchment::report::figure;
+use catchment::study::chance::{Chance, Question, Settings, run as fall};
 use clap::Args;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Dynamics as a probability: how likely it docks that comes with some speed, drift, spin, mass, friction, bounce, height
 ///
@@ -48,7 +47,7 @@ use std::time::Instant;
     mass = { median = 2, factor = 1.1 }                # or \"2 */ 1.1\", kg\n  \
     restitution = { measured = [0.1, 0.15, 0.3] }\n\n\
     and drift_x, drift_y, spin_roll, spin_pitch, spin_yaw, height. Lengths are in D, angles in radians, times in s unless \
-    they have a unit; in JSON always. -o writes .png and .svg (map and curve), .csv and .json."
+    they have a unit; in JSON always."
 )]
 pub(crate) struct ChanceArgs {
     #[command(flatten)]
@@ -82,9 +81,7 @@ pub(crate) struct ChanceArgs {
     #[command(flatten)]
     drop: DropArgs,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -93,40 +90,33 @@ const DRAWN: &str = "What is drawn for every trial";
 const ASKED: &str = "What is asked";
 
 pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
     if args.drop.changes().iter().any(|change| change.option == "--slope-threshold") {
         return Err(Failure::with_help(
             "--slope-threshold ends exact motions, and chance is of drop tests".to_owned(),
             Some("they have friction itself: --friction, or --draw 'friction=0.2 ± 0.05'".to_owned()),
         ));
     }
-    let problem = args.design.problem()?;
-    let settings = args.settings(problem.design())?;
-    let asked = args.question(&problem)?;
-    let form = ChanceReport::new(problem.design(), &Chance::form(&asked, &settings), Vec::new(), None);
-    args.asked.check(&form)?;
-    if matches!(kind, Some("png" | "svg")) {
-        figure::chance(&form).map_err(|error| {
-            Failure::with_help(error.to_string(), Some("add --map or --times".to_owned()))
-        })?;
-    }
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let long = asked.doubt(&settings, running.exec.threads());
-    to_stderr(&long.into_iter().collect::<Vec<_>>());
-    let found = ask(&problem, &asked, &settings, &running.exec)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = ChanceReport::new(problem.design(), &found, doubts, Some(timing));
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::chance(&report)?)?,
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
-        None => {}
-    }
-    args.asked.tell(&report, ChanceReport::table)
+    let draw: Option<Draw<Chance>> = if args.map.is_some() || !args.times.is_empty() {
+        Some(|report, _| Ok(figure::chance(report)?))
+    } else if args.result.names_picture() {
+        return Err(Failure::with_help(
+            "there is nothing to draw: neither a map nor a curve against speed".to_owned(),
+            Some("add --map or --times".to_owned()),
+        ));
+    } else {
+        None
+    };
+    study(&args.design, &args.result, &args.exec, draw, |problem, exec| {
+        let settings = args.settings(problem.design())?;
+        let question = args.question(problem)?;
+        let absent = [("overall", question.errors.is_none()), ("map", question.map.is_empty())];
+        let absent: Vec<&str> =
+            absent.into_iter().filter_map(|(place, is_null)| is_null.then_some(place)).collect();
+        args.result.check_requirements(Chance::KIND, &absent)?;
+        let long = question.doubt(&settings, exec.threads());
+        to_stderr(&long.into_iter().collect::<Vec<_>>());
+        Ok(fall(problem, &question, &settings, exec)?)
+    })
 }
 
 impl ChanceArgs {

@@ -84,7 +84,12 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
         &args.result,
         &args.exec,
         Some(|report, _| Ok(figure::success(report))),
-        |problem, exec| Ok(follow(problem, &args.errors.robots(problem)?, &args.settings(), exec)?),
+        |problem, exec| {
+            let robots = args.errors.robots(problem)?;
+            let names: Vec<&str> = robots.iter().map(|robot| robot.name.as_str()).collect();
+            args.result.check_items("robots", &names)?;
+            Ok(follow(problem, &robots, &args.settings(), exec)?)
+        },
     )
 }
 

@@ -271,6 +271,20 @@ impl Requirement {
         self.bound(&Value::Null).map(|_| ())
     }
 
+    /// Refuses a requirement on an item that a list at the top of the report does not have: the items have these names, in their order.
+    ///
+    /// # Errors
+    /// If it is about another item of this list.
+    pub fn check_items(&self, list: &str, names: &[&str]) -> Result<(), RequirementError> {
+        let mut steps = self.steps();
+        let is_of_list = steps.next().is_some_and(|(_, step)| step == list);
+        let Some((before, item)) = steps.next().filter(|_| is_of_list) else { return Ok(()) };
+        if names.contains(&item) || item.parse::<usize>().is_ok_and(|position| position < names.len()) {
+            return Ok(());
+        }
+        Err(no_such_path(before, item, names.iter().map(|name| (*name).to_owned()).collect()))
+    }
+
     /// Every step of the path, with the path before it: empty, or ending with a dot.
     fn steps(&self) -> impl Iterator<Item = (&str, &str)> {
         let start = |step: &str| step.as_ptr() as usize - self.path.as_ptr() as usize;
@@ -320,6 +334,20 @@ mod tests {
     fn judge(text: &str) -> Result<bool, RequirementError> {
         let requirement: Requirement = text.parse()?;
         Ok(requirement.judge(&report())?.met)
+    }
+
+    #[test]
+    fn items_of_a_list_are_known_by_their_names() {
+        let check = |text: &str| {
+            let requirement: Requirement = text.parse().unwrap();
+            requirement.check_items("robots", &["arm A", "arm B"]).map_err(|error| error.to_string())
+        };
+        for path in ["robots.arm A.p >= 1", "robots.1.p >= 1", "motions >= 1", "errors.arm C >= 1"] {
+            assert_eq!(check(path), Ok(()), "{path}");
+        }
+        let message = "the report has no `robots.arm C`; did you mean `robots.arm A`?";
+        assert_eq!(check("robots.arm C.p >= 1"), Err(message.to_owned()));
+        assert!(check("robots.2.p >= 1").is_err());
     }
 
     #[test]

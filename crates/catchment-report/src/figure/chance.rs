@@ -5,8 +5,9 @@ use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex, sequential};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture};
-use crate::{ChanceReport, MapReport};
+use crate::ChanceReport;
 use catchment_core::poses::Circumstance;
+use catchment_study::chance::{Map, unit_of};
 use std::fmt::Write;
 
 /// Colour of exact motions.
@@ -78,7 +79,7 @@ fn story(report: &ChanceReport) -> Vec<String> {
     lines
 }
 
-fn cells(svg: &mut Svg, report: &ChanceReport, map: &MapReport, rect: Rect) {
+fn cells(svg: &mut Svg, report: &ChanceReport, map: &Map, rect: Rect) {
     let units = Units::of(&report.design);
     let [first, second] = [&map.axes[0], &map.axes[1]];
     let frame = Frame { rect, x: units.axis(first), y: units.axis(second) };
@@ -151,7 +152,7 @@ fn bar(svg: &mut Svg, rect: Rect) {
 
 fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
     let percent = |share: f64| 100.0 * share;
-    let (factor, unit) = report.unit(Circumstance::Speed);
+    let (factor, unit) = unit_of(&report.design, Circumstance::Speed);
     // Speeds where there are any, else what they are multiplied by.
     let has_speed = report.curve.iter().all(|at| at.speed > 0.0);
     let place = |times: f64, speed: f64| if has_speed { speed * factor } else { times };
@@ -218,7 +219,7 @@ mod tests {
             Question { errors: Some(Spread::normal(sigma)), times: vec![0.1, 4.0], ..Question::default() };
         let asked = asked.with_map(&problem, [Dof::X, Dof::Pitch], 8);
         let found = run(&problem, &asked, &settings, &Exec::new()).unwrap();
-        let report = ChanceReport::new(problem.design(), &found, Vec::new(), None);
+        let report = ChanceReport::new(problem.design(), found, Vec::new(), None);
         let picture = chance(&report).unwrap();
         look("chance", &picture);
         assert!(picture.svg().contains("share of 4 trials") && picture.svg().contains("as declared"));
@@ -229,7 +230,7 @@ mod tests {
         assert!(report.records().iter().all(|record| record.len() == 13));
         let nothing = Question { poses: vec![PoseError::default()], ..Question::default() };
         let found = run(&problem, &nothing, &settings, &Exec::new()).unwrap();
-        let report = ChanceReport::new(problem.design(), &found, Vec::new(), None);
+        let report = ChanceReport::new(problem.design(), found, Vec::new(), None);
         assert!(matches!(chance(&report), Err(FigureError::Empty { .. })));
     }
 }

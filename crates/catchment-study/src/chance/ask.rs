@@ -1,6 +1,6 @@
 //! Poses and maps: so many trials of each, and the share that docks.
 
-use super::found::{Chance, Map, PoseChance};
+use super::found::{Chance, Declared, Map, PoseChance, PresetOpen};
 use super::spread;
 use super::trial::{Draw, check, nominal};
 use super::{ChanceError, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question, Settings};
@@ -50,7 +50,7 @@ pub(super) struct Trials<'a> {
 /// let at = |x: f64| PoseError { x, ..PoseError::default() };
 /// let asked = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };
 /// let found = chance::run(&problem, &asked, &settings, &Exec::new())?;
-/// assert_eq!(found.poses.iter().map(|pose| pose.probability()).collect::<Vec<_>>(), [1.0, 0.0]);
+/// assert_eq!(found.poses.iter().map(|pose| pose.probability).collect::<Vec<_>>(), [1.0, 0.0]);
 /// # Ok(())
 /// # }
 /// ```
@@ -82,7 +82,24 @@ pub fn run(
     let counted = overall.as_ref().map_or(0, |overall| overall.trials);
     let places = poses.len() + map.as_ref().map_or(0, |map| map.cells.len());
     let made = places * settings.trials + counted + curve.iter().map(|at| at.trials).sum::<usize>();
-    Ok(Chance { settings: settings.clone(), poses, map, overall, curve, trials: made })
+    let declared = settings.dynamics.declared().map(|(circumstance, law)| Declared {
+        circumstance,
+        unit: circumstance.unit(),
+        law: law.clone(),
+        cut: 1.0 - law.inside(circumstance.range()),
+    });
+    let preset = settings.drop.preset();
+    Ok(Chance {
+        settings: settings.clone(),
+        declared: declared.collect(),
+        coasting_d: settings.coasting(),
+        preset: preset.map(|preset| PresetOpen { name: preset.name, unknown: preset.unknown.to_vec() }),
+        overall,
+        curve,
+        poses,
+        map,
+        trials: made,
+    })
 }
 
 fn sound(problem: &Problem, asked: &Question, settings: &Settings) -> Result<(), ChanceError> {
@@ -166,8 +183,8 @@ impl Trials<'_> {
         })?;
         let of = |(k, error): (usize, &PoseError)| {
             let met = &outcomes[k * trials..(k + 1) * trials];
-            let counts = Outcome::ALL.map(|outcome| met.iter().filter(|end| **end == outcome).count());
-            PoseChance { error: *error, trials, counts, quasi_static: quasi_static[k] }
+            let outcomes = Outcome::ALL.map(|outcome| met.iter().filter(|end| **end == outcome).count());
+            PoseChance::of(*error, outcomes, quasi_static[k])
         };
         Ok(poses.iter().enumerate().map(of).collect())
     }

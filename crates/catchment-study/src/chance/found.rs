@@ -1,56 +1,105 @@
-//! What was found.
+//! Results of drop tests.
 
-use super::{Question, Settings};
+use super::Settings;
 use crate::success::Stratum;
 use catchment_core::acceptance::Outcome;
-use catchment_core::landscape::{Grid, GridAxis};
+use catchment_core::landscape::GridAxis;
 use catchment_core::method::correction::wilson95;
 use catchment_core::pose::PoseError;
+use catchment_core::poses::{Circumstance, Law};
+use serde::{Serialize, Serializer};
+
+/// A number for each outcome, in the order of [`Outcome::ALL`].
+pub type ByOutcome<N> = [N; Outcome::ALL.len()];
 
 /// How likely a half docks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Chance {
-    /// How it was asked for.
+    /// The settings.
     pub settings: Settings,
-    /// Each pose, in the order in which they were asked.
-    pub poses: Vec<PoseChance>,
-    /// The cells of a map.
-    pub map: Option<Map>,
-    /// Under the errors that are expected.
+    /// Every declared circumstance with its law.
+    pub declared: Vec<Declared>,
+    /// How far a half coasts that comes with the mean speed, before damping has taken it, in D; null without speed or damping.
+    pub coasting_d: Option<f64>,
+    /// The preset that the settings come from, if any.
+    pub preset: Option<PresetOpen>,
+    /// The probability under the errors that are expected; null where none are.
     pub overall: Option<Overall>,
     /// The same with every velocity multiplied, in ascending order.
     pub curve: Vec<AtSpeed>,
+    /// Each pose, in the order of the question.
+    pub poses: Vec<PoseChance>,
+    /// The cells of a map; null where there is none.
+    pub map: Option<Map>,
     /// Trials in all.
     pub trials: usize,
 }
 
+/// A circumstance and its law.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Declared {
+    /// Which.
+    pub circumstance: Circumstance,
+    /// The unit of its numbers; empty of bare numbers.
+    pub unit: &'static str,
+    /// Its law.
+    pub law: Law,
+    /// Share of the law that lies outside of what is possible, and is drawn again, in [0, 1].
+    pub cut: f64,
+}
+
+/// Settings under a name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PresetOpen {
+    /// The name.
+    pub name: &'static str,
+    /// What its source leaves open.
+    pub unknown: Vec<&'static str>,
+}
+
 /// How likely one pose docks.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PoseChance {
-    /// The pose.
+    /// The pose error.
     pub error: PoseError,
     /// Trials.
     pub trials: usize,
-    /// How many of them met each outcome, in the order of [`Outcome::ALL`].
-    pub counts: [usize; Outcome::ALL.len()],
+    /// Trials by outcome.
+    #[serde(serialize_with = "by_outcome")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, usize>"))]
+    pub outcomes: ByOutcome<usize>,
+    /// Share of the trials that aligned, in [0, 1].
+    pub probability: f64,
+    /// Wilson's 95 % interval of it; undecided trials widen it upwards.
+    pub ci95: [f64; 2],
     /// Share of the draws that dock by exact quasi-static motion: 0 or 1 where friction does not vary.
     pub quasi_static: f64,
+    /// Share of the trials that differ from most of them: of a pose that has one true end, how often a single trial errs.
+    pub minority: f64,
+    /// How often the majority of three such trials would be of the minority: 3E² − 2E³.
+    pub majority_of_three: f64,
 }
 
 /// Cells over one error or two.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Map {
     /// The axes; the first runs fastest.
     pub axes: Vec<GridAxis>,
-    /// The centre of each cell.
+    /// The centre of each cell, all other errors 0.
     pub cells: Vec<PoseChance>,
 }
 
 /// How likely a half docks under the errors that are expected.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Overall {
-    /// What kind of errors.
-    pub kind: &'static str,
+    /// `normal`, `uniform` or `measured`.
+    pub errors: &'static str,
     /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
@@ -59,100 +108,68 @@ pub struct Overall {
     pub trials: usize,
     /// Plain trials of random errors whose interval would be as wide.
     pub plain_trials: f64,
-    /// Shares of all errors that meet each outcome, in the order of [`Outcome::ALL`].
-    pub shares: [f64; Outcome::ALL.len()],
-    /// What was seen of each stratum.
+    /// Share of the errors by outcome, in [0, 1].
+    #[serde(serialize_with = "by_outcome")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
+    pub outcomes: ByOutcome<f64>,
+    /// The sample, by stratum.
     pub strata: Vec<Stratum>,
-    /// Cells of the grid that said where to look.
-    pub cells: usize,
-    /// Probability by exact quasi-static motions under the same errors and draws of friction, and its 95 % interval.
+    /// Cells of the quasi-static grid that decided where trials are made most.
+    pub grid_cells: usize,
+    /// The probability by exact quasi-static motions of the same errors and draws of friction, in [0, 1].
     pub quasi_static: f64,
-    /// See [`Overall::quasi_static`].
+    /// Its 95 % interval.
     pub quasi_static_ci95: [f64; 2],
-    /// Motions that this took.
+    /// Motions that this took, those of the grid included.
     pub motions: usize,
 }
 
 /// The probability with every velocity multiplied.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtSpeed {
-    /// By what.
+    /// By what every velocity is multiplied.
     pub factor: f64,
     /// Mean approach speed then, in D/s.
     pub speed: f64,
     /// Trials that this took.
     pub trials: usize,
-    /// Probability of docking.
+    /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
 }
 
-impl Chance {
-    /// With every place that an answer has, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(asked: &Question, settings: &Settings) -> Self {
-        let nothing = [0.0, 1.0];
-        let pose =
-            |error| PoseChance { error, trials: 1, counts: [0; Outcome::ALL.len()], quasi_static: 0.0 };
-        let map = (!asked.map.is_empty()).then(|| {
-            let grid = Grid { axes: asked.map.clone() };
-            let cells = (0..grid.len()).map(|cell| pose(grid.pose(cell))).collect();
-            Map { axes: grid.axes, cells }
-        });
-        let overall = asked.errors.as_ref().map(|errors| Overall {
-            kind: errors.kind(),
-            probability: 0.0,
-            ci95: nothing,
-            trials: 0,
-            plain_trials: 0.0,
-            shares: [0.0; Outcome::ALL.len()],
-            strata: Vec::new(),
-            cells: 0,
-            quasi_static: 0.0,
-            quasi_static_ci95: nothing,
-            motions: 0,
-        });
-        let at = |factor: &f64| AtSpeed {
-            factor: *factor,
-            speed: 0.0,
-            trials: 0,
-            probability: 0.0,
-            ci95: nothing,
-        };
+impl PoseChance {
+    /// The trials of a pose by their outcomes, beside the share that docks by exact motion.
+    pub(super) fn of(error: PoseError, outcomes: ByOutcome<usize>, quasi_static: f64) -> Self {
+        let trials: usize = outcomes.iter().sum();
+        let [aligned, undecided] = [Outcome::Aligned, Outcome::Undecided].map(|of| outcomes[place(of)]);
+        let all = trials.max(1) as f64;
+        let probability = aligned as f64 / all;
+        let open = (aligned + undecided) as f64 / all;
+        let minority = probability.min(1.0 - probability);
         Self {
-            settings: settings.clone(),
-            poses: asked.poses.iter().copied().map(pose).collect(),
-            map,
-            overall,
-            curve: asked.times.iter().map(at).collect(),
-            trials: 0,
+            error,
+            trials,
+            outcomes,
+            probability,
+            ci95: [wilson95(probability, trials as f64)[0], wilson95(open, trials as f64)[1]],
+            quasi_static,
+            minority,
+            majority_of_three: majority_of_three(minority),
         }
     }
 }
 
-impl PoseChance {
-    /// How many trials met an outcome.
-    pub fn count(&self, outcome: Outcome) -> usize {
-        Outcome::ALL.iter().position(|of| *of == outcome).map_or(0, |k| self.counts[k])
-    }
+/// The place of an outcome in [`Outcome::ALL`].
+pub(super) fn place(outcome: Outcome) -> usize {
+    Outcome::ALL.iter().position(|of| *of == outcome).unwrap_or_default()
+}
 
-    /// Share of the trials that aligned.
-    pub fn probability(&self) -> f64 {
-        self.count(Outcome::Aligned) as f64 / self.trials.max(1) as f64
-    }
-
-    /// Wilson's 95 % interval of it; undecided trials widen it upwards.
-    pub fn ci95(&self) -> [f64; 2] {
-        let (trials, share) = (self.trials as f64, self.probability());
-        let open = (self.count(Outcome::Aligned) + self.count(Outcome::Undecided)) as f64 / trials.max(1.0);
-        [wilson95(share, trials)[0], wilson95(open, trials)[1]]
-    }
-
-    /// Share of the trials that fare otherwise than most of them: of a pose that has one true end, how often a single trial errs.
-    pub fn minority(&self) -> f64 {
-        let share = self.probability();
-        share.min(1.0 - share)
-    }
+/// The numbers under the names of the outcomes.
+fn by_outcome<N: Serialize, S: Serializer>(values: &ByOutcome<N>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(Outcome::ALL.iter().map(|outcome| outcome.name()).zip(values))
 }
 
 /// How often the majority of three independent trials errs, each of which errs with probability `single`: 3E² − 2E³. The dissertation

@@ -28,6 +28,7 @@
 
 mod ask;
 mod found;
+mod report;
 mod spread;
 #[cfg(test)]
 mod tests;
@@ -42,7 +43,10 @@ use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Circumstance, Dynamics, Spread};
 use catchment_core::problem::Problem;
-pub use found::{AtSpeed, Chance, Map, Overall, PoseChance, majority_of_three};
+pub use found::{
+    AtSpeed, ByOutcome, Chance, Declared, Map, Overall, PoseChance, PresetOpen, majority_of_three,
+};
+pub use report::unit_of;
 use serde::{Deserialize, Serialize};
 
 /// What changes the answer.

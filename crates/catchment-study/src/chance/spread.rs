@@ -63,18 +63,18 @@ pub(super) fn overall(
         let Sample { probability, ci95, motions, .. } = asked.sample(factor, &step(k + 1))?;
         curve.push(AtSpeed { factor, speed: factor * trials.speed(), trials: motions, probability, ci95 });
     }
-    let shares = Outcome::ALL.map(|outcome| {
+    let outcomes = Outcome::ALL.map(|outcome| {
         found.poses.iter().filter(|pose| pose.outcome == outcome).map(|pose| pose.weight).sum::<f64>()
     });
     let overall = Overall {
-        kind: errors.kind(),
+        errors: errors.kind(),
         probability: found.probability,
         ci95: found.ci95,
         trials: found.motions,
         plain_trials: found.plain,
-        shares,
+        outcomes,
         strata: found.strata,
-        cells: strata.cells(),
+        grid_cells: strata.cells(),
         quasi_static: still.probability,
         quasi_static_ci95: still.ci95,
         motions: still.motions + strata.motions(),

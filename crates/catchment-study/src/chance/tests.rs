@@ -52,10 +52,10 @@ fn what_drifts_lands_where_the_closed_form_says() {
         .with(Circumstance::Height, Law::constant(0.5));
     let settings = Settings { dynamics, trials: 200, ..Settings::default() };
     let pose = of_poses(&sliding(), &[x(0.3)], &settings)[0];
-    assert!(holds(pose.ci95(), 0.5), "{pose:?}");
+    assert!(holds(pose.ci95, 0.5), "{pose:?}");
     assert_eq!(pose.quasi_static, 1.0);
     // With the drift outwards from the other side it comes nearer: all dock.
-    assert_eq!(of_poses(&sliding(), &[x(-0.3)], &settings)[0].probability(), 1.0);
+    assert_eq!(of_poses(&sliding(), &[x(-0.3)], &settings)[0].probability, 1.0);
 }
 
 /// Slow halves fare as exact motions do; under normal offsets P = erf(1/(2σ√2)), and 20 intervals miss it at most 4 times (one test in 400
@@ -70,7 +70,7 @@ fn slow_halves_have_the_probability_of_the_closed_form() {
         let found = ask(&sliding(), &asked, &settings).overall.unwrap();
         held += usize::from(holds(found.ci95, exact));
         assert!(holds(found.quasi_static_ci95, exact) || (found.quasi_static - exact).abs() < 0.02);
-        assert!((found.shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        assert!((found.outcomes.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     }
     assert!(held >= 16, "{held} of 20 hold {exact}");
 }
@@ -120,7 +120,7 @@ fn a_given_push_is_taken_as_it_is() {
     for at in [-0.9, -0.6, -0.3, 0.0, 0.3, 0.45] {
         let end = bench.fall(&x(at), &by_hand, &Exec::new()).unwrap();
         let found = of_poses(&problem, &[x(at)], &settings)[0];
-        assert_eq!(found.count(end.outcome), 1, "{at}");
+        assert_eq!(found.outcomes[found::place(end.outcome)], 1, "{at}");
         met.push(end.outcome);
     }
     assert!(met.contains(&Outcome::Aligned) && met.contains(&Outcome::Missed), "{met:?}");
@@ -200,7 +200,7 @@ fn mirror_images_are_as_likely() {
     for [at, pitch] in [[0.4, 0.2], [0.3, -0.5], [0.5, 0.3]] {
         let pose = |side: f64| PoseError { pitch: side * pitch, ..x(side * at) };
         let [one, other] = of_poses(&problem, &[pose(1.0), pose(-1.0)], &settings)[..] else { panic!() };
-        let ([a, b], [c, d]) = (one.ci95(), other.ci95());
+        let ([a, b], [c, d]) = (one.ci95, other.ci95);
         assert!(a <= d && c <= b, "{at}: {one:?} {other:?}");
     }
 }
