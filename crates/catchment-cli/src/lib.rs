@@ -5,7 +5,6 @@
 
 mod advice;
 mod args;
-mod asked;
 mod bug;
 mod command;
 mod drop_args;

@@ -1,9 +1,9 @@
 //! The cells of a decided grid, or listed poses, as a table: what pandas, a spreadsheet or a database reads.
 
-use super::text::number;
 use super::vtk::ViewError;
 use catchment_core::acceptance::Acceptance;
 use catchment_core::advice::Advice;
+use catchment_core::document::number;
 use catchment_core::exec::Exec;
 use catchment_core::pose::Dof;
 use std::fmt::Write;

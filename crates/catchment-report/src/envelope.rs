@@ -11,7 +11,6 @@
 //! reads the layouts from [`OLDEST`] on; a newer one is refused.
 
 use super::schema::{Timing, WarningReport};
-use super::text::wrapped;
 use super::version::Version;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -46,14 +45,6 @@ impl<T: Body> Envelope<T> {
     /// A report of this program.
     pub fn of(body: T, warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
         Self { catchment: Version::own(), body, warnings, timing }
-    }
-
-    /// Appends its warnings, each after an empty line.
-    pub(crate) fn append_warnings(&self, text: &mut String) {
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(text, "warning: ", &warning.message);
-        }
     }
 }
 

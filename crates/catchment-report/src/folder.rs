@@ -141,7 +141,7 @@ impl StudyFolder<'_> {
         let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
         let has_table = !records.is_empty();
         if has_table {
-            files.push((format!("{}.csv", self.name), super::text::csv(records)?));
+            files.push((format!("{}.csv", self.name), crate::text::csv(records)?));
         }
         write::folder(self.path, self.name, exec, |folder| -> Result<(), SaveError> {
             write_all(folder, &files, exec)?;

@@ -48,7 +48,6 @@ pub mod schema;
 pub mod set;
 mod slices;
 pub mod solids;
-mod table;
 pub mod text;
 mod trajectory;
 mod version;
@@ -60,9 +59,9 @@ mod zraa;
 
 use catchment_core::run::{jams::Jams, rests::Rests, window::Window};
 use catchment_study::agreement::Agreement;
-use catchment_study::convergence::Convergence;
 #[cfg(feature = "drop")]
 use catchment_study::chance::Chance;
+use catchment_study::convergence::Convergence;
 use catchment_study::friction::Friction;
 use catchment_study::hold::Hold;
 use catchment_study::plan::Plan;
@@ -90,7 +89,7 @@ pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_
 pub use schema::{Report, RunBody};
 pub use slices::{SliceReport, SlicesFound, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
-pub use text::{csv, number};
+pub use text::csv;
 pub use trajectory::{TraceBody, TraceReport, WaypointReport};
 pub use version::{Version, VersionError};
 pub use zraa::{AcceptedOffsets, CatchReport, NilssonReport, ZraaBody, ZraaReport};

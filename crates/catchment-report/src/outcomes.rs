@@ -2,9 +2,9 @@
 
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::number as number_in_table;
 use catchment_core::acceptance::{Acceptance, Outcome, Reason};
 use catchment_core::design::Design;
+use catchment_core::document::number as number_in_table;
 use catchment_core::method::Method;
 use catchment_core::method::descent::End;
 use catchment_core::pose::PoseError;

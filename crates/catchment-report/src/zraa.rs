@@ -1,8 +1,8 @@
 //! The offsets that are corrected without any rotation, and what describes them.
 
 use super::document::{OfDesign, ReportOf};
-use super::text::rounded;
 use catchment_core::design::Design;
+use catchment_core::document::rounded;
 use catchment_core::document::{Document, Subject, Table};
 use catchment_core::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
 use catchment_core::pose::Dof;

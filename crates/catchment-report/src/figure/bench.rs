@@ -1,6 +1,5 @@
 //! Trials of a plan over what docks: one panel for each value of the errors that do not lie across.
 
-use super::super::text::percent;
 use super::super::{PlanReport, ValidationReport};
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units, short};
@@ -8,6 +7,7 @@ use super::draw::colour::{self, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline, width_of};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::document::percent;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Observed;
 use catchment_study::plan::{CELLS, Panel, Point};

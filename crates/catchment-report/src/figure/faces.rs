@@ -11,7 +11,6 @@
 //!
 //! The scale is the same in D, so that faces of different sizes are comparable.
 
-use super::super::text::rounded;
 use super::super::zraa::NilssonReport;
 use super::draw::arrow::dimension;
 use super::draw::axis::{Frame, Scale, Units, short};
@@ -21,6 +20,7 @@ use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
 use catchment_core::contact::Pair;
 use catchment_core::design::{ConnectorSpec, Design};
+use catchment_core::document::rounded;
 use catchment_core::method::zraa::Nilsson;
 use catchment_core::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec2};

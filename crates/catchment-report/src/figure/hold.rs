@@ -4,7 +4,7 @@ use super::draw::colour::{CURVES, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline};
 use super::{FigureError, Picture};
 use crate::HoldReport;
-use crate::text::significant;
+use catchment_core::document::significant;
 use catchment_study::hold::Both;
 
 /// The middle of the polar chart, and its radius.

@@ -15,10 +15,10 @@ use super::map::{self, Map};
 use super::section::Placement;
 use super::{FigureError, Picture, solid};
 use crate::schema::OnaaReport;
-use crate::text::{percent, significant};
 use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
+use catchment_core::document::{percent, significant};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_study::slices::{Slice, Slices};
 

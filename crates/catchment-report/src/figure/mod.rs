@@ -111,8 +111,8 @@ pub use trials::trials;
 pub use watersheds::watersheds;
 
 use super::schema::Interval;
-use super::text::percent;
 use super::{Report, run};
+use catchment_core::document::percent;
 use catchment_core::merit::MeritError;
 
 /// Why a picture cannot be drawn.

@@ -7,8 +7,8 @@ use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, wi
 use super::map::{Legend, Map, zero_lines};
 use super::{FigureError, Picture, headline};
 use crate::Report;
-use crate::text::percent;
 use catchment_core::acceptance::{Acceptance, Outcome};
+use catchment_core::document::percent;
 use catchment_core::method::partition::Partition;
 use catchment_core::pose::PoseError;
 

@@ -1,11 +1,11 @@
 //! Lateral offsets that contact corrects without any rotation: an area with the largest square in it, or a stretch of one axis.
 
-use super::super::text::significant;
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use catchment_core::design::Design;
+use catchment_core::document::significant;
 use catchment_core::method::zraa::{Square, Zraa};
 use catchment_core::pose::Dof;
 

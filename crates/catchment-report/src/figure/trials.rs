@@ -2,13 +2,13 @@
 //! lies on the wrong side.
 
 use super::super::TrialsReport;
-use super::super::text::{percent, significant};
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::document::{percent, significant};
 use catchment_core::method::zraa::Zraa;
 use catchment_core::pose::Dof;
 use catchment_study::trials::{Trial, Trials};

@@ -12,9 +12,9 @@ use super::section::Placement;
 use super::{FigureError, Picture, headline, heights, solid};
 use crate::Report;
 use crate::schema::WatershedsReport;
-use crate::text::{grouped, percent};
 use catchment_core::acceptance::Acceptance;
 use catchment_core::connector::Connector;
+use catchment_core::document::{grouped, percent};
 use catchment_core::method::flood::{DAM, Watersheds};
 use catchment_core::pose::{Dof, PoseError};
 

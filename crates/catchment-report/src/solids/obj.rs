@@ -4,7 +4,7 @@
 //! from outside; corners are not shared between bodies.
 
 use super::heading;
-use crate::text::number;
+use catchment_core::document::number;
 use catchment_core::method::partition::{Solid, Solids};
 use std::fmt::Write;
 

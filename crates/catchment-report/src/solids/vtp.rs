@@ -11,7 +11,7 @@
 //! Text keeps every digit: what is read back is what was computed. Corners are not shared between bodies.
 
 use super::{heading, middle};
-use crate::text::number;
+use catchment_core::document::number;
 use catchment_core::method::partition::{Solid, Solids};
 use glam::DVec3;
 use std::fmt::{Display, Write};

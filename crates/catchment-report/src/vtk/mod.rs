@@ -24,8 +24,9 @@ pub use border::border;
 pub use image::image;
 pub use motion::motion;
 
-use super::text::{grouped, line, number, row, significant};
+use super::document::{Style, lines};
 use catchment_core::acceptance::{Acceptance, Outcome};
+use catchment_core::document::{Document, grouped, number, significant};
 use catchment_core::exec::{Cancelled, OutOfBudget};
 use catchment_core::landscape::{Grid, GridAxis};
 use catchment_core::pose::{Dof, DofSet, PoseError};
@@ -188,24 +189,24 @@ impl<'a> View<'a> {
         all.filter(|(k, _)| !self.shown.contains(k)).map(|(_, (axis, cell))| (axis, *cell))
     }
 
-    /// For eyes: what is shown, and how much of it is accepted.
+    /// What is shown, and how much of it is accepted, as text.
     pub fn table(&self) -> String {
-        let mut text = String::new();
+        let mut document = Document::default();
         let names: Vec<String> =
             self.axes().map(|axis| format!("{} ({})", axis.dof.name(), unit(axis))).collect();
-        row(&mut text, "axes", &names.join(", "));
+        document.row("axes", names.join(", "));
         let held: Vec<String> = self
             .fixed()
             .map(|(axis, k)| format!("{} {} {}", axis.dof.name(), significant(axis.center(k)), unit(axis)))
             .collect();
         if !held.is_empty() {
-            row(&mut text, "at", &format!("{}, the middle of a cell", held.join(", ")));
+            document.row("at", format!("{}, the middle of a cell", held.join(", ")));
         }
         let accepted = self.cells().filter(|cell| self.outcomes[*cell] == Outcome::Aligned).count();
         let measure: f64 = self.axes().map(GridAxis::step).product::<f64>() * accepted as f64;
         let counts = format!("{} of {} cells", grouped(accepted), grouped(self.len()));
-        line(&mut text, &format!("  {:<15}{counts}, {}", "accepted", significant(measure)));
-        text
+        document.row("accepted", format!("{counts}, {}", significant(measure)));
+        lines(&document, Style::default()).join("\n") + "\n"
     }
 }
 

@@ -36,7 +36,7 @@ impl Command {
     /// `−1.67`, or `slack`.
     pub fn text(self) -> String {
         match self {
-            Self::Angle(angle) => catchment::report::number(angle),
+            Self::Angle(angle) => catchment::document::number(angle),
             Self::Slack => "slack".to_owned(),
         }
     }

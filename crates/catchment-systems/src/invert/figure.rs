@@ -9,13 +9,13 @@
 use super::{Heights, Inverse, REACHED};
 use catchment::connector::Connector;
 use catchment::design::Design;
+use catchment::document::significant;
 use catchment::report::figure::draw::axis::{Frame, Units};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{
     Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of,
 };
 use catchment::report::figure::{FigureError, Picture, Placement, section_panel};
-use catchment::report::text::significant;
 use glam::DVec2;
 
 /// How far apart the halves are drawn, in D.

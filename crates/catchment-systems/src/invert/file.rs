@@ -5,7 +5,7 @@ use catchment::connector::Half;
 use catchment::design::Design;
 use catchment::method::zraa::HeightFacet;
 use catchment::pose::{Dof, Mount};
-use catchment::report::number;
+use catchment::document::number;
 use catchment::report::text::line;
 use glam::DVec3;
 

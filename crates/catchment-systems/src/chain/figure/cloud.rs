@@ -4,10 +4,10 @@ use super::super::accumulation::Covariance;
 use super::super::report::ChainReport;
 use super::super::study::Arrival;
 use catchment::acceptance::Outcome;
+use catchment::document::percent;
 use catchment::report::figure::draw::axis::{Frame, Scale};
 use catchment::report::figure::draw::colour::{FIXED_EDGE, hex, outcome};
 use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, polyline};
-use catchment::report::text::percent;
 
 /// Chains that are drawn at most.
 const MOST: usize = 2000;

@@ -183,7 +183,7 @@ fn words(
         })
         .collect();
     let told = if said.is_empty() { "straight".to_owned() } else { said.join(";  ") };
-    let time = format!("t = {} s", catchment::report::text::rounded(step.time_s));
+    let time = format!("t = {} s", catchment::document::rounded(step.time_s));
     svg.bold([x, y], LABEL, Anchor::Start, &time);
     svg.text([x + width_of(&time, LABEL) + 14.0, y], TICK, Anchor::Start, INK, &told);
     let news: Vec<String> = folding
