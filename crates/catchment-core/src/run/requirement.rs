@@ -340,13 +340,13 @@ mod tests {
     fn items_of_a_list_are_known_by_their_names() {
         let check = |text: &str| {
             let requirement: Requirement = text.parse().unwrap();
-            requirement.check_items("robots", &["arm A", "arm B"]).map_err(|error| error.to_string())
+            requirement.check_items("robots", &["arm-a", "arm-b"]).map_err(|error| error.to_string())
         };
-        for path in ["robots.arm A.p >= 1", "robots.1.p >= 1", "motions >= 1", "errors.arm C >= 1"] {
+        for path in ["robots.arm-a.p >= 1", "robots.1.p >= 1", "motions >= 1", "errors.arm-c >= 1"] {
             assert_eq!(check(path), Ok(()), "{path}");
         }
-        let message = "the report has no `robots.arm C`; did you mean `robots.arm A`?";
-        assert_eq!(check("robots.arm C.p >= 1"), Err(message.to_owned()));
+        let message = "the report has no `robots.arm-c`; did you mean `robots.arm-a`?";
+        assert_eq!(check("robots.arm-c.p >= 1"), Err(message.to_owned()));
         assert!(check("robots.2.p >= 1").is_err());
     }
 

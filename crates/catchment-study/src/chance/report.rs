@@ -86,7 +86,7 @@ impl Subject for Chance {
         }
         if let Some(first) = self.poses.first() {
             let title = format!(
-                "probability of docking by pose, {} trials each; exact motion is quasi-static",
+                "docking by pose, {} trials each; exact motion is quasi-static",
                 grouped(first.trials)
             );
             document.titled(Some(title)).table(self.places(design));

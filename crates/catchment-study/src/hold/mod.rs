@@ -420,11 +420,12 @@ fn snapped(part: f64) -> f64 {
 impl Both {
     /// Without friction guided and free, with it guided and free: infinite where any load is withstood; none where nothing is known.
     pub fn columns(&self) -> [Option<f64>; COLUMNS] {
-        let of = |withstood: Option<Withstood>, value: fn(Withstood) -> Option<f64>| {
-            withstood.map(|withstood| value(withstood).unwrap_or(f64::INFINITY))
+        let any = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+        let of = |withstood: Option<Withstood>| {
+            [withstood.map(|of| any(of.guided)), withstood.map(|of| any(of.free))]
         };
-        let (guided, free): (fn(Withstood) -> _, fn(Withstood) -> _) = (|of| of.guided, |of| of.free);
-        [of(self.smooth, guided), of(self.smooth, free), of(self.rough, guided), of(self.rough, free)]
+        let ([smooth_guided, smooth_free], [rough_guided, rough_free]) = (of(self.smooth), of(self.rough));
+        [smooth_guided, smooth_free, rough_guided, rough_free]
     }
 
     /// One of them where it is finite.

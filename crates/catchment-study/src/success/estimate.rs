@@ -213,7 +213,7 @@ impl Sample {
             let sigma = source.scale(axis);
             slopes.push(Slope {
                 axis,
-                slope: slope / sigma,
+                value: slope / sigma,
                 ci95: [(slope - error) / sigma, (slope + error) / sigma],
             });
         }

@@ -168,7 +168,7 @@ pub(crate) struct Slope {
     /// By the σ (or half-width) of which error.
     pub axis: Dof,
     /// In 1/D or 1/rad.
-    pub slope: f64,
+    pub value: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
 }

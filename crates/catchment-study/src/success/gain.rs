@@ -38,7 +38,7 @@ pub(super) fn gains(
             let [lo, hi] = difference((faces.probability, faces.ci95), (found.probability, found.ci95));
             slopes.push(Slope {
                 axis: *axis,
-                slope: (faces.probability - found.probability) / width,
+                value: (faces.probability - found.probability) / width,
                 ci95: [lo / width, hi / width],
             });
         }
@@ -55,7 +55,7 @@ pub(super) fn gains(
         improvements.push(Improvement {
             axis: *axis,
             sigma: source.sigma(*axis),
-            slope: slope.map(|slope| slope.slope),
+            slope: slope.map(|slope| slope.value),
             slope_ci95: slope.map(|slope| slope.ci95),
             halved: halved.probability,
             halved_ci95: halved.ci95,

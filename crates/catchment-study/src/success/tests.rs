@@ -160,7 +160,7 @@ fn slopes_are_those_of_finite_differences() {
             let difference = (at(1.1) - at(0.9)) / (0.2 * width);
             let half = 0.5 * (slope.ci95[1] - slope.ci95[0]);
             // Poses that change sides number some hundreds of 40 000: a twentieth of the slope is three of their standard errors.
-            let apart = (slope.slope - difference).abs();
+            let apart = (slope.value - difference).abs();
             assert!(apart < 1.5 * half + 0.08 * difference.abs(), "{slope:?} for {difference}");
         }
     }

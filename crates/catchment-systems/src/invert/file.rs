@@ -3,9 +3,9 @@
 use super::{Heights, Inverse, REACHED};
 use catchment::connector::Half;
 use catchment::design::Design;
+use catchment::document::number;
 use catchment::method::zraa::HeightFacet;
 use catchment::pose::{Dof, Mount};
-use catchment::document::number;
 use catchment::report::text::line;
 use glam::DVec3;
 
