@@ -36,35 +36,18 @@ pub use add_json_schemas as add;
 /// Adds the JSON schemas of all reports of this crate to a generator.
 #[cfg(feature = "schema")]
 pub fn add_all(generator: &mut schemars::SchemaGenerator) {
+    crate::subjects::add_json_schemas(generator);
     add!(
         generator,
         crate::Report,
-        crate::AgreementReport,
         crate::CheckReport,
         crate::ComparisonReport,
-        crate::ConvergenceReport,
         crate::ExportReport,
         crate::FacesReport,
-        crate::FrictionReport,
-        crate::HoldReport,
-        crate::JamsReport,
-        crate::LeverReport,
         crate::Envelope<crate::outcomes::Answer<'static>>,
-        crate::PlanReport,
-        crate::RestsReport,
-        crate::SensitivityReport,
-        crate::SlicesReport,
         crate::SolidsReport,
-        crate::SuccessesReport,
-        crate::SweepReport,
         crate::TraceReport,
-        crate::TrialsReport,
-        crate::ValidationReport,
-        crate::WindowReport,
-        crate::ZraaReport,
     );
-    #[cfg(feature = "drop")]
-    add!(generator, crate::ChanceReport);
 }
 
 #[cfg(test)]

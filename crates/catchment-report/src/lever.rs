@@ -1,6 +1,5 @@
 //! The first contact as the kinematic method sees it, and what describes it.
 
-use super::document::ReportOf;
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Subject, Table, fixed};
@@ -8,9 +7,6 @@ use catchment_core::method::kinematic::stepping::Halt;
 use catchment_core::method::kinematic::{Body, Lever, Settings, Start};
 use catchment_core::pose::PoseError;
 use serde::Serialize;
-
-/// A first contact, with its head.
-pub type LeverReport = ReportOf<FirstContact>;
 
 /// A first contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,6 +1,5 @@
 //! Slices as versioned JSON, and what people and programs read of them.
 
-use super::document::ReportOf;
 use super::schema::{AcceptanceReport, Axis, OnaaReport, WarningReport, axes};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
@@ -10,9 +9,6 @@ use catchment_core::document::{
 use catchment_core::merit::estimate::Estimate;
 use catchment_study::slices::{Settings, Slice, Slices};
 use serde::Serialize;
-
-/// Slices of a design, with their head.
-pub type SlicesReport = ReportOf<SlicesFound>;
 
 /// Slices of a design; fields as in [`Report`](super::Report).
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -151,6 +147,7 @@ impl SliceReport {
 mod tests {
     use super::super::schema::testing::{blob, design};
     use super::*;
+    use crate::SlicesReport;
     use catchment_core::exec::Exec;
     use catchment_core::merit::onaa::Onaa;
     use catchment_core::merit::sum::Sum;

@@ -1,15 +1,12 @@
 //! The offsets that are corrected without any rotation, and what describes them.
 
-use super::document::{OfDesign, ReportOf};
+use super::document::OfDesign;
 use catchment_core::design::Design;
 use catchment_core::document::rounded;
 use catchment_core::document::{Document, Subject, Table};
 use catchment_core::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
 use catchment_core::pose::Dof;
 use serde::Serialize;
-
-/// The zero-rotation area of acceptance, with its head.
-pub type ZraaReport = ReportOf<AcceptedOffsets>;
 
 /// The zero-rotation area of acceptance of a design.
 pub type ZraaBody = OfDesign<AcceptedOffsets>;
@@ -259,6 +256,7 @@ fn in_unit(design: &Design, value: f64, power: i32) -> String {
 mod tests {
     use super::super::schema::testing::design;
     use super::*;
+    use crate::ZraaReport;
     use catchment_core::pose::DofSet;
     use glam::DVec2;
 
