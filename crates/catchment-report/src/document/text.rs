@@ -189,7 +189,8 @@ impl Page {
                 head.iter().zip(row).enumerate().filter(|(_, (_, cell))| !cell.is_empty())
             {
                 let indent = if k == 0 { "" } else { INDENT };
-                self.wrapped(&format!("{INDENT}{indent}{title}: "), cell);
+                let name = if title.is_empty() { String::new() } else { format!("{title}: ") };
+                self.wrapped(&format!("{INDENT}{indent}{name}"), cell);
             }
         }
     }
