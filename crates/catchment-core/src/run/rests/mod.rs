@@ -72,6 +72,7 @@ pub struct Rests {
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// Their outcomes.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_by_outcome"))]
     pub outcomes: BTreeMap<Outcome, Share>,
     /// The rests, the one with most of the poses first.
     pub rests: Vec<RestPlace>,
