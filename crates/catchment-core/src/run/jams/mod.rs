@@ -407,7 +407,7 @@ fn of(
         let examine = |(k, cluster): (usize, &Cluster)| {
             exec.check()?;
             let rest = &rests[cluster.middle];
-            Ok(follow.examine(rest, cluster, settings.seed.wrapping_add(k as u64)))
+            Ok(follow.examine(rest, cluster, settings.seed.wrapping_add(k as u64)).0)
         };
         let looked: Vec<(usize, &Cluster)> = found.iter().enumerate().take(settings.examined).collect();
         looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>()
