@@ -1,4 +1,4 @@
-"""What mkdocs puts beside the pages: designs of the gallery with their meshes, and the JSON schema, as files to take.
+"""What mkdocs puts beside the pages: designs of the gallery with their meshes, and the JSON schemas, as files to take.
 
 In the repository pages link to them where they lie, one folder up; on the site they lie below its root.
 """
@@ -8,7 +8,7 @@ from pathlib import Path
 from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parent.parent
-TAKEN = ("designs/schema.json", "designs/gallery/*.toml", "designs/gallery/meshes/*", "designs/meshes/*.stl")
+TAKEN = ("crates/catchment-report/reports.schema.json", "designs/schema.json", "designs/gallery/*.toml", "designs/gallery/meshes/*", "designs/meshes/*.stl")
 
 
 def on_files(files, config):
@@ -21,4 +21,6 @@ def on_files(files, config):
 
 def on_page_markdown(markdown, page, **_):
     up = "../" * page.file.src_uri.count("/")
-    return markdown.replace(f"]({up}../designs/", f"]({up}designs/")
+    for folder in ("designs/", "crates/catchment-report/"):
+        markdown = markdown.replace(f"]({up}../{folder}", f"]({up}{folder}")
+    return markdown

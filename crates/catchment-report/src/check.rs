@@ -404,11 +404,11 @@ mod tests {
     fn names_in_a_check_are_harmless() {
         let text = CheckReport::good(&problem("evil\u{1b}[2J\nname", "a\u{7}.toml")).table();
         assert!(
-            text.starts_with("a?.toml\n") && text.contains("  name                evil?[2J?name\n"),
+            text.starts_with("a?.toml\n") && text.contains("  name               evil?[2J?name\n"),
             "{text}"
         );
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
-        assert!(text.contains("  error in pitch      up to 90 deg\n"), "{text}");
+        assert!(text.contains("  error in pitch     up to 90 deg\n"), "{text}");
     }
 
     #[test]

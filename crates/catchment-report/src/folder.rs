@@ -164,7 +164,9 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let path = &home.path().join("out");
         let [slices, other] = ["slices", "difference"].map(|name| StudyFolder { path, name });
-        let write = |study: StudyFolder| study.write("{}", &[], Files::new(), &Exec::new(), |_| Ok(()));
+        let write = |study: StudyFolder| {
+            study.write("{}", &[vec!["axis".to_owned()]], Files::new(), &Exec::new(), |_| Ok(()))
+        };
         std::fs::create_dir(path).unwrap();
         assert!(slices.check(&Exec::new()).is_ok(), "nothing is lost with an empty folder");
         write(slices).unwrap();

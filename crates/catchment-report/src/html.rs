@@ -11,8 +11,11 @@
 //! The string inside is private to this file and these five calls are all that extend it: a page is safe because it compiles, not because
 //! every call of it was checked. [`policy`] is the second barrier: a browser runs the scripts whose hashes stand there and no other.
 
+#[cfg(feature = "page")]
 use base64::Engine as _;
+#[cfg(feature = "page")]
 use base64::engine::general_purpose::STANDARD;
+#[cfg(feature = "page")]
 use sha2::{Digest, Sha256};
 
 /// A page, or the beginning of one.
@@ -45,18 +48,21 @@ impl Html {
     ///
     /// # Errors
     /// The value has no JSON form.
+    #[cfg(feature = "page")]
     pub(crate) fn json(mut self, value: &impl serde::Serialize) -> Result<Self, serde_json::Error> {
         self.0.push_str(&serde_json::to_string(value)?.replace('<', "\\u003c"));
         Ok(self)
     }
 
     /// Bytes as base64.
+    #[cfg(feature = "page")]
     pub(crate) fn bytes(mut self, bytes: &[u8]) -> Self {
         STANDARD.encode_string(bytes, &mut self.0);
         self
     }
 
     /// A whole number.
+    #[cfg(feature = "page")]
     pub(crate) fn number(mut self, number: usize) -> Self {
         self.0.push_str(&number.to_string());
         self
@@ -70,6 +76,7 @@ impl Html {
 
 /// The Content-Security-Policy of a page with these inline scripts and styles: they run, by their SHA-256, and no other script and no handler
 /// in an attribute does; nothing is loaded. The page may start workers from its own text, and WebAssembly. A served page may ask its server.
+#[cfg(feature = "page")]
 pub fn policy(scripts: &[&str], styles: &[&str], is_served: bool) -> String {
     let hash = |text: &&str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
     let hashes = |texts: &[&str]| texts.iter().map(hash).collect::<Vec<String>>().join(" ");
@@ -82,7 +89,7 @@ pub fn policy(scripts: &[&str], styles: &[&str], is_served: bool) -> String {
     )
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "page"))]
 mod tests {
     use super::*;
 

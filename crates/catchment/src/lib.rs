@@ -90,6 +90,7 @@
 //! - [`method`]: ways to decide, all through one door: confluence of exact motions (the default), exact descent, transport, flooding in three forms, the
 //!   polyhedral partition, the planar kinematic one, drop tests; and translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.
+//! - [`document`]: the description of a result, from which text, CSV, Markdown and HTML are rendered.
 //! - [`run`]: plan, decide, correct, settle, measure: from a problem to its answer. Over many machines, too.
 //! - [`study`]: many runs, and what they say together.
 //! - [`report`]: JSON, text, tables, pictures, Zarr: the one place that tells results.

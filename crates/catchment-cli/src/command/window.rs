@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output::to_stderr;
 use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
-use catchment::pose::PoseError;
+use catchment::pose::{Dof, PoseError};
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
 use catchment::run::window::{Settings, WindowError, run as find, seconds as expected};
@@ -55,12 +55,14 @@ pub(crate) struct WindowArgs {
 
 pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
     study(&args.design, &args.result, &args.exec, None, |problem, exec| {
+        let free: Vec<&str> = problem.alignment().free.iter().map(Dof::name).collect();
+        args.result.check_items("window", &free)?;
         let settings = args.settings(problem)?;
         let seconds = expected(problem, &settings) / exec.threads() as f64;
         if seconds > LONG {
-            let free = problem.alignment().free.len();
             to_stderr(&[format!(
-                "{free} errors on these halves: about {} (--motions N draws that many random poses)",
+                "{} errors on these halves: about {} (--motions N draws that many random poses)",
+                free.len(),
                 time(seconds)
             )]);
         }

@@ -110,7 +110,8 @@ fn the_way_of_a_trial_is_told_and_drawn() {
     let told = run(home.path(), &[&args[..], &["-o", "t.svg"]].concat());
     assert!(
         told.contains("time [s]")
-            && told.ends_with("outcome: aligned\n--- stderr\nnext: catchment jams v.toml\n"),
+            && told.contains("  outcome        aligned\n")
+            && told.ends_with("--- stderr\nnext: catchment jams v.toml\n"),
         "{told}"
     );
     assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("aligned"));

@@ -47,7 +47,10 @@ fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
         }
     }
     let told = run(home.path(), &["compose", "disc.toml", "disc.toml"]);
-    assert!(told.contains("overlap        largest 78") && !told.contains("overlap        at most"), "{told}");
+    assert!(
+        told.contains("overlap         largest 78") && !told.contains("overlap         at most"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn a_facet_holds_everything_from_its_slope_on() {
     let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.1,0.3"]);
     assert!(
         told.starts_with("exit 0\n")
-            && told.contains("90 % docks     up to a friction of 0.199  (0.199 … 0.199)"),
+            && told.contains("90 % dock      up to a friction of 0.199  (95 % CI 0.199 … 0.199)"),
         "{told}"
     );
     assert!(told.contains("what sticks where the first are lost (20 poses)"), "{told}");

@@ -14,7 +14,12 @@ fn every_starting_point_is_a_good_design() {
         let printed = catchment(dir.path()).args(["new", family]).output().unwrap().stdout;
         assert_eq!(std::fs::read(dir.path().join(&file)).unwrap(), printed);
         let report = run(dir.path(), &["check", &file]);
-        assert!(report.starts_with(&format!("exit 0\n--- stdout\n{file}: no problems\n")), "{report}");
+        assert!(
+            report.starts_with(&format!(
+                "exit 0\n--- stdout\n{file}\n────────────────────────\n  problems           none\n"
+            )),
+            "{report}"
+        );
         assert!(report.ends_with(&format!("--- stderr\nnext: catchment run {file} -o out\n")), "{report}");
     }
 }

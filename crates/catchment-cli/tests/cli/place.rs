@@ -37,7 +37,7 @@ fn two_files_become_a_design_that_answers() {
     );
     assert!(fs::read_to_string(home.path().join("pair.svg")).unwrap().contains("plug on socket"));
     let checked = run(home.path(), &["check", "design.toml"]);
-    assert!(checked.starts_with("exit 0") && checked.contains("width D             50 mm"), "{checked}");
+    assert!(checked.starts_with("exit 0") && checked.contains("width D            50 mm"), "{checked}");
     let answered = outcomes(home.path(), "design.toml");
     // The committed design with its centre of rotation in the face centre.
     fs::copy(designs().join("pyramid-stl.toml"), home.path().join("true.toml")).unwrap();

@@ -139,7 +139,7 @@ fn a_layer_on_the_wrong_one_is_crossed() {
     assert_eq!(report["poses"][1]["reason"], "crossed");
     assert!(report["poses"][0].get("reason").is_none());
     let traced = run(dir.path(), &["trace", &layers, "--free", "x,y", "--pose", "x=0.3,y=0.3"]);
-    assert!(traced.contains("outcome: jammed (crossed)"), "{traced}");
+    assert!(traced.contains("outcome        jammed (crossed)"), "{traced}");
     // A design without depth has no such column.
     let flat = run(dir.path(), &["outcome", &design("x-face.toml"), "--poses", "p.csv"]);
     assert!(!flat.contains("reason"), "{flat}");

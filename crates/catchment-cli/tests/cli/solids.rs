@@ -17,7 +17,10 @@ fn shapes_are_written_as_the_end_of_the_name_says() {
     let told = to("turned.vtp", &["--free", "x,pitch"]);
     // 16 intervals between slices, 2 pieces of the notch, 2 · 3 bodies for the three corners of the tip.
     assert!(told.contains("2 fixed, 1 moving") && told.contains("192 convex bodies"), "{told}");
-    assert!(told.contains("15 slices, 1 strips per D") && told.contains("-1.571 to 1.571 rad"), "{told}");
+    assert!(
+        told.contains("15 slices, 1 strips per D") && told.contains("pitch  -1.571  1.571  rad"),
+        "{told}"
+    );
     let vtp = read("turned.vtp");
     assert!(vtp.starts_with("<?xml version=\"1.0\"?>") && vtp.contains("<VTKFile type=\"PolyData\""));
     assert_eq!(vtp.matches("<DataArray").count(), 10);

@@ -103,6 +103,7 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
     let (stdout, stderr) =
         (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let stdout = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         stdout.contains("triangles, off by at most 0.02 mm (deflection, as written), by OCP of a test"),
         "{stdout}"

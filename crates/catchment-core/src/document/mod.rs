@@ -161,6 +161,24 @@ impl Share {
     }
 }
 
+/// The JSON schema of shares by the names of outcomes.
+#[cfg(feature = "schema")]
+pub(crate) fn shares_by_outcome(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    use crate::acceptance::Outcome;
+    let share = generator.subschema_for::<Share>();
+    let properties: serde_json::Map<String, serde_json::Value> =
+        Outcome::ALL.iter().map(|outcome| (outcome.name().to_owned(), share.clone().to_value())).collect();
+    schemars::json_schema!({ "type": "object", "properties": properties })
+}
+
+/// The same where there may be none.
+#[cfg(feature = "schema")]
+pub(crate) fn shares_or_null(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let mut schema = shares_by_outcome(generator);
+    schema.insert("type".to_owned(), serde_json::json!(["object", "null"]));
+    schema
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

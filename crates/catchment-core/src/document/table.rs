@@ -3,10 +3,10 @@
 //! ```text
 //!   column   title "docks"   format Tenths   keys aligned, aligned_lo, aligned_hi
 //!   cell     Interval 0.9915, [0.983, 0.996]
-//!      text  99.2 % (98.3 % … 99.6 %)            CSV   0.9915,0.983,0.996
+//!      text  99.2 % (98.3 … 99.6)                CSV   0.9915,0.983,0.996
 //! ```
 
-use super::number::{fixed, grouped, number, percent, significant, tenths, tenths_between};
+use super::number::{fixed, grouped, number, percent, significant, tenths};
 
 /// How people read the numbers of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -113,7 +113,9 @@ impl Column {
             Cell::Count(count) => grouped(*count),
             Cell::Flag(flag) => if *flag { "yes" } else { "no" }.to_owned(),
             Cell::Text(text) | Cell::Shown(text, _) => text.clone(),
-            Cell::Interval(value, ci95) if self.format == Format::Tenths => tenths_between(*value, *ci95),
+            Cell::Interval(value, [lo, hi]) if self.format == Format::Tenths => {
+                format!("{} ({:.1} … {:.1})", tenths(*value), 100.0 * lo, 100.0 * hi)
+            }
             Cell::Interval(value, [lo, hi]) => {
                 format!("{} ({} … {})", self.format.of(*value), self.format.of(*lo), self.format.of(*hi))
             }
@@ -268,7 +270,7 @@ mod tests {
         );
         let shown: Vec<String> =
             table.columns.iter().zip(&table.rows[0]).map(|(column, cell)| column.shown(cell)).collect();
-        assert_eq!(shown, ["0.1", "99.2 % (98.3 % … 99.6 %)", "7", "here"]);
+        assert_eq!(shown, ["0.1", "99.2 % (98.3 … 99.6)", "7", "here"]);
         // Of nothing a program reads as many empty fields.
         table.push([Cell::Empty, Cell::Empty, Cell::Empty, Cell::Empty]);
         assert_eq!(table.records()[2], ["", "", "", "", ""]);

@@ -93,10 +93,12 @@ mod tests {
 
     #[test]
     fn a_design_has_millimetres_or_widths() {
-        let text =
-            "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nfree = [\"x\", \"pitch\"]\n";
-        let design = |head: &str| read(&format!("{head}{text}"), ".".as_ref()).unwrap().design;
-        let (bare, sized) = (design(""), design("unit = \"mm\"\nwidth = 50\n"));
+        let design = |width: &str| {
+            let connector = format!("[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n{width}");
+            let text = format!("{connector}[alignment]\nfree = [\"x\", \"pitch\"]\n");
+            read(&text, ".".as_ref()).unwrap().design
+        };
+        let (bare, sized) = (design(""), design("unit = \"mm\"\nwidth = 50.0\n"));
         let error = PoseError { x: 0.25, pitch: -1e-9, ..PoseError::default() };
         assert_eq!(Units::of(&bare).pose(&error), "x 0.250 D, pitch 0.00°");
         assert_eq!(Units::of(&sized).pose(&error), "x 12.500 mm, pitch 0.00°");

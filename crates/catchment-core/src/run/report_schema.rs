@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(message("sum.x > 1"), "the report has no `sum.x`");
         assert_eq!(message("name > 1"), "`name` is a text in this report, not a number");
         assert_eq!(message("limits > 1"), "`limits` is a list in this report, not a number");
-        assert_eq!(message("basins.count > 1"), "`basins` is null in this report, not a number");
+        assert_eq!(message("basins.count > 1"), "`basins.count` is null in this report, not a number");
         assert!(message("loop.a > 1").contains("the report has no `loop`"));
         assert!(message("sum > 1 mm").contains("a unit is for errors alone"));
     }

@@ -258,17 +258,17 @@ impl Requirement {
             }
             here = next;
         }
-        let within = |place: &&&str| {
-            self.path.strip_prefix(**place).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        let within = |place: &&str| {
+            self.path.strip_prefix(*place).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
-        if let Some(place) = absent.iter().find(within) {
-            return Err(RequirementError::NotANumber { path: (*place).to_owned(), what: "null" });
+        if absent.iter().any(within) {
+            return Err(RequirementError::NotANumber { path: self.path.clone(), what: "null" });
         }
         if let Some(what) = schema.other_than_a_number(&here) {
             return Err(RequirementError::NotANumber { path: self.path.clone(), what });
         }
-        // Units of lengths depend on the design, which any will do for.
-        self.bound(&Value::Null).map(|_| ())
+        // Whether a length has a meaning depends on the design, which may have any unit.
+        self.bound(&serde_json::json!({ "design": { "width": 1.0, "unit": "mm" } })).map(|_| ())
     }
 
     /// Refuses a requirement on an item that a list at the top of the report does not have: the items have these names, in their order.

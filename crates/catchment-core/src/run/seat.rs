@@ -111,13 +111,6 @@ impl Seating {
         Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual, deeper })
     }
 
-    /// With every place that the seating of a problem has, and numbers that mean nothing.
-    pub fn form(problem: &Problem) -> Self {
-        let play = play(problem.pair());
-        let residual = play.iter().map(|play| Residual { axis: play.axis, mean: 0.0, p95: 0.0, most: 0.0 });
-        Self { depth: 0.0, poses: 0, residual: residual.collect(), play, deeper: None }
-    }
-
     /// The doubts that it raises: halves that rest farther off than the seat was found to allow.
     pub fn warnings(&self, problem: &Problem) -> Vec<Warning> {
         let docked = &problem.alignment().docked;

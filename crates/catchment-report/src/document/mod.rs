@@ -197,8 +197,8 @@ peg | <socket>?[2J
                  limited by yaw
 
   limits
-  error  limit                     docks
-  x       1.23  99.1 % (98.0 % … 99.6 %)
+  error  limit                 docks
+  x       1.23  99.1 % (98.0 … 99.6)
   yaw    12.00
 
   Every sampled pose of the window docks: 0 failures in 300 000 samples <95 %

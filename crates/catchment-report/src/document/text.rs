@@ -147,7 +147,16 @@ impl Page {
             .map(|k| rows.iter().chain([&head]).map(|row| row[k].chars().count()).max().unwrap_or(0))
             .collect();
         let last = widths.len() - 1;
-        let before: usize = INDENT.len() + widths[..last].iter().map(|width| width + GAP).sum::<usize>();
+        let before =
+            |widths: &[usize]| INDENT.len() + widths[..last].iter().map(|width| width + GAP).sum::<usize>();
+        if before(&widths) + widths[last] > self.style.columns {
+            // Headings of several words take several lines.
+            for (k, width) in widths.iter_mut().enumerate() {
+                let word = head[k].split_whitespace().map(|word| word.chars().count()).max().unwrap_or(0);
+                *width = rows.iter().map(|row| row[k].chars().count()).fold(word, usize::max);
+            }
+        }
+        let before = before(&widths);
         if before + widths[last] > self.style.columns {
             let room = self.style.columns.saturating_sub(before);
             if !columns[last].1.left || room < LEAST_TEXT {
@@ -156,22 +165,19 @@ impl Page {
             widths[last] = room;
         }
         for row in std::iter::once(&head).chain(&rows) {
-            let mut line = INDENT.to_owned();
-            for (k, (cell, width)) in row[..last].iter().zip(&widths).enumerate() {
-                let (left, gap) = (columns[k].1.left, " ".repeat(GAP));
-                let padding = " ".repeat(width.saturating_sub(cell.chars().count()));
-                line.extend(if left {
-                    [cell, padding.as_str(), &gap]
-                } else {
-                    [padding.as_str(), cell, &gap]
-                });
-            }
-            let indent = line.chars().count();
-            for (k, words) in broken(&row[last], widths[last]).into_iter().enumerate() {
-                let start = if k == 0 { line.clone() } else { " ".repeat(indent) };
-                let width = widths[last];
-                let end = if columns[last].1.left { words } else { format!("{words:>width$}") };
-                self.line(&format!("{start}{end}"));
+            let cells: Vec<Vec<String>> =
+                row.iter().zip(&widths).map(|(cell, width)| broken(cell, *width)).collect();
+            let lines = cells.iter().map(Vec::len).max().unwrap_or(0);
+            for number in 0..lines {
+                let mut line = INDENT.to_owned();
+                for (k, (cell, width)) in cells.iter().zip(&widths).enumerate() {
+                    let words = cell.get(number).map_or("", String::as_str);
+                    let padding = " ".repeat(width.saturating_sub(words.chars().count()));
+                    let gap = " ".repeat(if k == last { 0 } else { GAP });
+                    let left = columns[k].1.left;
+                    line.extend(if left { [words, &padding, &gap] } else { [padding.as_str(), words, &gap] });
+                }
+                self.line(&line);
             }
         }
     }
@@ -183,7 +189,8 @@ impl Page {
                 head.iter().zip(row).enumerate().filter(|(_, (_, cell))| !cell.is_empty())
             {
                 let indent = if k == 0 { "" } else { INDENT };
-                self.wrapped(&format!("{INDENT}{indent}{title}: "), cell);
+                let name = if title.is_empty() { String::new() } else { format!("{title}: ") };
+                self.wrapped(&format!("{INDENT}{indent}{name}"), cell);
             }
         }
     }
@@ -195,15 +202,35 @@ fn broken(text: &str, width: usize) -> Vec<String> {
         return vec![text.to_owned()];
     }
     let (mut lines, mut line) = (Vec::new(), String::new());
-    for word in text.split_whitespace() {
+    for word in unbroken(text) {
         let used = line.chars().count();
         if used > 0 && used + 1 + word.chars().count() > width {
             lines.push(std::mem::take(&mut line));
         } else if used > 0 {
             line.push(' ');
         }
-        line.push_str(word);
+        line.push_str(&word);
     }
     lines.push(line);
     lines
+}
+
+/// The words of a text, a number together with the unit that follows it.
+fn unbroken(text: &str) -> Vec<String> {
+    const UNITS: [&str; 8] = ["%", "D", "mm", "cm", "in", "rad", "N", "σ"];
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let unit = word.trim_end_matches([',', ';', '.', ')', ':']);
+        match words
+            .last_mut()
+            .filter(|before| UNITS.contains(&unit) && before.ends_with(|c: char| c.is_ascii_digit()))
+        {
+            Some(number) => {
+                number.push(' ');
+                number.push_str(word);
+            }
+            None => words.push(word.to_owned()),
+        }
+    }
+    words
 }

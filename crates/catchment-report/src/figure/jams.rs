@@ -254,7 +254,7 @@ mod tests {
         let report = RestsReport::new(problem.design(), found, Vec::new(), None);
         let picture = super::rests(&report, problem.connector()).unwrap();
         look("rests", &picture);
-        assert!(picture.svg().contains("immobile to first order"));
+        assert!(picture.svg().contains("first-order immobile"));
     }
 
     #[test]

@@ -119,7 +119,7 @@ fn the_report_tells_the_axes_and_their_units() {
     assert_eq!(json["bodies"], shape.solids.len());
     assert_eq!(json["settings"], serde_json::json!({"slices": 4, "strips": 1}));
     let table = report.table();
-    assert!(table.contains("2 fixed, 1 moving") && table.contains("-1.571 to 1.571 rad"), "{table}");
+    assert!(table.contains("2 fixed, 1 moving") && table.contains("pitch   -1.571   1.571  rad"), "{table}");
     let halves = Solids { subject: Subject::Halves, ..shape };
     assert_eq!(SolidsReport::new(&design, &halves, Vec::new()).settings, None);
 }

@@ -33,6 +33,7 @@ pub struct Settings {
     pub most_cells: u64,
     /// Which methods.
     #[serde(serialize_with = "names")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub methods: Vec<Method>,
     /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none. Where nothing is
     /// said, as many as a run by descent draws.

@@ -81,7 +81,7 @@ pub struct Friction {
     pub curve: Vec<Rung>,
     /// Up to which friction what docks without it docks still, by the share of it: `p95` is 95 %.
     #[serde(serialize_with = "by_share")]
-    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, Kept>"))]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "report::kept_schema"))]
     pub kept: Vec<Kept>,
     /// What sticks where the first poses are lost.
     pub sticks_first: SticksFirst,

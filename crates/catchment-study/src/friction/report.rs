@@ -155,7 +155,21 @@ impl StickingPair {
 
 /// The shares as the fields of an object: `p95`.
 pub(super) fn by_share<S: Serializer>(kept: &[Kept], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(kept.iter().map(|kept| (format!("p{:.0}", 100.0 * kept.share), kept)))
+    serializer.collect_map(kept.iter().map(|kept| (named(kept.share), kept)))
+}
+
+/// The JSON schema of that.
+#[cfg(feature = "schema")]
+pub(super) fn kept_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let kept = generator.subschema_for::<Kept>();
+    let properties: serde_json::Map<String, serde_json::Value> =
+        super::SHARES.iter().map(|share| (named(*share), kept.clone().to_value())).collect();
+    schemars::json_schema!({ "type": "object", "properties": properties })
+}
+
+/// `p95`.
+fn named(share: f64) -> String {
+    format!("p{:.0}", 100.0 * share)
 }
 
 fn poses(count: usize) -> String {

@@ -51,9 +51,6 @@ pub struct WayOut {
     pub to: Outcome,
     /// The pose error from which motion leads there.
     pub over: PoseError,
-    /// Where that ends.
-    #[serde(skip)]
-    pub end: PoseError,
 }
 
 /// What counts as out.
@@ -75,6 +72,8 @@ struct Way {
     /// How far along the half is out.
     length: f64,
     out: WayOut,
+    /// Where the motion ends that leads out.
+    end: PoseError,
 }
 
 struct Search<'a> {
@@ -88,14 +87,14 @@ struct Search<'a> {
     open: bool,
 }
 
-/// The lowest way out that is found; none where all that are tried climb on, or end at walls.
+/// The lowest way out that is found, and where the motion ends that leads out; none where all that are tried climb on, or end at walls.
 pub(in crate::run) fn way_out(
     pair: &Pair,
     rest: &Rested,
     motions: &descent::Settings,
     leaving: Leaving,
     seed: u64,
-) -> Option<WayOut> {
+) -> Option<(WayOut, PoseError)> {
     let space = Space::of(pair);
     let stream = Stream::new(seed).branch(FARTHEST.to_bits());
     let simple = if space.count() <= FEW { WAYS_OF_FEW } else { WAYS };
@@ -128,7 +127,7 @@ pub(in crate::run) fn way_out(
         let way = moved(&best.along, &search.space.random(stream, ways + k), share);
         search.try_way(&way);
     }
-    search.best.map(|best| search.finer(&best))
+    search.best.map(|best| (search.finer(&best), best.end))
 }
 
 impl Search<'_> {
@@ -185,7 +184,7 @@ impl Search<'_> {
 
     fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, (to, end): (Outcome, PoseError)) {
         let over = self.space.error(self.rest, way, length);
-        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over, end } });
+        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over }, end });
     }
 
     /// Where motion leads from a place on a way, if that is out.

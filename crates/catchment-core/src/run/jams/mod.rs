@@ -102,8 +102,10 @@ pub struct Jams {
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// Their outcomes.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_by_outcome"))]
     pub outcomes: BTreeMap<Outcome, Share>,
     /// The same of poses drawn from the errors that a robot makes; null where none were given.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_or_null"))]
     pub expected: Option<BTreeMap<Outcome, Share>>,
     /// The table that those poses come from; null where they were not measured.
     #[serde(default)]
@@ -405,7 +407,7 @@ fn of(
         let examine = |(k, cluster): (usize, &Cluster)| {
             exec.check()?;
             let rest = &rests[cluster.middle];
-            Ok(follow.examine(rest, cluster, settings.seed.wrapping_add(k as u64)))
+            Ok(follow.examine(rest, cluster, settings.seed.wrapping_add(k as u64)).0)
         };
         let looked: Vec<(usize, &Cluster)> = found.iter().enumerate().take(settings.examined).collect();
         looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>()

@@ -130,8 +130,13 @@ impl Follow<'_> {
         Some(Rested { outcome, error, pose, height, touching, met, signature })
     }
 
-    /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed.
-    pub(in crate::run) fn examine(&self, rest: &Rested, cluster: &Cluster, seed: u64) -> Examined {
+    /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed; and where the motion ends that leads out.
+    pub(in crate::run) fn examine(
+        &self,
+        rest: &Rested,
+        cluster: &Cluster,
+        seed: u64,
+    ) -> (Examined, Option<PoseError>) {
         let pair = self.problem.pair();
         let space = Space::of(pair);
         let held = cluster.held.unwrap_or_else(|| firmness::held(pair, rest, seed));
@@ -167,8 +172,8 @@ impl Follow<'_> {
             }),
             None => holding.as_mut().map(Holding::sticking),
         };
-        let way_out = escape::way_out(pair, rest, self.motions, leaving, seed);
-        Examined {
+        let (way_out, end) = escape::way_out(pair, rest, self.motions, leaving, seed).unzip();
+        let examined = Examined {
             firmness: held.firmness,
             push_d: PUSH,
             rise_at_most_d: held.rise,
@@ -178,7 +183,8 @@ impl Follow<'_> {
             way_out,
             pushed,
             back,
-        }
+        };
+        (examined, end)
     }
 }
 

@@ -72,6 +72,7 @@ pub struct Rests {
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// Their outcomes.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_by_outcome"))]
     pub outcomes: BTreeMap<Outcome, Share>,
     /// The rests, the one with most of the poses first.
     pub rests: Vec<RestPlace>,
@@ -176,16 +177,17 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
         Ok(follow.examine(rest, cluster, seed))
     };
     let looked: Vec<(usize, &Cluster)> = clusters.iter().enumerate().take(settings.examined).collect();
-    let seen =
-        exec.install(|| looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>())?;
+    let seen = exec.install(|| looked.into_par_iter().map(examine).collect::<Result<Vec<_>, Cancelled>>())?;
     let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
-    for (group, examined) in groups.iter_mut().zip(seen) {
+    let ends: Vec<Option<PoseError>> = seen.iter().map(|(_, end)| *end).collect();
+    for (group, (examined, _)) in groups.iter_mut().zip(seen) {
         group.examined = Some(examined);
     }
     let depths = groups.iter_mut().collect();
     depth::tell(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
     let free = problem.alignment().free;
-    let place = |(group, cluster): (RestGroup, &Cluster)| {
+    let ends = ends.into_iter().chain(std::iter::repeat(None));
+    let place = |((group, cluster), end): ((RestGroup, &Cluster), Option<PoseError>)| {
         let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
         let way = group.examined.and_then(|examined| examined.way_out);
         RestPlace {
@@ -199,22 +201,28 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
             depth_at_most_d: way.map(|way| way.climb),
             depth_at_least_d: group.depth_at_least,
             depth_on_grid_d: group.depth_on_grid,
-            leads_to: way.and_then(|way| leads_to(problem, &images, &middles, &way)),
+            leads_to: way.zip(end).and_then(|(way, end)| leads_to(problem, &images, &middles, &way, &end)),
             contacts: group.contacts,
             examined: group.examined,
         }
     };
-    let rests = groups.into_iter().zip(&clusters).map(place).collect();
+    let rests = groups.into_iter().zip(&clusters).zip(ends).map(place).collect();
     Ok(Rests { settings, motions, outcomes: shares(counts), rests })
 }
 
 /// The rest that is nearest to the end of a way out.
-fn leads_to(problem: &Problem, images: &Images, middles: &[CorPose], way: &WayOut) -> Option<usize> {
+fn leads_to(
+    problem: &Problem,
+    images: &Images,
+    middles: &[CorPose],
+    way: &WayOut,
+    end: &PoseError,
+) -> Option<usize> {
     if way.to == Outcome::Missed {
         return None;
     }
     let alignment = problem.alignment();
-    let end = CorPose::from_error(&way.end, alignment.center_of_rotation, alignment.free);
+    let end = CorPose::from_error(end, alignment.center_of_rotation, alignment.free);
     let far = middles.iter().map(|middle| images.nearest(&end, middle).1).enumerate();
     far.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance <= THERE).map(|(k, _)| k)
 }
