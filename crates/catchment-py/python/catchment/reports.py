@@ -87,7 +87,7 @@ class Outcomes(TypedDict):
     undecided: int
 
 
-class Stratum(TypedDict):
+class Stratum2(TypedDict):
     """What was seen in one stratum."""
 
     #: What it holds.
@@ -120,7 +120,7 @@ class SampleReport(TypedDict):
     #: Its 95 % interval.
     differing_ci95: list[float]
     #: Where they lay.
-    strata: list[Stratum]
+    strata: list[Stratum2]
 
 
 class AcceptanceReport(TypedDict):
@@ -314,7 +314,7 @@ class WatershedsReport(TypedDict):
     moved_share: float
 
 
-class Counts(TypedDict):
+class Counts2(TypedDict):
     """How much there was of everything."""
 
     #: Polytopes of the Minkowski sum.
@@ -331,12 +331,12 @@ class PartitionReport(TypedDict):
     """A partition of the contact space."""
 
     #: Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
-    counts: Counts
+    counts: Counts2
     #: Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
     sum: float
 
 
-class Certificate(TypedDict):
+class Certificate2(TypedDict):
     """What is certain of an error box."""
 
     #: Share of the error box whose every pose docks.
@@ -374,7 +374,7 @@ class Joined(TypedDict):
     wrong_ci95: list[float]
 
 
-class Settings(TypedDict):
+class Settings6(TypedDict):
     """What changes the answer."""
 
     #: Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
@@ -393,19 +393,19 @@ class Settings(TypedDict):
     certified: bool
 
 
-class ShareReport(TypedDict):
-    """How many of all poses that were followed."""
+class Share(TypedDict):
+    """A count as a share of all, with the uncertainty of a sample."""
 
     #: How many.
     count: int
-    #: Their share, in [0, 1].
+    #: Their share of all, in [0, 1].
     share: float
-    #: Wilson's 95 % interval of it.
+    #: Its 95 % interval (Wilson).
     ci95: list[float]
 
 
-ExtentReport = TypedDict(
-    "ExtentReport",
+Extent = TypedDict(
+    "Extent",
     {
         "axis": Literal['x', 'y', 'roll', 'pitch', 'yaw'],
         "from": float,
@@ -414,12 +414,12 @@ ExtentReport = TypedDict(
 )
 
 
-class FeatureReport(TypedDict):
-    """A feature of a half."""
+class NamedFeature(TypedDict):
+    """A feature of a half that touches."""
 
     #: `face`, `edge` or `corner`.
     kind: Literal['face', 'edge', 'corner']
-    #: In words.
+    #: In words: `edge between top and wall`.
     name: str
     #: The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
     part: int | None
@@ -427,36 +427,36 @@ class FeatureReport(TypedDict):
     drawn_d: list[float]
 
 
-class ContactReport(TypedDict):
-    """Two features that touch."""
+class FeatureContact(TypedDict):
+    """Two features that touch, and where."""
 
-    #: Where, in the world frame, in D.
+    #: Where, in the world frame, in D: the places where it carries.
     points_d: list[list[float]]
-    #: Unit normal, from the fixed half to the moving one.
+    #: Unit normal at the first of them, from the fixed half to the moving one.
     normal: list[float]
     #: The feature of the fixed half.
-    fixed: FeatureReport
+    fixed: NamedFeature
     #: The feature of the moving half.
-    moving: FeatureReport
+    moving: NamedFeature
 
 
-class HeldReport(TypedDict):
+class Immobility(TypedDict):
     """By which order a rest is held (Rimon and Burdick)."""
 
     #: `first`, `second`, `neutral` or `unstable`.
     order: Literal['first', 'second', 'neutral', 'unstable']
-    #: From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion.
+    #: From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion; 0 where first order does not hold.
     slope: list[float]
     #: Independent directions that are free to first order.
     free: int
-    #: The least curvature of the height among them, per D; null where none is free.
+    #: The least curvature of the height among them, per D: pushed by s it rises by half of it times s². Null where none is free.
     curvature_per_d: float | None
-    #: The direction of that: offsets in D and turns in radians.
+    #: The direction of that: offsets in D and turns in radians; 0 where none is free.
     weakest: PoseError
 
 
-class ThresholdsReport(TypedDict):
-    """From which friction on a rest may stick, by Coulomb's law (`catchment_core::method::descent::sticking()`)."""
+class Sticking(TypedDict):
+    """From which friction on a half may stick where it touches, by Coulomb's law."""
 
     #: From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
     holds_from: float | None
@@ -466,19 +466,19 @@ class ThresholdsReport(TypedDict):
     wedges_from: float | None
 
 
-class WayOutReport(TypedDict):
-    """A way out."""
+class WayOut(TypedDict):
+    """A way out of a jam."""
 
     #: How far the half must be lifted to get out, at most, in D.
     climb_at_most_d: float
-    #: What becomes of it then.
+    #: Its outcome then: docked, off, or a rest that is lower.
     to: Literal['aligned', 'jammed', 'missed', 'undecided']
     #: The pose error from which motion leads there.
     over: PoseError
 
 
-class ExaminedReport(TypedDict):
-    """What was found out about a jam."""
+class Examined(TypedDict):
+    """What was found out about a place of rest."""
 
     #: `sharp`, `rounded`, `level` or `ridge`.
     firmness: Literal['sharp', 'rounded', 'level', 'ridge']
@@ -489,32 +489,32 @@ class ExaminedReport(TypedDict):
     #: The direction of that push: offsets in D and turns in radians.
     weakest: PoseError
     #: By which order contacts alone hold it; null where they do not hold the load, as where friction does.
-    immobility: HeldReport | None
+    immobility: Immobility | None
     #: From which friction on it may stick; null where it touches nothing.
-    sticks: ThresholdsReport | None
+    sticks: Sticking | None
     #: The lowest way out that was found; null where none was.
-    way_out: WayOutReport | None
+    way_out: WayOut | None
     #: Poses a little off that were followed.
     pushed: int
     #: How many of them came back.
     back: int
 
 
-class JamReport(TypedDict):
-    """A place of rest, or places alike."""
+class Jam(TypedDict):
+    """A place, or places alike, where halves come to rest that do not dock."""
 
     #: How many poses of the error box end here, and which share that is.
-    of_box: ShareReport
+    of_box: Share
     #: Their share of the poses that jam.
     of_jams: float
     #: Their share of the poses that do not dock.
     of_failures: float
     #: The same of the errors that a robot makes; null where none were given.
-    expected: ShareReport | None
+    expected: Share | None
     #: The pose error of the rest in its middle.
     pose: PoseError
     #: From where to where its rests lie, per free error; images by symmetry laid upon each other.
-    extent: list[ExtentReport]
+    extent: list[Extent]
     #: At how many places that are images of each other rests were seen.
     places: int
     #: z of the COR in the world frame, in D.
@@ -524,16 +524,16 @@ class JamReport(TypedDict):
     #: It is the mated pose turned by a symmetry of the halves, and counts as docked where the design has `symmetry` of this; null where it is not.
     docked_with_symmetry: int | None
     #: What touches.
-    contacts: list[ContactReport]
+    contacts: list[FeatureContact]
     #: What was found out about it; null of jams that were not examined.
-    examined: ExaminedReport | None
+    examined: Examined | None
     #: The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
     depth_on_grid_d: float | None
     #: At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
     depth_at_least_d: float | None
 
 
-class PairReport(TypedDict):
+class JammingPair(TypedDict):
     """A pair of features, and how often it touches where halves jam."""
 
     #: Poses of the error box that jam on it.
@@ -543,31 +543,31 @@ class PairReport(TypedDict):
     #: Their share of the poses that do not dock.
     of_failures: float
     #: The feature of the fixed half.
-    fixed: FeatureReport
+    fixed: NamedFeature
     #: The feature of the moving half.
-    moving: FeatureReport
+    moving: NamedFeature
 
 
-class JamsFound(TypedDict):
+class Jams(TypedDict):
     """Where motions rest that do not dock."""
 
-    #: How it was asked for.
-    settings: Settings
+    #: The settings, everything filled in.
+    settings: Settings6
     #: Random poses of the error box that were followed.
     motions: int
-    #: What became of them, by the names of outcomes.
-    outcomes: dict[str, ShareReport]
+    #: Their outcomes.
+    outcomes: dict[str, Share]
     #: The same of poses drawn from the errors that a robot makes; null where none were given.
-    expected: dict[str, ShareReport] | None
+    expected: dict[str, Share] | None
     #: The table that those poses come from; null where they were not measured.
     measured: str | None
     #: The jams, the one with most of the poses first.
-    jams: list[JamReport]
+    jams: list[Jam]
     #: Which pairs of features touch in jams, the one that does so most often first.
-    features: list[PairReport]
+    features: list[JammingPair]
 
 
-class Settings2(TypedDict):
+class Settings15(TypedDict):
     """What changes the answer."""
 
     #: Half-widths that are given, in the order of `Dof::ALL`, in D and radians: these errors occur so far, and the others are asked about.
@@ -582,10 +582,10 @@ class Settings2(TypedDict):
     friction: float
 
 
-class SideReport(TypedDict):
-    """One error, in D or radians."""
+class Side(TypedDict):
+    """One error of a window, in D or radians."""
 
-    #: Which.
+    #: Which error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
     #: ± so much is in the window.
     half_width: float
@@ -601,7 +601,7 @@ class SideReport(TypedDict):
     beside_reaches_border: bool
 
 
-class TouchReport(TypedDict):
+class Touch(TypedDict):
     """A point where the halves touch."""
 
     #: Where, in the world frame, in D.
@@ -610,45 +610,50 @@ class TouchReport(TypedDict):
     normal: list[float]
 
 
-class WorstReport(TypedDict):
-    """A pose that does not dock."""
+class Worst(TypedDict):
+    """The pose nearest to zero, in proportions, that does not dock."""
 
     #: The pose error.
     error: PoseError
-    #: What becomes of it.
+    #: Its outcome.
     outcome: Literal['aligned', 'jammed', 'missed', 'undecided']
     #: Where it ends.
     end: PoseError
-    #: What touches there, in the world frame of the fixed face centre, in D, with the normal towards the moving half.
-    touches: list[TouchReport]
+    #: What touches there, in the world frame of the fixed face centre, in D, with the normal towards the moving half; empty where the halves never meet.
+    touches: list[Touch]
 
 
-class CertificateReport(TypedDict):
-    """None of so many random poses failed."""
+class Certificate(TypedDict):
+    """The evidence of random poses of the window: none of them failed."""
 
-    #: How many.
+    #: How many poses.
     motions: int
-    #: At most this share of the window fails, with 95 % confidence.
+    #: At most this share of the window fails, with 95 % confidence; 1 if nothing was tried.
     failing_at_most: float
     #: Windows before this one in which some random pose failed.
     redrawn: int
 
 
 class WindowSection(TypedDict):
-    """A window beside other things: its half-widths by name, and what was found of it."""
+    """A window in the report of a run: its half-widths by name beside everything else that was found."""
 
-    #: How it was asked for.
-    settings: Settings2
-    #: What is known of every free error.
-    sides: list[SideReport]
+    x: NotRequired[float]
+    y: NotRequired[float]
+    roll: NotRequired[float]
+    pitch: NotRequired[float]
+    yaw: NotRequired[float]
+    #: The settings, everything filled in.
+    settings: Settings15
+    #: Every free error.
+    sides: list[Side]
     #: Half-widths that were not given are so many times their proportions.
     scale: float
     #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
     tightest: Literal['x', 'y', 'roll', 'pitch', 'yaw'] | None
     #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
-    worst: WorstReport | None
-    #: What random poses show.
-    certificate: CertificateReport
+    worst: Worst | None
+    #: The evidence of random poses.
+    certificate: Certificate
     #: Exact motions in all.
     motions: int
 
@@ -755,11 +760,11 @@ class RunReport(TypedDict):
     #: The polytopes behind the outcomes; null for all methods but `partition`.
     partition: PartitionReport | None
     #: What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
-    certificate: Certificate | None
+    certificate: Certificate2 | None
     #: How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did not know it.
     joined: Joined | None
     #: Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
-    jams: JamsFound | None
+    jams: Jams | None
     #: The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
     window: WindowSection | None
     #: The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
@@ -768,6 +773,16 @@ class RunReport(TypedDict):
     warnings: list[WarningReport]
     #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
     timing: Timing | None
+
+
+class HalfWidths(TypedDict):
+    """An object of the report."""
+
+    x: NotRequired[float]
+    y: NotRequired[float]
+    roll: NotRequired[float]
+    pitch: NotRequired[float]
+    yaw: NotRequired[float]
 
 
 class WindowReport(TypedDict):
@@ -782,19 +797,19 @@ class WindowReport(TypedDict):
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
     #: ± so much of every free error, by its name, in D and radians.
-    window: dict[str, float]
-    #: How it was asked for.
-    settings: Settings2
-    #: What is known of every free error.
-    sides: list[SideReport]
+    window: HalfWidths
+    #: The settings, everything filled in.
+    settings: Settings15
+    #: Every free error.
+    sides: list[Side]
     #: Half-widths that were not given are so many times their proportions.
     scale: float
     #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
     tightest: Literal['x', 'y', 'roll', 'pitch', 'yaw'] | None
     #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
-    worst: WorstReport | None
-    #: What random poses show.
-    certificate: CertificateReport
+    worst: Worst | None
+    #: The evidence of random poses.
+    certificate: Certificate
     #: Exact motions in all.
     motions: int
     #: Warnings about the numbers: a code and a sentence each.
@@ -814,20 +829,20 @@ class JamsReport(TypedDict):
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
-    #: How it was asked for.
-    settings: Settings
+    #: The settings, everything filled in.
+    settings: Settings6
     #: Random poses of the error box that were followed.
     motions: int
-    #: What became of them, by the names of outcomes.
-    outcomes: dict[str, ShareReport]
+    #: Their outcomes.
+    outcomes: dict[str, Share]
     #: The same of poses drawn from the errors that a robot makes; null where none were given.
-    expected: dict[str, ShareReport] | None
+    expected: dict[str, Share] | None
     #: The table that those poses come from; null where they were not measured.
     measured: str | None
     #: The jams, the one with most of the poses first.
-    jams: list[JamReport]
+    jams: list[Jam]
     #: Which pairs of features touch in jams, the one that does so most often first.
-    features: list[PairReport]
+    features: list[JammingPair]
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
     #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
@@ -846,7 +861,7 @@ class WaypointReport(TypedDict):
     #: z of the COR in the world frame, in D.
     height_d: float
     #: Where the halves touch.
-    touches: list[TouchReport]
+    touches: list[Touch]
 
 
 class TraceReport(TypedDict):
@@ -910,7 +925,7 @@ class Decided(TypedDict):
     left_out: str | None
 
 
-class Agreement(TypedDict):
+class PairAgreement(TypedDict):
     """How two methods agree."""
 
     #: Share of the cells that both accept or both reject.
@@ -939,7 +954,7 @@ class MethodsReport(TypedDict):
     #: Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
     methods: list[Decided]
     #: Of the methods that came to a result, in their order: how each two agree.
-    agreement: list[list[Agreement]]
+    agreement: list[list[PairAgreement]]
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
     #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
