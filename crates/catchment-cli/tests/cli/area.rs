@@ -235,10 +235,14 @@ fn an_interrupt_ends_the_run_and_leaves_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Until the handler stands the signal ends the process without a code. Its thread is the third, after the
-    // main one and the worker.
-    let tasks = format!("/proc/{}/task", child.id());
-    while fs::read_dir(&tasks).unwrap().count() < 3 {
+    // Until the handler stands the signal ends the process without a code: SIGINT, the second bit, among those that are caught.
+    let status = format!("/proc/{}/status", child.id());
+    let is_caught = || {
+        let text = fs::read_to_string(&status).unwrap();
+        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+        u64::from_str_radix(mask.trim(), 16).unwrap() & 0b10 != 0
+    };
+    while !is_caught() {
         std::thread::yield_now();
     }
     let pid = child.id().to_string();

@@ -150,7 +150,8 @@ impl RunBody {
             document
                 .row("misclassified", format!("{share} of the error box by the grid (95 % CI {lo} … {hi})"));
         }
-        let share = |n: usize| tenths(if a.cells == 0 { 0.0 } else { n as f64 / a.cells as f64 });
+        let share =
+            |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
         let o = &a.outcomes;
         document.row(
             "outcomes",
