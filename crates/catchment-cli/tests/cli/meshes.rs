@@ -182,7 +182,7 @@ fn a_spoilt_mesh_is_repaired_and_told() {
     );
     let quick = ["run", "design.toml", "--free", "x,y", "--resolution", "5"];
     let words = run(spoilt.path(), &quick).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains(&format!("moving half: {done}")), "{words}");
+    assert!(words.contains(&format!("moving half {done}")), "{words}");
     // Taken as it is, it is refused.
     fs::write(
         spoilt.path().join("design.toml"),
