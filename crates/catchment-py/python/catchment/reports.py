@@ -404,6 +404,24 @@ class Share(TypedDict):
     ci95: list[float]
 
 
+class JamsOutcomes(TypedDict):
+    """Their outcomes."""
+
+    aligned: NotRequired[Share]
+    jammed: NotRequired[Share]
+    missed: NotRequired[Share]
+    undecided: NotRequired[Share]
+
+
+class JamsExpected(TypedDict):
+    """The same of poses drawn from the errors that a robot makes; null where none were given."""
+
+    aligned: NotRequired[Share]
+    jammed: NotRequired[Share]
+    missed: NotRequired[Share]
+    undecided: NotRequired[Share]
+
+
 Extent = TypedDict(
     "Extent",
     {
@@ -556,9 +574,9 @@ class Jams(TypedDict):
     #: Random poses of the error box that were followed.
     motions: int
     #: Their outcomes.
-    outcomes: dict[str, Share]
+    outcomes: JamsOutcomes
     #: The same of poses drawn from the errors that a robot makes; null where none were given.
-    expected: dict[str, Share] | None
+    expected: JamsExpected | None
     #: The table that those poses come from; null where they were not measured.
     measured: str | None
     #: The jams, the one with most of the poses first.
@@ -818,6 +836,24 @@ class WindowReport(TypedDict):
     timing: Timing | None
 
 
+class JamsReportOutcomes(TypedDict):
+    """Their outcomes."""
+
+    aligned: NotRequired[Share]
+    jammed: NotRequired[Share]
+    missed: NotRequired[Share]
+    undecided: NotRequired[Share]
+
+
+class JamsReportExpected(TypedDict):
+    """The same of poses drawn from the errors that a robot makes; null where none were given."""
+
+    aligned: NotRequired[Share]
+    jammed: NotRequired[Share]
+    missed: NotRequired[Share]
+    undecided: NotRequired[Share]
+
+
 class JamsReport(TypedDict):
     """The form of a report in JSON."""
 
@@ -834,9 +870,9 @@ class JamsReport(TypedDict):
     #: Random poses of the error box that were followed.
     motions: int
     #: Their outcomes.
-    outcomes: dict[str, Share]
+    outcomes: JamsReportOutcomes
     #: The same of poses drawn from the errors that a robot makes; null where none were given.
-    expected: dict[str, Share] | None
+    expected: JamsReportExpected | None
     #: The table that those poses come from; null where they were not measured.
     measured: str | None
     #: The jams, the one with most of the poses first.
