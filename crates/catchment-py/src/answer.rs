@@ -2,7 +2,7 @@
 
 use crate::problem::Problem;
 use crate::refusal::Refusal;
-use crate::told::PNG_SCALE;
+use crate::rendered::PNG_SCALE;
 use crate::work::{How, work};
 use catchment::report::figure::Drawn;
 use catchment::report::{Report, save, save_group};

@@ -3,7 +3,7 @@
 use crate::plan::method;
 use crate::problem::Problem;
 use crate::refusal::Refusal;
-use crate::told::Told;
+use crate::rendered::Rendered;
 use crate::work::{How, work};
 use catchment::method::Method;
 use catchment::method::descent::{self, Rows};
@@ -81,7 +81,7 @@ impl Problem {
     }
 
     /// The way of one pose, from first contact to where it rests.
-    fn trace(&self, py: Python<'_>, pose: [f64; 5], friction: f64, how: How) -> PyResult<Told> {
+    fn trace(&self, py: Python<'_>, pose: [f64; 5], friction: f64, how: How) -> PyResult<Rendered> {
         work(py, &how, |_| {
             let problem = &self.inner;
             check_rows(&[pose], problem.design())?;
@@ -91,7 +91,7 @@ impl Problem {
             let (path, reason) = problem.trace(&error, &settings);
             let report = TraceReport::new(problem, &settings, error, &path, reason);
             let picture = figure::trajectory(problem.design(), problem.connector(), &path);
-            Told::of(&report)?.with(picture)
+            Rendered::of(&report)?.with(picture)
         })
     }
 }

@@ -5,7 +5,7 @@
 //!   catchment (Python)  ──▶ _catchment.Problem ──▶ catchment::problem::Problem      geometry, checked once
 //!     arguments, units          .plan → Run as JSON ──▶ .run → Answer               what changes an answer is data
 //!     docstrings, pictures      .follow_many      arrays in, arrays out, no copies
-//!                               .window …  ──▶ Told: JSON, table, CSV, picture     the reports of the command line
+//!                               .window …  ──▶ Rendered: JSON, table, CSV, picture     the reports of the command line
 //! ```
 //!
 //! Every computation leaves the interpreter free, tells its progress, and ends on Ctrl-C ([`work`]). Refusals are
@@ -21,9 +21,9 @@ mod plan;
 mod problem;
 mod program;
 mod refusal;
+mod rendered;
 mod studies;
 mod sweep;
-mod told;
 mod work;
 
 use pyo3::prelude::*;
@@ -34,7 +34,7 @@ fn _catchment(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<problem::Problem>()?;
     module.add_class::<answer::Answer>()?;
-    module.add_class::<told::Told>()?;
+    module.add_class::<rendered::Rendered>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_function(wrap_pyfunction!(problem::read_text, module)?)?;
     module.add_function(wrap_pyfunction!(plan::methods, module)?)?;

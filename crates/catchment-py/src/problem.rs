@@ -132,7 +132,7 @@ impl Problem {
     fn picture(&self, py: Python<'_>) -> PyResult<(String, Vec<u8>)> {
         let drawn = py.detach(|| {
             let picture = figure::pair(&self.inner)?;
-            let png = picture.png(crate::told::PNG_SCALE)?;
+            let png = picture.png(crate::rendered::PNG_SCALE)?;
             Ok::<_, figure::FigureError>((picture.svg().to_owned(), png))
         });
         drawn.map_err(|error| Refusal::from(error).raise(py))

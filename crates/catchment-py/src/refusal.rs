@@ -117,7 +117,7 @@ impl<E: Error + 'static> From<E> for Refusal {
                 RunError::NotApplicable(error) => Self::argument("method", error),
                 RunError::Resolution(error) => Self::argument("resolution", error),
                 RunError::Cancelled(_) => Self::Cancelled,
-                error => told(&error),
+                error => explained(&error),
             };
         }
         if let Some(error) = taken::<_, NotApplicable>(&mut error) {
@@ -129,12 +129,12 @@ impl<E: Error + 'static> From<E> for Refusal {
         if let Some(error) = taken::<_, ResolutionError>(&mut error) {
             return Self::argument("resolution", error);
         }
-        error.map_or(Self::Cancelled, |error| told(&error))
+        error.map_or(Self::Cancelled, |error| explained(&error))
     }
 }
 
 /// An error that has no place: its message, and those of its causes that it does not repeat.
-fn told(error: &(dyn Error + 'static)) -> Refusal {
+fn explained(error: &(dyn Error + 'static)) -> Refusal {
     let mut message = error.to_string();
     let mut is_memory = false;
     let mut cause = Some(error);

@@ -3,7 +3,7 @@
 use crate::plan::{Expected, method, resolution};
 use crate::problem::Problem;
 use crate::refusal::Refusal;
-use crate::told::Told;
+use crate::rendered::Rendered;
 use crate::work::{How, work};
 use catchment::exec::Stopwatch;
 use catchment::method::zraa::{self, Nilsson, Square};
@@ -39,7 +39,7 @@ impl Problem {
         seed: u64,
         friction: f64,
         how: How,
-    ) -> PyResult<Told> {
+    ) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let started = Stopwatch::start();
             let problem = &self.inner;
@@ -62,7 +62,7 @@ impl Problem {
             let found = window::run(problem, &settings, exec)?;
             let report =
                 WindowReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
-            Told::of(&report)
+            Rendered::of(&report)
         })
     }
 
@@ -79,7 +79,7 @@ impl Problem {
         certified: bool,
         expected: Expected,
         how: How,
-    ) -> PyResult<Told> {
+    ) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let started = Stopwatch::start();
             let problem = &self.inner;
@@ -90,13 +90,13 @@ impl Problem {
             let found = jams::run(problem, &settings, exec)?;
             let report =
                 JamsReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
-            let told = Told::of(&report)?;
-            told.with(figure::jams(&report.design, &report.result, problem.connector()))
+            let rendered = Rendered::of(&report)?;
+            rendered.with(figure::jams(&report.design, &report.result, problem.connector()))
         })
     }
 
     /// Offsets that are corrected by sliding alone, exactly.
-    fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Told> {
+    fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let problem = &self.inner;
             let found = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
@@ -104,8 +104,8 @@ impl Problem {
             let nilsson = Nilsson::beside(&found, problem.pair());
             let offsets = AcceptedOffsets::new(problem.design(), &found, &square, nilsson.as_ref());
             let report = ZraaReport::new(problem.design(), offsets, Vec::new(), None);
-            let told = Told::of(&report)?;
-            told.with(Ok(figure::region(problem.design(), &found, &square)))
+            let rendered = Rendered::of(&report)?;
+            rendered.with(Ok(figure::region(problem.design(), &found, &square)))
         })
     }
 }
@@ -126,7 +126,7 @@ pub(crate) fn compare(
     sides: [Side<'_>; 2],
     cells: Option<String>,
     how: How,
-) -> PyResult<Told> {
+) -> PyResult<Rendered> {
     let source = |side: &Side<'_>| -> Result<Source, Refusal> {
         Ok(match side {
             Side::Stored(path) => Source::Stored(path.clone()),
@@ -142,10 +142,10 @@ pub(crate) fn compare(
     let sources = sources().map_err(|refusal| refusal.raise(py))?;
     work(py, &how, |exec| {
         let found = compared(sources, resolution(cells.as_deref())?, true, exec)?;
-        let told = Told::of(&found.report)?;
+        let rendered = Rendered::of(&found.report)?;
         match found.picture {
-            Some(picture) => told.with(picture),
-            None => Ok(told),
+            Some(picture) => rendered.with(picture),
+            None => Ok(rendered),
         }
     })
 }

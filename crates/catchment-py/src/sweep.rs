@@ -7,7 +7,7 @@
 use crate::plan::{Asked, Expected};
 use crate::problem::Problem;
 use crate::refusal::Refusal;
-use crate::told::Told;
+use crate::rendered::Rendered;
 use crate::work::{How, work};
 use catchment::exec::{Exec, Stopwatch};
 use catchment::report::folder::{StudyFolder, encode};
@@ -129,7 +129,7 @@ impl Sweep {
     }
 
     /// Computes what neither `found` nor the folder has, and tells the whole.
-    fn run(&self, py: Python<'_>, found: Vec<(String, String)>, how: How) -> PyResult<Told> {
+    fn run(&self, py: Python<'_>, found: Vec<(String, String)>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let started = Stopwatch::start();
             let read =
@@ -143,13 +143,13 @@ impl Sweep {
             let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
             let report = SweepReport::new(&base, found, Vec::new(), Some(timing));
             let map = figure::sweep_map(&report);
-            let told = Told::of(&report)?;
+            let rendered = Rendered::of(&report)?;
             if let Some(path) = &self.output {
                 self.save(&report, path, exec)?;
             }
             match map {
-                Some(map) => told.with(Ok(map)),
-                None => Ok(told),
+                Some(map) => rendered.with(Ok(map)),
+                None => Ok(rendered),
             }
         })
     }

@@ -62,13 +62,13 @@ fn ensure_not_forked() -> Result<(), Refusal> {
     Err(Refusal::Compute(message.to_owned()))
 }
 
-/// The last thing that was told.
-type Told = Arc<Mutex<Option<(f64, &'static str)>>>;
+/// The last thing that was reported.
+type LastProgress = Arc<Mutex<Option<(f64, &'static str)>>>;
 
-/// Passes on what was told, and looks whether Python wants to stop.
-fn look(py: Python<'_>, told: &Told, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+/// Passes on what was reported, and looks whether Python wants to stop.
+fn look(py: Python<'_>, reported: &LastProgress, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     py.check_signals()?;
-    let last = told.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let last = reported.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let (Some(progress), Some(last)) = (progress, last) {
         progress.call1(py, last)?;
     }
@@ -82,11 +82,11 @@ pub(crate) fn work<T: Send>(
     task: impl FnOnce(&Exec) -> Result<T, Refusal> + Send,
 ) -> PyResult<T> {
     let mut exec = ensure_not_forked().and_then(|()| how.exec()).map_err(|refusal| refusal.raise(py))?;
-    let told = Told::default();
+    let reported = LastProgress::default();
     if how.progress.is_some() {
-        let told = Arc::clone(&told);
+        let reported = Arc::clone(&reported);
         exec = exec.with_progress(Arc::new(move |fraction, stage| {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) = Some((fraction, stage));
+            *reported.lock().unwrap_or_else(PoisonError::into_inner) = Some((fraction, stage));
         }));
     }
     let stop = exec.cancel_flag();
@@ -107,7 +107,7 @@ pub(crate) fn work<T: Send>(
             let mut raised: Option<PyErr> = None;
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(PATIENCE) {
                 if raised.is_none() {
-                    raised = Python::attach(|py| look(py, &told, progress)).err();
+                    raised = Python::attach(|py| look(py, &reported, progress)).err();
                     if raised.is_some() {
                         stop.store(true, Ordering::Relaxed);
                     }
@@ -119,7 +119,7 @@ pub(crate) fn work<T: Send>(
     match (raised, found) {
         (Some(raised), _) => Err(raised),
         (None, found) => {
-            look(py, &told, progress)?;
+            look(py, &reported, progress)?;
             found.map_err(|refusal| refusal.raise(py))
         }
     }

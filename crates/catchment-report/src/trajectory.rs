@@ -38,7 +38,7 @@ pub struct TraceBody {
     pub start: PoseError,
     /// How it ends.
     pub outcome: Outcome,
-    /// Why it does not dock; null where that cannot be told.
+    /// Why it does not dock; null where that is not known.
     pub reason: Option<Reason>,
     /// The last pose error; null if the halves never meet.
     pub end: Option<PoseError>,
@@ -115,11 +115,11 @@ impl TraceReport {
         path: &drop::Path,
         warnings: Vec<WarningReport>,
     ) -> Self {
-        let told = |moment: &drop::Moment| WaypointReport {
+        let waypoint = |moment: &drop::Moment| WaypointReport {
             time_s: Some(moment.time),
             ..WaypointReport::from(&moment.waypoint)
         };
-        let waypoints: Vec<WaypointReport> = path.moments.iter().map(told).collect();
+        let waypoints: Vec<WaypointReport> = path.moments.iter().map(waypoint).collect();
         let body = TraceBody {
             design: design.clone(),
             method: "drop",
@@ -264,22 +264,22 @@ mod tests {
             let error = PoseError { x, ..PoseError::default() };
             Waypoint { error, height: 0.25, travelled: 0.5 - x, touches }
         };
-        let told = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
-        let text = told.table();
+        let traced = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
+        let text = traced.table();
         assert!(text.starts_with("a?[2Jb\n") && text.contains("  outcome        aligned\n"), "{text}");
         assert!(text.contains("    0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
-        let records = told.records();
+        let records = traced.records();
         assert_eq!(records.len(), 1 + 2 + 1);
         assert!(records.iter().all(|record| record.len() == 14));
-        let json: serde_json::Value = serde_json::from_str(&told.to_json().unwrap()).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&traced.to_json().unwrap()).unwrap();
         assert_eq!(json["waypoints"][0]["touches"][1]["normal"][2], 1.0);
         assert_eq!(json["warnings"][0]["message"], "shallow");
     }
 
     #[test]
     fn halves_that_never_meet_have_no_path() {
-        let told = report(Vec::new());
-        assert!(told.table().contains("\n  The halves never meet.\n"), "{}", told.table());
-        assert!(told.end.is_none() && told.records().len() == 1);
+        let traced = report(Vec::new());
+        assert!(traced.table().contains("\n  The halves never meet.\n"), "{}", traced.table());
+        assert!(traced.end.is_none() && traced.records().len() == 1);
     }
 }

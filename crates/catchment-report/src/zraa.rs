@@ -279,11 +279,11 @@ mod tests {
         );
         assert!(json["circle_area_d2"].is_null() && json.get("axis").is_none());
         assert_eq!((&json["onaa_d"], &json["onaa_center_d"][1]), (&0.5.into(), &0.25.into()));
-        let told = region.table();
-        assert!(told.contains("onaa           0.5000000 D = 25.000000 mm\n"), "{told}");
+        let text = region.table();
+        assert!(text.contains("onaa           0.5000000 D = 25.000000 mm\n"), "{text}");
         assert!(
-            told.contains("around x = 0.25, y = 0.25 D\n                 0.0000000 D for the largest around"),
-            "{told}"
+            text.contains("around x = 0.25, y = 0.25 D\n                 0.0000000 D for the largest around"),
+            "{text}"
         );
         assert!(
             region.table().starts_with("?[2Jx\n")

@@ -72,7 +72,7 @@ impl Column {
         Self { title: Some(title.into()), ..Self::default() }
     }
 
-    /// A column that programs read and nobody sees.
+    /// A column for programs alone.
     pub fn data(key: impl Into<String>) -> Self {
         Self::default().key(key)
     }

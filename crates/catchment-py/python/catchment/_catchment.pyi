@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ._arguments import Asked, Changes, Expected, How
 
-__all__ = ["Answer", "Problem", "Sweep", "Told", "__version__", "compare", "methods", "program", "read_text"]
+__all__ = ["Answer", "Problem", "Rendered", "Sweep", "__version__", "compare", "methods", "program", "read_text"]
 
 __version__: str
 
@@ -24,7 +24,7 @@ def compare(
     sides: tuple[str | tuple[str, Problem, str, str], str | tuple[str, Problem, str, str]],
     cells: str | None,
     how: How,
-) -> Told:
+) -> Rendered:
     """Two acceptances: each where a result is stored, or (name, problem, method, settings as JSON)."""
 
 @final
@@ -80,7 +80,7 @@ class Problem:
     ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.float64]]:
         """Where every row ends: (n, 5) in D and radians → codes (n,), last errors (n, 5) and heights (n,)."""
 
-    def trace(self, pose: list[float], friction: float, how: How) -> Told:
+    def trace(self, pose: list[float], friction: float, how: How) -> Rendered:
         """The way of one pose, from first contact to where it rests."""
 
     def window(
@@ -91,7 +91,7 @@ class Problem:
         seed: int,
         friction: float,
         how: How,
-    ) -> Told:
+    ) -> Rendered:
         """The largest box of errors that all dock."""
 
     def jams(
@@ -104,10 +104,10 @@ class Problem:
         certified: bool,
         expected: Expected,
         how: How,
-    ) -> Told:
+    ) -> Rendered:
         """Where it jams instead of docking, and on which features."""
 
-    def zraa(self, how: How) -> Told:
+    def zraa(self, how: How) -> Rendered:
         """Offsets that are corrected by sliding alone, exactly."""
 
 @final
@@ -136,8 +136,8 @@ class Answer:
         """Writes everything into a folder, or the Zarr group alone where the path ends with `.zarr`."""
 
 @final
-class Told:
-    """A report in every form that it is told in."""
+class Rendered:
+    """A report as JSON, text, CSV and picture."""
 
     @property
     def json(self) -> str:
@@ -174,5 +174,5 @@ class Sweep:
     def keep(self, key: str, found: str) -> None:
         """Keeps what was found elsewhere, where results are kept."""
 
-    def run(self, found: list[tuple[str, str]], how: How) -> Told:
+    def run(self, found: list[tuple[str, str]], how: How) -> Rendered:
         """Computes what neither `found` nor the folder has, and tells the whole."""

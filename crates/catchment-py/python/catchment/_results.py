@@ -67,10 +67,10 @@ class Report(Generic[Fields]):
         self._read: dict[str, Any] | None = None
 
     @classmethod
-    def _of(cls, told: _catchment.Told) -> Report[Fields]:
-        svg, png = told.svg(), told.png()
+    def _of(cls, rendered: _catchment.Rendered) -> Report[Fields]:
+        svg, png = rendered.svg(), rendered.png()
         picture = None if svg is None or png is None else Picture(svg, png)
-        return cls(told.json, told.table, told.csv, picture)
+        return cls(rendered.json, rendered.table, rendered.csv, picture)
 
     def to_dict(self) -> Fields:
         """The report as a dictionary of its own; `catchment.reports` has the types of its fields."""
@@ -275,8 +275,8 @@ def _centers(axis: dict[str, Any]) -> NDArray[np.float64]:
 def _about(axis: dict[str, Any]) -> dict[str, Any]:
     """What a coordinate says of itself, as in the Zarr group."""
     name = axis["axis"]
-    told = f"lateral offset of the face centre along {name}" if axis["unit"] == "D" else f"{name} error"
-    return {"long_name": told, "units": axis["unit"], "lower_border": axis["lo"], "upper_border": axis["hi"]}
+    long_name = f"lateral offset of the face centre along {name}" if axis["unit"] == "D" else f"{name} error"
+    return {"long_name": long_name, "units": axis["unit"], "lower_border": axis["lo"], "upper_border": axis["hi"]}
 
 
 class Touching(NamedTuple):

@@ -222,31 +222,31 @@ warning: 2 poses are undecided
 
     #[test]
     fn markdown_has_tables() {
-        let told = markdown(&sample());
+        let text = markdown(&sample());
         assert!(
-            told.starts_with(
+            text.starts_with(
                 "# peg \\| \\<socket\\>?[2J\n\n| | |\n|---|---|\n| method | descent, 200 motions |\n"
             ),
-            "{told}"
+            "{text}"
         );
-        assert!(told.contains("| window | x ±1.2 mm, yaw ±5.5° |\n| | limited by yaw |\n"), "{told}");
+        assert!(text.contains("| window | x ±1.2 mm, yaw ±5.5° |\n| | limited by yaw |\n"), "{text}");
         assert!(
-            told.contains("\n## limits\n\n| error | limit | docks |\n|:--|--:|--:|\n| x | 1.23 |"),
-            "{told}"
+            text.contains("\n## limits\n\n| error | limit | docks |\n|:--|--:|--:|\n| x | 1.23 |"),
+            "{text}"
         );
-        assert!(told.ends_with("\n> **Warning:** 2 poses are undecided\n"), "{told}");
+        assert!(text.ends_with("\n> **Warning:** 2 poses are undecided\n"), "{text}");
     }
 
     #[test]
     fn html_is_well_formed() {
-        let told = html(&sample());
+        let text = html(&sample());
         let page = roxmltree::Document::parse_with_options(
-            &told,
+            &text,
             roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() },
         )
         .unwrap();
         let count = |name| page.descendants().filter(|node| node.has_tag_name(name)).count();
         assert_eq!((count("h1"), count("h2"), count("table"), count("th")), (1, 1, 2, 6));
-        assert!(told.contains("<h1>peg | &lt;socket&gt;?[2J</h1>"), "{told}");
+        assert!(text.contains("<h1>peg | &lt;socket&gt;?[2J</h1>"), "{text}");
     }
 }

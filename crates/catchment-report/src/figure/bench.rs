@@ -47,7 +47,7 @@ struct Mark {
 pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
     let of = |point: &Point| Mark {
         error: point.error,
-        shape: match (point.foretold.either, point.foretold.docks()) {
+        shape: match (point.prediction.either, point.prediction.docks()) {
             (true, _) => Shape::Either,
             (false, true) => Shape::Docks,
             (false, false) => Shape::Fails,

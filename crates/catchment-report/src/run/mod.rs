@@ -271,7 +271,7 @@ pub fn first_look(design: &Design, found: &Upright) -> Vec<String> {
     lines(&document, Style::default())
 }
 
-/// A row per error; says whether the error box ends any of them.
+/// A row per error; whether the error box ends any of them.
 fn limits(
     document: &mut Document,
     design: &Design,
@@ -399,8 +399,8 @@ mod tests {
             ["x", "±0.00960", "m", "±0.00960", "m", "±0.6000"]
         );
         assert!(row("seat").contains("within 0.00003 m of"), "{text}");
-        for told in ["±0.00080 m", "0.00032 m", "0.00064 m"] {
-            assert!(text.contains(told), "{text}");
+        for amount in ["±0.00080 m", "0.00032 m", "0.00064 m"] {
+            assert!(text.contains(amount), "{text}");
         }
     }
 }

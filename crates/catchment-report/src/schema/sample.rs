@@ -21,7 +21,7 @@ pub struct SampleReport {
     pub seed: u64,
     /// Poses followed.
     pub descents: usize,
-    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; 1 in reports of versions that did
+    /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of versions that did
     /// not count it.
     #[serde(default = "unknown")]
     pub differing: f64,

@@ -40,7 +40,7 @@ impl Subject for Chance {
         let drop = &self.settings.drop;
         if self.settings.held && (drop.angular_damping != drop.damping || drop.inertia_factor != 1.0) {
             notes.push(
-                "turning is damped otherwise than moving: exact motions, which damp both alike by rho, are not the limit of no speed"
+                "turning and moving are damped differently: exact motions, which damp both alike by rho, are not the limit of zero speed"
                     .to_owned(),
             );
         }

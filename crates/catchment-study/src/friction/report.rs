@@ -1,9 +1,10 @@
 //! What people read of the effect of friction.
 
-use super::{Friction, Kept, Rung, StickingPair, SticksFirst};
+use super::{Friction, Kept, Rung, SticksFirst};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Document, Format, Subject, Table, grouped, tenths};
+use catchment_core::run::jams::contact_in_words;
 use serde::Serializer;
 
 /// Pairs of features that are shown.
@@ -126,7 +127,10 @@ impl Friction {
             let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
             document.row(
                 tenths(pair.share),
-                format!("{}: from a friction of {least} on, half of them by {median}", pair.words()),
+                format!(
+                    "{}: from a friction of {least} on, half of them by {median}",
+                    contact_in_words(&pair.fixed, &pair.moving)
+                ),
             );
         }
         if features.len() > SHOWN {
@@ -143,13 +147,6 @@ impl Friction {
     pub fn up_to(&self, friction: f64) -> String {
         let top = self.top();
         if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }
-    }
-}
-
-impl StickingPair {
-    /// The contact in words.
-    pub fn words(&self) -> String {
-        format!("{} of the moving half on {} of the fixed one", self.moving.name, self.fixed.name)
     }
 }
 

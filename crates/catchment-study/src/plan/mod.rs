@@ -14,8 +14,8 @@
 //! Not promised: friction, unless it is given; speed; that the robot can reach a pose. Lengths in D, angles in radians.
 
 mod border;
-mod foretold;
 mod pattern;
+mod prediction;
 mod report;
 mod robot;
 mod slices;
@@ -29,10 +29,10 @@ use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::OffsetsAt;
 use catchment_core::problem::Problem;
-pub use foretold::Foretold;
-pub(crate) use foretold::{for_each, foretell};
 pub use pattern::Pattern;
 use pattern::{Maker, Placed};
+pub use prediction::Prediction;
+pub(crate) use prediction::{for_each, foretell};
 pub(crate) use robot::{PoseColumns, accuracy_words};
 use serde::{Deserialize, Serialize};
 pub use slices::{CELLS, Panel, panels};
@@ -137,7 +137,7 @@ pub struct Point {
     pub line: usize,
     /// Its prediction by exact motion.
     #[serde(flatten)]
-    pub foretold: Foretold,
+    pub prediction: Prediction,
 }
 
 /// A trial of a plan.
@@ -291,26 +291,26 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, 
         return Err(PlanError::TooMany { most: MOST_TRIALS });
     }
     let errors: Vec<PoseError> = made.poses.iter().map(|placed| placed.error).collect();
-    let (foretold, followed) =
+    let (prediction, followed) =
         foretell(problem, &settings.accuracy, &motions, &errors, settings.seed, &part(1))?;
-    let point = |(Placed { error, line }, foretold)| Point { error, line, foretold };
-    let mut points: Vec<Point> = made.poses.into_iter().zip(foretold).map(point).collect();
+    let point = |(Placed { error, line }, prediction)| Point { error, line, prediction };
+    let mut points: Vec<Point> = made.poses.into_iter().zip(prediction).map(point).collect();
     if settings.stop_at_first_failure {
         points = stopped(problem, points);
     }
     let (asymmetric, more) =
         if settings.symmetric { other_signs(problem, &points, &motions, &part(2))? } else { (0, 0) };
     let trials = order(points.len(), settings);
-    let count = |is: &dyn Fn(&Foretold) -> bool| points.iter().filter(|p| is(&p.foretold)).count();
-    let docking = count(&Foretold::docks);
+    let count = |is: &dyn Fn(&Prediction) -> bool| points.iter().filter(|p| is(&p.prediction)).count();
+    let docking = count(&Prediction::docks);
     let counts = Counts {
         trials: trials.len(),
         poses: points.len(),
         lines: points.iter().map(|point| point.line).max().unwrap_or(0),
         docking,
         failing: points.len() - docking,
-        either: count(&|foretold| foretold.either),
-        deciding: count(&|foretold| foretold.margin() >= LIMIT),
+        either: count(&|prediction| prediction.either),
+        deciding: count(&|prediction| prediction.margin() >= LIMIT),
         asymmetric,
         open: made.open,
     };
@@ -353,7 +353,7 @@ fn stopped(problem: &Problem, mut points: Vec<Point>) -> Vec<Point> {
         if ended == Some(point.line) {
             return false;
         }
-        if !point.foretold.docks() {
+        if !point.prediction.docks() {
             ended = Some(point.line);
         }
         true
@@ -373,8 +373,8 @@ fn other_signs(
         exec,
         || Judge::new(problem, motions),
         |judge, k| {
-            let Point { error, foretold, .. } = &points[k];
-            if foretold.either {
+            let Point { error, prediction, .. } = &points[k];
+            if prediction.either {
                 return (false, 0);
             }
             let before = judge.followed();
@@ -387,7 +387,7 @@ fn other_signs(
                         turned[*k] = -turned[*k];
                     }
                 }
-                judge.docks(&PoseError::from_array(turned)) != foretold.docks()
+                judge.docks(&PoseError::from_array(turned)) != prediction.docks()
             });
             (otherwise, judge.followed() - before)
         },

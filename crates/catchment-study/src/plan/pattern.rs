@@ -11,7 +11,7 @@
 //! bracket from zero.
 
 use super::border::{Judge, Search, random_direction};
-use super::foretold::for_each;
+use super::prediction::for_each;
 use super::{MOST_TRIALS, PlanError};
 use crate::validate::LIMIT;
 use catchment_core::acceptance::Stream;

@@ -1,6 +1,6 @@
 //! What people and robots read of a plan.
 
-use super::{Counts, Foretold, Pattern, Plan, PoseColumns, accuracy_words};
+use super::{Counts, Pattern, Plan, PoseColumns, Prediction, accuracy_words};
 use crate::validate::{FEWEST, LIMIT};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
@@ -21,8 +21,9 @@ impl Subject for Plan {
         }
         let mut warn = |text: String| warnings.push(Warning::Note { text });
         let deciding = |docks: bool| {
-            let decides = |foretold: &Foretold| foretold.margin() >= LIMIT && foretold.docks() == docks;
-            self.points.iter().filter(|point| decides(&point.foretold)).count()
+            let decides =
+                |prediction: &Prediction| prediction.margin() >= LIMIT && prediction.docks() == docks;
+            self.points.iter().filter(|point| decides(&point.prediction)).count()
         };
         let [docking, failing] = [true, false].map(deciding);
         if docking + failing < FEWEST {
@@ -41,7 +42,7 @@ impl Subject for Plan {
         }
         if asymmetric > 0 {
             warn(format!(
-                "{asymmetric} of {poses} poses fare otherwise with other signs of their errors: positive errors do not stand for all"
+                "{asymmetric} of {poses} poses have another outcome with other signs of their errors: positive errors do not stand for all"
             ));
         }
         if open > 0 {
@@ -69,7 +70,11 @@ impl Subject for Plan {
         ]);
         for trial in self.trials.iter().take(SHOWN) {
             let point = &self.points[trial.point];
-            first.push([trial.number.into(), point.foretold.word().into(), units.pose(&point.error).into()]);
+            first.push([
+                trial.number.into(),
+                point.prediction.word().into(),
+                units.pose(&point.error).into(),
+            ]);
         }
         document.table(first);
         if self.trials.len() > SHOWN {
@@ -96,8 +101,8 @@ impl Plan {
         document.row("either", format!("{either} poses, nearer to the border than the accuracy"));
         document.row("decide", format!("{deciding} poses, {LIMIT} accuracies or more from the border"));
         let known = self.points.iter().filter_map(|point| {
-            let Foretold { distance_to_border, margin_in_sigma, .. } = point.foretold;
-            let decides = point.foretold.margin() >= LIMIT;
+            let Prediction { distance_to_border, margin_in_sigma, .. } = point.prediction;
+            let decides = point.prediction.margin() >= LIMIT;
             Some((margin_in_sigma.filter(|_| decides)?, distance_to_border?, point))
         });
         if let Some((margin, distance, point)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -142,8 +147,8 @@ impl Plan {
         for trial in &self.trials {
             let point = &self.points[trial.point];
             let cells = [trial.number, trial.block, point.line].map(Into::into).into_iter();
-            let cells = cells.chain(poses.values(&point.error)).chain([point.foretold.word().into()]);
-            let cells = cells.chain(poses.margin(&point.foretold));
+            let cells = cells.chain(poses.values(&point.error)).chain([point.prediction.word().into()]);
+            let cells = cells.chain(poses.margin(&point.prediction));
             table.push(cells.chain([trial.repeat.into(), "".into(), "".into()]));
         }
         table

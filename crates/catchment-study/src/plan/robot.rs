@@ -1,6 +1,6 @@
 //! What bench tests share: the accuracy of a robot in words, and the columns of a table that a robot reads.
 
-use super::Foretold;
+use super::Prediction;
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Units};
 use catchment_core::pose::{Dof, PoseError};
@@ -66,10 +66,10 @@ impl<'a> PoseColumns<'a> {
     }
 
     /// Their values of one pose.
-    pub(crate) fn margin(&self, foretold: &Foretold) -> [Cell; 2] {
+    pub(crate) fn margin(&self, prediction: &Prediction) -> [Cell; 2] {
         let short = |value: Option<f64>| value.map(|value| format!("{value:.4}")).into();
-        let distance = foretold.distance_to_border.map(|distance| distance * self.units.scale());
-        [short(distance), short(foretold.margin_in_sigma)]
+        let distance = prediction.distance_to_border.map(|distance| distance * self.units.scale());
+        [short(distance), short(prediction.margin_in_sigma)]
     }
 
     fn unit(&self) -> String {

@@ -11,7 +11,7 @@
 //! no region is drawn under them: that of any slice would be the wrong one for most of them.
 
 use super::border::Judge;
-use super::foretold::for_each;
+use super::prediction::for_each;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
 use catchment_core::pose::{Dof, PoseError};

@@ -39,8 +39,8 @@ fn the_lattice_of_the_x_face_has_28_points_that_decide_and_14_that_do_not() {
     for point in &plan.points {
         let sum = (point.error.x + point.error.y) * 65.5;
         *rows.entry(sum.round() as i64).or_default() += 1;
-        assert_eq!(point.foretold.docks(), sum < 65.5, "{point:?}");
-        assert_eq!(point.foretold.either, sum.round() == 65.0, "{point:?}");
+        assert_eq!(point.prediction.docks(), sum < 65.5, "{point:?}");
+        assert_eq!(point.prediction.either, sum.round() == 65.0, "{point:?}");
         // The diamond's side, or its corner where that is nearer than the foot on the side.
         let [x, y] = [point.error.x, point.error.y].map(|v| v * 65.5);
         let foot = [x, y].map(|v| v - 0.5 * (x + y - 65.5));
@@ -49,7 +49,7 @@ fn the_lattice_of_the_x_face_has_28_points_that_decide_and_14_that_do_not() {
         } else {
             (x.max(y) - 65.5).hypot(x.min(y))
         };
-        let Foretold { margin_in_sigma, distance_to_border, .. } = point.foretold;
+        let Prediction { margin_in_sigma, distance_to_border, .. } = point.prediction;
         let [sigmas, distance] = [margin_in_sigma, distance_to_border].map(Option::unwrap);
         // At most so much, and hardly more: directions are random, two in the plane.
         assert!(sigmas > exact * (1.0 - 1e-9) && sigmas < 1.02 * exact + 2e-3, "{exact}: {point:?}");
@@ -73,14 +73,14 @@ fn the_grid_of_the_pyramid_has_150_points_of_which_96_dock() {
     assert_eq!(plan.points.len(), 150);
     let on_border = |point: &Point| point.error.x.max(point.error.y) > 0.5 - 1e-9;
     for point in &plan.points {
-        assert_eq!(point.foretold.docks(), !on_border(point), "{point:?}");
-        assert_eq!(point.foretold.either, on_border(point), "{point:?}");
+        assert_eq!(point.prediction.docks(), !on_border(point), "{point:?}");
+        assert_eq!(point.prediction.either, on_border(point), "{point:?}");
         if !on_border(point) {
             // A quarter of an inch inside or more: 63 accuracies of offset, or as far in yaw.
-            assert!(point.foretold.margin() > 60.0, "{point:?}");
+            assert!(point.prediction.margin() > 60.0, "{point:?}");
         }
     }
-    assert_eq!(plan.points.iter().filter(|point| point.foretold.docks()).count(), 96);
+    assert_eq!(plan.points.iter().filter(|point| point.prediction.docks()).count(), 96);
     // Lines along x end with the first failure: of each yaw 4 rows of 5, and of the row on the border its first pose.
     let stopped = planned(
         &problem,
@@ -143,7 +143,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
                 && (error.y + back * error.yaw.sin()).abs() < 1e-12
         );
     }
-    let docking = |line: usize| plan.points.iter().filter(|p| p.line == line && p.foretold.docks()).count();
+    let docking = |line: usize| plan.points.iter().filter(|p| p.line == line && p.prediction.docks()).count();
     // 14.75° and 15.75°: steps 0 to 6 of 2.25°, and 15.75° itself is the seventh.
     assert_eq!((docking(1), docking(2)), (7, 8));
     // Another joint would have to move sideways what is locked.
@@ -169,7 +169,7 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
         let mut widths = Vec::new();
         for line in 1..=plan.points.iter().map(|p| p.line).max().unwrap() {
             let of = |docks: bool| {
-                let on = plan.points.iter().filter(move |p| p.line == line && p.foretold.docks() == docks);
+                let on = plan.points.iter().filter(move |p| p.line == line && p.prediction.docks() == docks);
                 on.map(|p| p.error.x.hypot(p.error.y))
             };
             let (last, first) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
@@ -184,7 +184,7 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     assert!(narrow <= step * 1.0001 && narrow <= wide * 1.0001, "{narrow} {wide} {step}");
     assert!(3 * bracket.trials.len() <= grid.trials.len(), "{} {}", bracket.trials.len(), grid.trials.len());
     // Points at the border are told apart from it.
-    let either = bracket.points.iter().filter(|p| p.foretold.either).count();
+    let either = bracket.points.iter().filter(|p| p.prediction.either).count();
     assert_eq!(either, 0);
 }
 
@@ -212,7 +212,7 @@ fn threads_change_nothing_and_every_pose_is_tried_as_often() {
     let sizes: Vec<usize> = (1..=4).map(block).collect();
     assert!(sizes.iter().max().unwrap() - sizes.iter().min().unwrap() <= 1, "{sizes:?}");
     // Every point of a bracket decides, its controls too.
-    assert!(plan.points.iter().all(|point| point.foretold.margin() >= 1.9), "{plan:?}");
+    assert!(plan.points.iter().all(|point| point.prediction.margin() >= 1.9), "{plan:?}");
 }
 
 /// Mirrored halves have a mirrored border.
@@ -291,7 +291,7 @@ fn a_bracket_has_the_trials_that_were_asked_for() {
         poses.dedup();
         assert_eq!(poses.len(), trials, "{design}");
         // Most of them decide: a line on whose both sides a pair fits goes before one on which it does not.
-        let decide = plan.points.iter().filter(|point| point.foretold.margin() >= 1.9).count();
+        let decide = plan.points.iter().filter(|point| point.prediction.margin() >= 1.9).count();
         assert!(10 * decide >= 9 * trials, "{design}: {decide} of {trials}");
     }
 }

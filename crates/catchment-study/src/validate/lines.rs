@@ -47,8 +47,8 @@ pub(super) fn lines(problem: &Problem, trials: &[Judged]) -> Vec<Line> {
             trials: made.len(),
             last_success,
             first_failure,
-            predicted_success: last(&|t| t.foretold().docks()),
-            predicted_failure: first(&|t| !t.foretold().docks()),
+            predicted_success: last(&|t| t.prediction().docks()),
+            predicted_failure: first(&|t| !t.prediction().docks()),
             in_order,
         }
     };

@@ -29,7 +29,7 @@ mod statistics;
 #[cfg(test)]
 mod tests;
 
-use crate::plan::{Foretold, PlanError, Point, check_accuracy, foretell};
+use crate::plan::{PlanError, Point, Prediction, check_accuracy, foretell};
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::PoseError;
@@ -120,22 +120,22 @@ pub struct Judged {
 
 impl Judged {
     /// Of a trial, the prediction of its pose, and whether it docked.
-    fn new(tried: &Tried, foretold: Foretold, docked: Option<bool>) -> Self {
+    fn new(tried: &Tried, prediction: Prediction, docked: Option<bool>) -> Self {
         Self {
             trial: tried.trial,
             observed: tried.observed,
-            disagrees: foretold.predicted.is_some()
-                && !foretold.either
-                && docked.is_some_and(|docked| docked != foretold.docks()),
-            point: Point { error: tried.error, line: tried.line as usize, foretold },
+            disagrees: prediction.predicted.is_some()
+                && !prediction.either
+                && docked.is_some_and(|docked| docked != prediction.docks()),
+            point: Point { error: tried.error, line: tried.line as usize, prediction },
             docked,
             planned: tried.predicted,
         }
     }
 
     /// The prediction of its pose.
-    pub const fn foretold(&self) -> &Foretold {
-        &self.point.foretold
+    pub const fn prediction(&self) -> &Prediction {
+        &self.point.prediction
     }
 }
 
@@ -301,10 +301,11 @@ pub fn run(
     }
     let share = if settings.estimate_friction { PREDICTION } else { 1.0 };
     let part = exec.part([0.0, share], STAGE);
-    let (foretold, mut followed) =
+    let (prediction, mut followed) =
         foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
-    let judged =
-        |(trial, number): (&Tried, &usize)| Judged::new(trial, foretold[*number], trial.observed.map(docks));
+    let judged = |(trial, number): (&Tried, &usize)| {
+        Judged::new(trial, prediction[*number], trial.observed.map(docks))
+    };
     let trials: Vec<Judged> = tried.iter().zip(&number).map(judged).collect();
     let friction = if settings.estimate_friction {
         let made: Vec<(PoseError, bool)> =
@@ -321,7 +322,7 @@ pub fn run(
 /// Everything that follows from the trials without another motion.
 fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validation {
     let made = || trials.iter().filter(|trial| trial.docked.is_some());
-    let clear = || made().filter(|trial| !trial.foretold().either);
+    let clear = || made().filter(|trial| !trial.prediction().either);
     let agreed = clear().filter(|trial| !trial.disagrees).count();
     let all = clear().count();
     let agreement = Agreement {
@@ -330,13 +331,13 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Valid
         share: (all > 0).then(|| agreed as f64 / all as f64),
         ci95: clopper_pearson(agreed, all, LEVEL),
     };
-    let beyond_limit = || made().filter(|trial| trial.foretold().margin() >= settings.limit);
-    let inside = beyond_limit().filter(|trial| trial.foretold().docks()).count();
+    let beyond_limit = || made().filter(|trial| trial.prediction().margin() >= settings.limit);
+    let inside = beyond_limit().filter(|trial| trial.prediction().docks()).count();
     let outside = beyond_limit().count() - inside;
     let beyond: Vec<f64> =
-        beyond_limit().filter(|trial| trial.disagrees).map(|trial| trial.foretold().margin()).collect();
+        beyond_limit().filter(|trial| trial.disagrees).map(|trial| trial.prediction().margin()).collect();
     let chances = |least: f64| -> Vec<f64> {
-        let margins = made().map(|trial| trial.foretold().margin());
+        let margins = made().map(|trial| trial.prediction().margin());
         margins.filter(|margin| *margin >= least).map(chance).collect()
     };
     let [early, late] = [true, false].map(|docks| one_sided(&trials, docks));
@@ -355,17 +356,17 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Valid
     };
     let straight = |outcome: Option<Observed>| outcome == Some(Observed::Aligned);
     let turned = made().filter(|trial| {
-        let both = trial.docked == Some(true) && trial.foretold().docks();
-        both && straight(trial.observed) != straight(trial.foretold().predicted)
+        let both = trial.docked == Some(true) && trial.prediction().docks();
+        both && straight(trial.observed) != straight(trial.prediction().predicted)
     });
     let otherwise = trials.iter().filter(|trial| {
         let docks = |outcome| matches!(outcome, Observed::Aligned | Observed::AlignedElsewhere);
         let planned = trial.planned.map(docks);
         // On the border itself rounding decides.
-        planned.is_some_and(|planned| planned != trial.foretold().docks()) && !trial.foretold().either
+        planned.is_some_and(|planned| planned != trial.prediction().docks()) && !trial.prediction().either
     });
     let mut disagreements: Vec<Judged> = trials.iter().copied().filter(|trial| trial.disagrees).collect();
-    disagreements.sort_by(|a, b| b.foretold().margin().total_cmp(&a.foretold().margin()));
+    disagreements.sort_by(|a, b| b.prediction().margin().total_cmp(&a.prediction().margin()));
     Validation {
         settings: settings.clone(),
         offsets_at: OffsetsAt::Face,
@@ -390,11 +391,11 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Valid
 /// Disagreements of the trials that should dock, or of those that should not.
 fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
     let clear = |trial: &&Judged| {
-        let foretold = trial.foretold();
-        trial.docked.is_some() && foretold.docks() == docks && !foretold.either
+        let prediction = trial.prediction();
+        trial.docked.is_some() && prediction.docks() == docks && !prediction.either
     };
     let side: Vec<&Judged> = trials.iter().filter(clear).collect();
-    let chances: Vec<f64> = side.iter().map(|trial| chance(trial.foretold().margin())).collect();
+    let chances: Vec<f64> = side.iter().map(|trial| chance(trial.prediction().margin())).collect();
     let disagreeing = side.iter().filter(|trial| trial.disagrees).count();
     OneSided {
         disagreeing,
@@ -413,9 +414,9 @@ fn counts(trials: &[Judged]) -> Vec<Count> {
         for predicted in &predictions {
             for observed in Observed::ALL {
                 let same = |trial: &&Judged| {
-                    let foretold = trial.foretold();
-                    foretold.either == either
-                        && foretold.predicted == *predicted
+                    let prediction = trial.prediction();
+                    prediction.either == either
+                        && prediction.predicted == *predicted
                         && trial.observed == Some(observed)
                 };
                 let number = trials.iter().filter(same).count();

@@ -52,7 +52,7 @@ impl Subject for Validation {
         }
         if self.otherwise_planned > 0 {
             warn(format!(
-                "of {} trials the table predicts otherwise than this design does: it was planned for another one, or with other friction",
+                "the prediction in the table differs from that of this design for {} trials: it was planned for another one, or with other friction",
                 self.otherwise_planned
             ));
         }
@@ -188,11 +188,11 @@ impl Validation {
             Column::new("pose error").left(),
         ]);
         for trial in self.disagreements.iter().take(SHOWN) {
-            let foretold = trial.foretold();
-            let margin = foretold.margin_in_sigma.map_or_else(
+            let prediction = trial.prediction();
+            let margin = prediction.margin_in_sigma.map_or_else(
                 || "no border in the error box".to_owned(),
                 |margin| {
-                    let share = percent(foretold.margin_in_box.unwrap_or_default());
+                    let share = percent(prediction.margin_in_box.unwrap_or_default());
                     format!("{margin:.2} accuracies, {share} of the box")
                 },
             );
@@ -215,15 +215,15 @@ impl Validation {
         let columns = columns.chain(["predicted", "observed", "either", "disagrees"].map(Column::data));
         let mut table = Table::new(columns.chain(poses.margins()));
         for Judged { trial, observed, disagrees, point, .. } in &self.trials {
-            let foretold = &point.foretold;
+            let prediction = &point.prediction;
             let cells = [trial.to_string().into(), point.line.into()].into_iter();
             let cells = cells.chain(poses.values(&point.error)).chain([
-                foretold.predicted.map_or("undecided", Observed::name).into(),
+                prediction.predicted.map_or("undecided", Observed::name).into(),
                 observed.map(Observed::name).into(),
-                foretold.either.into(),
+                prediction.either.into(),
                 (*disagrees).into(),
             ]);
-            table.push(cells.chain(poses.margin(foretold)));
+            table.push(cells.chain(poses.margin(prediction)));
         }
         table
     }

@@ -62,7 +62,7 @@ fn verdicts(
 ) -> [usize; 3] {
     let settings = Settings::new(*accuracy);
     let motions = descent::Settings::default();
-    let (foretold, _) =
+    let (prediction, _) =
         foretell(predicting, accuracy, &motions, written, settings.seed, &Exec::new()).unwrap();
     let mut counts = [0; 3];
     for seed in 0..runs {
@@ -70,8 +70,8 @@ fn verdicts(
         let docked = |o| matches!(o, Observed::Aligned | Observed::AlignedElsewhere);
         let judged = made
             .iter()
-            .zip(&foretold)
-            .map(|(tried, foretold)| Judged::new(tried, *foretold, tried.observed.map(docked)));
+            .zip(&prediction)
+            .map(|(tried, prediction)| Judged::new(tried, *prediction, tried.observed.map(docked)));
         counts[summary(predicting, judged.collect(), &settings).verdict as usize] += 1;
     }
     counts
@@ -189,7 +189,7 @@ fn counts_margins_and_lines_are_those_of_the_table() {
     assert_eq!((found.verdict, found.blank, found.evidence.beyond), (Verdict::Consistent, 1, 0));
     assert_eq!((found.evidence.inside, found.evidence.outside), (4, 2));
     for (judged, margin) in found.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
-        assert!((judged.foretold().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
+        assert!((judged.prediction().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
     }
     // The one that may go either way stands apart.
     assert_eq!((found.agreement.agreed, found.agreement.trials), (6, 6));
@@ -215,7 +215,7 @@ fn a_trial_within_one_accuracy_of_the_border_is_no_disagreement() {
     let disagrees: Vec<bool> = found.trials.iter().map(|trial| trial.disagrees).collect();
     assert_eq!(disagrees, [false, false, false, false, true]);
     // The search ends at a thousandth of an accuracy.
-    assert!(found.trials[2].foretold().margin() < 5e-3);
+    assert!(found.trials[2].prediction().margin() < 5e-3);
 }
 
 #[test]
@@ -307,7 +307,7 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let turned =
         Tried { error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() }, ..tried[0].clone() };
     let found = run(&fourfold, &[turned], &Settings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.trials[0].foretold().predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
+    assert_eq!((found.trials[0].prediction().predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
 }
 
 /// Trials within one accuracy of the border are counted apart, and stand neither in the list of disagreements nor in its column.

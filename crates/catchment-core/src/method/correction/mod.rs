@@ -113,7 +113,7 @@ pub struct Corrected {
     pub ci95: [f64; 2],
     /// `sum` as a share of the error box, in [0, 1].
     pub fraction: f64,
-    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; and its 95 % interval.
+    /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; and its 95 % interval.
     pub differing: f64,
     /// See [`Corrected::differing`].
     pub differing_ci95: [f64; 2],

@@ -7,14 +7,14 @@
 //!   examine     how firmly it holds, how far it must be lifted to get out, whether it comes back when it is pushed
 //! ```
 //!
-//! A jam is told by one of its rests: the one in its middle. Its contacts are named by the features of both halves
+//! A jam is represented by one of its rests: the one in its middle. Its contacts are named by the features of both halves
 //! ([`crate::contact::Features`]), with their places in the coordinates in which each half was drawn.
 //!
 //! - **Rise**: how much the COR rises at least when the half is pushed [`PUSH`] aside, in the metric of the motion. Nothing: the rest is *level*, and
 //!   friction or chance decides where on it a half stays.
 //! - **Order**: how its contacts hold it, to first or second order ([`crate::method::descent::immobility()`]).
 //! - **Way out**: by how much it must be lifted, at most, to get to where motion leads lower: the least climb of all ways that were tried, each
-//!   straight. A bent way may be lower, so this is a bound from above. One from below is told where it is asked for ([`Settings::certified`]).
+//!   straight. A bent way may be lower, so this is a bound from above. [`Settings::certified`] adds one from below.
 //!
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Rise is that of the height alone:
 //! with friction a half may stay where it would fall. Lengths in D, angles in radians.
@@ -25,6 +25,7 @@ mod draw;
 pub(super) mod escape;
 mod firmness;
 pub(super) mod images;
+mod pairs;
 mod report;
 pub(super) mod rests;
 #[cfg(test)]
@@ -34,7 +35,8 @@ pub(super) mod words;
 pub use depth::DepthError;
 pub use escape::WayOut;
 pub use firmness::Firmness;
-pub use words::{contacts_in_words, lifted};
+pub use pairs::{Sticks, TouchingPair, what_sticks};
+pub use words::{contact_in_words, contacts_in_words, lifted};
 
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Side;
@@ -50,6 +52,7 @@ use crate::problem::Problem;
 use clusters::Cluster;
 use glam::DVec3;
 use images::Images;
+use pairs::touching;
 use rayon::prelude::*;
 use rests::{Follow, Rested, Which};
 use serde::{Deserialize, Serialize};
@@ -70,7 +73,7 @@ pub struct Settings {
     pub examined: usize,
     /// Coefficient of friction between the halves.
     pub friction: f64,
-    /// A grid whose merge tree says depths, too; none where nothing is said.
+    /// A grid whose merge tree gives depths, too; none by default.
     pub resolution: Option<Resolution>,
     /// Whether depths are bounded from below, too, by boxes of poses: of simple halves without friction, with one or two free errors as a rule.
     pub certified: bool,
@@ -145,9 +148,9 @@ pub struct Jam {
     pub contacts: Vec<FeatureContact>,
     /// What was found out about it; null of jams that were not examined.
     pub examined: Option<Examined>,
-    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    /// The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
     pub depth_on_grid_d: Option<f64>,
-    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
     pub depth_at_least_d: Option<f64>,
 }
 
@@ -207,17 +210,6 @@ pub struct JammingPair {
     pub moving: NamedFeature,
 }
 
-/// A pair of features, and in how many rests it touches.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TouchingPair {
-    /// In so many.
-    pub count: usize,
-    /// The feature of the fixed half, where it was met first; all of its name count as one.
-    pub fixed: NamedFeature,
-    /// The same of the moving half.
-    pub moving: NamedFeature,
-}
-
 /// What was found out about a place of rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -266,13 +258,13 @@ pub(super) struct RestGroup {
     pub(super) depth_at_least: Option<f64>,
 }
 
-/// Why no jams can be told.
+/// Why there are no jams.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JamsError {
     /// No coefficient of friction.
     #[error(transparent)]
     Friction(#[from] FrictionOutOfRange),
-    /// Nothing was asked.
+    /// No motions.
     #[error("no motions, no jams: follow one random pose at least")]
     Nothing,
     /// A size that is none.
@@ -292,10 +284,10 @@ pub enum JamsError {
     /// Numbers that are no covariance.
     #[error("the covariance of the errors is none: symmetric, without negative variances")]
     NotACovariance,
-    /// No depths can be told.
+    /// Depths cannot be computed.
     #[error(transparent)]
     Depth(#[from] DepthError),
-    /// It was asked to stop.
+    /// The caller cancelled it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -507,64 +499,6 @@ impl RestGroup {
             depth_at_least: None,
         }
     }
-}
-
-/// A pair of features on which poses stick, and at which frictions.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sticks {
-    /// The pair, and on how many poses it touches.
-    pub touching: TouchingPair,
-    /// The critical frictions of these poses, ascending.
-    pub critical: Vec<f64>,
-}
-
-/// The features that touch where poses stick, each followed at a friction of its own, with those frictions; how many of them stick there.
-pub fn what_sticks(
-    problem: &Problem,
-    poses: &[(PoseError, f64)],
-    exec: &Exec,
-) -> Result<(usize, Vec<Sticks>), Cancelled> {
-    let features = Features::of(problem.pair());
-    let motions = descent::Settings::default();
-    let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
-    let rest = |(pose, friction): &(PoseError, f64)| {
-        exec.check()?;
-        let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };
-        let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
-        Ok(rested.map(|rested| (rested, *friction)))
-    };
-    let rests: Vec<Option<(Rested, f64)>> =
-        exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
-    let (rests, frictions): (Vec<Rested>, Vec<f64>) = rests.into_iter().flatten().unzip();
-    let sticks = touching(problem, &features, &rests).into_iter().map(|(touching, at)| {
-        let mut critical: Vec<f64> = at.into_iter().map(|k| frictions[k]).collect();
-        critical.sort_by(f64::total_cmp);
-        Sticks { touching, critical }
-    });
-    Ok((rests.len(), sticks.collect()))
-}
-
-/// The pairs of features that touch in rests and the numbers of these rests, by their names, in the order of how many do: a person changes all features of
-/// a name, or none.
-fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(TouchingPair, Vec<usize>)> {
-    let mut pairs: BTreeMap<[String; 2], (TouchingPair, Vec<usize>)> = BTreeMap::new();
-    for (number, rest) in rests.iter().enumerate() {
-        for met in &rest.met {
-            let touching = || {
-                let FeatureContact { fixed, moving, .. } = rest.name(problem, features, met);
-                (TouchingPair { count: 0, fixed, moving }, Vec::new())
-            };
-            let (pair, at) = pairs.entry(Rested::names(features, met)).or_insert_with(touching);
-            if at.last() != Some(&number) {
-                at.push(number);
-                pair.count += 1;
-            }
-        }
-    }
-    let mut pairs: Vec<(TouchingPair, Vec<usize>)> = pairs.into_values().collect();
-    // Stable: of equals the one whose name comes first.
-    pairs.sort_by_key(|(pair, _)| std::cmp::Reverse(pair.count));
-    pairs
 }
 
 /// The number of the part on which a point of a half lies, in its frame; where every part is one solid.

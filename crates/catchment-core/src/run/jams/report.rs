@@ -1,6 +1,6 @@
 //! What people read of jams.
 
-use super::words::Places;
+use super::words::{Places, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
@@ -99,8 +99,8 @@ impl Jams {
             }
             document.row("  escape height", escape(places, examined));
         }
-        let asked = [self.settings.certified && jam.examined.is_some(), self.settings.resolution.is_some()];
-        places.depths(document, asked, jam.depth_at_least_d, jam.depth_on_grid_d);
+        let wanted = [self.settings.certified && jam.examined.is_some(), self.settings.resolution.is_some()];
+        places.depths(document, wanted, jam.depth_at_least_d, jam.depth_on_grid_d);
         places.contacts(document, &jam.contacts);
     }
 
@@ -114,8 +114,7 @@ impl Jams {
             Column::new("contact of jams").left(),
         ]);
         for pair in self.features.iter().take(SHOWN) {
-            let words =
-                format!("{} of the moving half on {} of the fixed one", pair.moving.name, pair.fixed.name);
+            let words = contact_in_words(&pair.fixed, &pair.moving);
             table.push([pair.of_jams.into(), pair.of_failures.into(), words.into()]);
         }
         document.section(None).table(table);

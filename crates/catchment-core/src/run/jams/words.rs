@@ -6,7 +6,7 @@ use crate::document::{Document, Units, rounded_down, significant};
 use crate::method::descent::{Immobility, Order, Sticking};
 use crate::pose::{Dof, PoseError};
 
-/// Cosine of a pitch at which roll and yaw can no longer be told apart: 89°.
+/// Cosine of a pitch at which roll and yaw can no longer be distinguished: 89°.
 const ON_ITS_SIDE: f64 = 0.0175;
 /// Heights below this are nothing, in D: rounding.
 const NOTHING: f64 = 1e-8;
@@ -63,12 +63,16 @@ impl Examined {
     }
 }
 
+/// Two features that touch, in words: `rim of the moving half on wall of the fixed one`.
+pub fn contact_in_words(fixed: &NamedFeature, moving: &NamedFeature) -> String {
+    format!("{} of the moving half on {} of the fixed one", moving.name, fixed.name)
+}
+
 /// What touches, in words, the same pairs once: `rim of the moving half on wall of the fixed one, twice`.
 pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
     let mut pairs: Vec<(String, usize)> = Vec::new();
     for contact in contacts {
-        let words =
-            format!("{} of the moving half on {} of the fixed one", contact.moving.name, contact.fixed.name);
+        let words = contact_in_words(&contact.fixed, &contact.moving);
         match pairs.iter_mut().find(|(other, _)| *other == words) {
             Some((_, count)) => *count += 1,
             None => pairs.push((words, 1)),
@@ -154,11 +158,11 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// How firmly it is held, and by how much friction: where friction is asked about, or contacts alone do not hold it.
+    /// How firmly it is held, and by how much friction: with friction, or where contacts alone do not hold it.
     pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
         document.row("  held", self.firmness(examined));
-        let asked = |_: &Sticking| self.friction > 0.0 || examined.immobility.is_none();
-        if let Some(sticks) = examined.sticks.filter(asked) {
+        let matters = self.friction > 0.0 || examined.immobility.is_none();
+        if let Some(sticks) = examined.sticks.filter(|_| matters) {
             document.row("  friction", sticks.words());
         }
     }
@@ -199,7 +203,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Escape heights beside that of the way that was found: from below, and on a grid, where these were asked for.
+    /// Escape heights beside that of the way that was found: from below, and on a grid, where the settings want them.
     pub(in crate::run) fn depths(
         self,
         document: &mut Document,

@@ -14,7 +14,7 @@
 //!
 //! - **Immobility**: [`crate::method::descent::immobility()`], to first or second order.
 //! - **Depth**: the climb of the lowest way out that was found, to a lower rest, to another one, or off: at most so much is needed. A half whose rest nothing
-//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid says a depth, too. Rests that are shallower than a cage's energy do not hold it.
+//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid gives a depth, too. Rests that are shallower than a cage's energy do not hold it.
 //!
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
 //! in radians.
@@ -51,7 +51,7 @@ pub struct Settings {
     pub seed: u64,
     /// How many rests are examined, those with most of the poses.
     pub examined: usize,
-    /// A grid whose merge tree says depths, too; none where nothing is said.
+    /// A grid whose merge tree gives depths, too; none by default.
     pub resolution: Option<Resolution>,
     /// Whether depths are bounded from below, too, by boxes of poses: of simple halves with one or two free errors as a rule.
     pub certified: bool,
@@ -98,9 +98,9 @@ pub struct RestPlace {
     pub above_mated_d: f64,
     /// At most so far it must be lifted to leave, in D; null where no way out was found, or it was not examined.
     pub depth_at_most_d: Option<f64>,
-    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
     pub depth_at_least_d: Option<f64>,
-    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    /// The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
     pub depth_on_grid_d: Option<f64>,
     /// The rest to which that way leads, from 0 in this list; null where it leads off.
     pub leads_to: Option<usize>,
@@ -110,16 +110,16 @@ pub struct RestPlace {
     pub examined: Option<Examined>,
 }
 
-/// Why no rests can be told.
+/// Why there are no rests.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RestsError {
-    /// Nothing was asked.
+    /// No motions.
     #[error("no motions, no rests: follow one random pose at least")]
     Nothing,
-    /// No depths can be told.
+    /// Depths cannot be computed.
     #[error(transparent)]
     Depth(#[from] DepthError),
-    /// It was asked to stop.
+    /// The caller cancelled it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

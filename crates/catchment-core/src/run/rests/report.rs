@@ -70,8 +70,8 @@ impl Rests {
             places.held(document, examined);
             document.row("  escape height", self.escape(design, rest));
         }
-        let asked = [self.settings.certified && rest.examined.is_some(), self.settings.resolution.is_some()];
-        places.depths(document, asked, rest.depth_at_least_d, rest.depth_on_grid_d);
+        let wanted = [self.settings.certified && rest.examined.is_some(), self.settings.resolution.is_some()];
+        places.depths(document, wanted, rest.depth_at_least_d, rest.depth_on_grid_d);
         places.contacts(document, &rest.contacts);
     }
 

@@ -35,7 +35,7 @@ impl WindowDetails {
         document.section(None);
         let Certificate { motions, failing_at_most, redrawn } = self.certificate;
         if motions == 0 {
-            document.row("certificate", "none: no random poses were asked for");
+            document.row("certificate", "none: no random poses were drawn");
             return;
         }
         let one_in = grouped((1.0 / failing_at_most).floor() as usize);

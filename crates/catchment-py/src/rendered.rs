@@ -1,4 +1,4 @@
-//! A report in every form that it is told in.
+//! A report as JSON, text, CSV and picture.
 
 use crate::refusal::Refusal;
 use catchment::report::document::Printed;
@@ -12,7 +12,7 @@ pub(crate) const PNG_SCALE: f32 = 2.0;
 
 /// JSON, the table for eyes, the records for programs and the picture of one report.
 #[pyclass(frozen, module = "catchment._catchment")]
-pub(crate) struct Told {
+pub(crate) struct Rendered {
     /// The report, as the command line prints it.
     #[pyo3(get)]
     json: String,
@@ -25,7 +25,7 @@ pub(crate) struct Told {
     picture: Option<Picture>,
 }
 
-impl Told {
+impl Rendered {
     /// Of a report without a picture.
     pub(crate) fn of<B: Printed + Serialize>(report: &Envelope<B>) -> Result<Self, Refusal> {
         let csv = String::from_utf8_lossy(&csv(&report.records())?).into_owned();
@@ -44,7 +44,7 @@ impl Told {
 }
 
 #[pymethods]
-impl Told {
+impl Rendered {
     /// The picture as SVG.
     fn svg(&self) -> Option<&str> {
         self.picture.as_ref().map(Picture::svg)

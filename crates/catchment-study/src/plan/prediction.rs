@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The prediction of a pose by exact motion. Distances are null where no border was found within the error box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Foretold {
+pub struct Prediction {
     /// Its predicted outcome; null where that is undecided.
     pub predicted: Option<Observed>,
     /// Whether it is nearer to the border than the accuracy of the robot: it may dock or fail.
@@ -27,18 +27,18 @@ pub struct Foretold {
     pub margin_in_box: Option<f64>,
 }
 
-impl Foretold {
+impl Prediction {
     /// Of a predicted outcome and the nearest pose found whose outcome differs.
     pub(crate) fn new(predicted: Option<Observed>, border: Option<Border>) -> Self {
-        let mut foretold = Self {
+        let mut prediction = Self {
             predicted,
             either: false,
             distance_to_border: border.map(|border| border.distance),
             margin_in_sigma: border.map(|border| border.sigmas),
             margin_in_box: border.map(|border| border.box_share),
         };
-        foretold.either = foretold.margin() < 1.0;
-        foretold
+        prediction.either = prediction.margin() < 1.0;
+        prediction
     }
 
     /// Whether it docks, turned or not.
@@ -95,7 +95,7 @@ pub(crate) fn foretell(
     poses: &[PoseError],
     seed: u64,
     exec: &Exec,
-) -> Result<(Vec<Foretold>, usize), Cancelled> {
+) -> Result<(Vec<Prediction>, usize), Cancelled> {
     /// Part of the time that the poses themselves take.
     const FIRST: f64 = 0.05;
     let judge = || Judge::new(problem, motions);
@@ -106,22 +106,22 @@ pub(crate) fn foretell(
     })?;
     let mut followed: usize = predicted.iter().map(|(_, count)| count).sum();
     let search = Search::new(problem, accuracy, f64::INFINITY);
-    let mut foretold: Vec<Foretold> =
-        predicted.into_iter().map(|(predicted, _)| Foretold::new(predicted, None)).collect();
+    let mut prediction: Vec<Prediction> =
+        predicted.into_iter().map(|(predicted, _)| Prediction::new(predicted, None)).collect();
     let random = Stream::new(seed).branch(4);
     let rest = exec.part([FIRST, 1.0], "motions");
     let borders = for_each(poses.len(), &rest, judge, |judge, k| {
         let before = judge.followed();
-        let docks = foretold[k].docks();
+        let docks = prediction[k].docks();
         let others =
-            (0..poses.len()).filter(|other| foretold[*other].docks() != docks).map(|other| &poses[other]);
+            (0..poses.len()).filter(|other| prediction[*other].docks() != docks).map(|other| &poses[other]);
         let nearest = others.min_by(|a, b| search.apart(&poses[k], a).total_cmp(&search.apart(&poses[k], b)));
         let border = search.nearest(judge, &poses[k], docks, nearest, random.branch(k as u64));
         (border, judge.followed() - before)
     })?;
-    for (foretold, (border, count)) in foretold.iter_mut().zip(borders) {
-        *foretold = Foretold::new(foretold.predicted, border);
+    for (prediction, (border, count)) in prediction.iter_mut().zip(borders) {
+        *prediction = Prediction::new(prediction.predicted, border);
         followed += count;
     }
-    Ok((foretold, followed))
+    Ok((prediction, followed))
 }

@@ -1,0 +1,84 @@
+//! Pairs of features that touch in many rests, by their names: what a person would change.
+
+use super::rests::{Follow, Rested, Which};
+use super::{FeatureContact, NamedFeature};
+use crate::contact::Features;
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent;
+use crate::pose::PoseError;
+use crate::problem::Problem;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A pair of features, and in how many rests it touches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TouchingPair {
+    /// In so many.
+    pub count: usize,
+    /// The feature of the fixed half, where it was met first; all of its name count as one.
+    pub fixed: NamedFeature,
+    /// The same of the moving half.
+    pub moving: NamedFeature,
+}
+
+/// A pair of features on which poses stick, and at which frictions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sticks {
+    /// The pair, and on how many poses it touches.
+    pub touching: TouchingPair,
+    /// The critical frictions of these poses, ascending.
+    pub critical: Vec<f64>,
+}
+
+/// The features that touch where poses stick, each followed at a friction of its own, with those frictions; how many of them stick there.
+pub fn what_sticks(
+    problem: &Problem,
+    poses: &[(PoseError, f64)],
+    exec: &Exec,
+) -> Result<(usize, Vec<Sticks>), Cancelled> {
+    let features = Features::of(problem.pair());
+    let motions = descent::Settings::default();
+    let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
+    let rest = |(pose, friction): &(PoseError, f64)| {
+        exec.check()?;
+        let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };
+        let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
+        Ok(rested.map(|rested| (rested, *friction)))
+    };
+    let rests: Vec<Option<(Rested, f64)>> =
+        exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
+    let (rests, frictions): (Vec<Rested>, Vec<f64>) = rests.into_iter().flatten().unzip();
+    let sticks = touching(problem, &features, &rests).into_iter().map(|(touching, at)| {
+        let mut critical: Vec<f64> = at.into_iter().map(|k| frictions[k]).collect();
+        critical.sort_by(f64::total_cmp);
+        Sticks { touching, critical }
+    });
+    Ok((rests.len(), sticks.collect()))
+}
+
+/// The pairs of features that touch in rests and the numbers of these rests, by their names, in the order of how many do: a person changes all features of
+/// a name, or none.
+pub(super) fn touching(
+    problem: &Problem,
+    features: &Features,
+    rests: &[Rested],
+) -> Vec<(TouchingPair, Vec<usize>)> {
+    let mut pairs: BTreeMap<[String; 2], (TouchingPair, Vec<usize>)> = BTreeMap::new();
+    for (number, rest) in rests.iter().enumerate() {
+        for met in &rest.met {
+            let touching = || {
+                let FeatureContact { fixed, moving, .. } = rest.name(problem, features, met);
+                (TouchingPair { count: 0, fixed, moving }, Vec::new())
+            };
+            let (pair, at) = pairs.entry(Rested::names(features, met)).or_insert_with(touching);
+            if at.last() != Some(&number) {
+                at.push(number);
+                pair.count += 1;
+            }
+        }
+    }
+    let mut pairs: Vec<(TouchingPair, Vec<usize>)> = pairs.into_values().collect();
+    // Stable: of equals the one whose name comes first.
+    pairs.sort_by_key(|(pair, _)| std::cmp::Reverse(pair.count));
+    pairs
+}
