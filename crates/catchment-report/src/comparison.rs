@@ -132,7 +132,7 @@ impl ComparisonBody {
 fn table_of(distances: &Distances) -> Table {
     let number = |title| Column::new(title).format(Format::Significant);
     let mut table = Table::new([Column::new("").left(), number("median"), number("95 %"), number("max")]);
-    for (name, q) in [("in cells", distances.cells), ("of the box", distances.error_box)] {
+    for (name, q) in [("in cells", distances.cells), ("of the error box", distances.error_box)] {
         table.push([name.into(), q.median.into(), q.p95.into(), q.max.into()]);
     }
     table

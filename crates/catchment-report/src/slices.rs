@@ -56,7 +56,7 @@ impl SlicesFound {
             Column::new("cells").left().key("cells"),
             Column::new("Sum").left().key("sum"),
             Column::data("unit"),
-            Column::new("share").key("fraction"),
+            Column::new("of the slice").key("fraction"),
             Column::new(""),
             Column::new("one cell of doubt"),
             Column::data("doubt_from"),

@@ -15,7 +15,7 @@ pub(super) fn describe(document: &mut Document, basins: &BasinsReport, run: &Run
     let names: Vec<&str> = axes.iter().map(|dof| dof.name()).collect();
     let mut table = Table::new([
         Column::new("basin").left(),
-        Column::new("share").format(Format::Percent),
+        Column::new("of the error box").format(Format::Percent),
         Column::new("depth"),
         Column::new("escape"),
         Column::new(format!("lowest at {} [D, °]", names.join(", "))).left(),

@@ -14,7 +14,7 @@ impl Subject for Convergence {
         document.row(
             "stable means",
             format!(
-                "two refinements in a row change the Sum by less than {tolerance} % of itself, the ONAA edge by less than {tolerance} % of the box"
+                "two refinements in a row change the Sum by less than {tolerance} % of itself, the ONAA edge by less than {tolerance} % of the error box"
             ),
         );
         for sequence in &self.sequences {

@@ -29,7 +29,12 @@ impl Subject for Sweep {
             if let Some((trial, figures)) = trial.and_then(|trial| Some((trial, trial.found.figures()?))) {
                 let edge =
                     figures.onaa_edge.map_or_else(String::new, |edge| format!(", ONAA edge {edge:.4}"));
-                let value = format!("{} {}, {}{edge}", sum(figures), self.unit(), percent(figures.fraction));
+                let value = format!(
+                    "{} {}, {} of the error box{edge}",
+                    sum(figures),
+                    self.unit(),
+                    percent(figures.fraction)
+                );
                 document.row(what, value).more(self.named(trial));
             }
         }
@@ -101,7 +106,7 @@ impl Sweep {
         let mut columns: Vec<Column> =
             self.settings.axes.iter().map(|axis| Column::new(axis.name()).left()).collect();
         columns.push(Column::new(format!("Sum [{}]", self.unit())));
-        columns.push(Column::new("share").format(Format::Percent));
+        columns.push(Column::new("of the error box").format(Format::Percent));
         let mut table = Table::new(columns);
         for (number, trial) in self.designs.iter().enumerate().take(LONGEST_LIST) {
             let figures = trial.found.figures();

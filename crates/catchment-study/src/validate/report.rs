@@ -193,7 +193,7 @@ impl Validation {
                 || "no border in the error box".to_owned(),
                 |margin| {
                     let share = percent(prediction.margin_in_box.unwrap_or_default());
-                    format!("{margin:.2} accuracies, {share} of the box")
+                    format!("{margin:.2} accuracies, {share} of the error box")
                 },
             );
             table.push([
