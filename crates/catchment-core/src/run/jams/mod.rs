@@ -39,7 +39,6 @@ pub use pairs::{Sticks, TouchingPair, what_sticks};
 pub use words::{contact_in_words, contacts_in_words, lifted};
 
 use crate::acceptance::{Domain, Outcome};
-use crate::connector::Side;
 use crate::contact::{FeatureKind, Features};
 use crate::document::Share;
 use crate::exec::{Cancelled, Exec};
@@ -50,7 +49,6 @@ use crate::pose::{Dof, DofSet, PoseError};
 use crate::poses::{Distribution, Spread};
 use crate::problem::Problem;
 use clusters::Cluster;
-use glam::DVec3;
 use images::Images;
 use pairs::touching;
 use rayon::prelude::*;
@@ -499,18 +497,4 @@ impl RestGroup {
             depth_at_least: None,
         }
     }
-}
-
-/// The number of the part on which a point of a half lies, in its frame; where every part is one solid.
-fn part_of(problem: &Problem, side: Side, point: DVec3) -> Option<usize> {
-    use crate::design::{ConnectorSpec, HalfSpec};
-    let ConnectorSpec::Own(own) = &problem.design().connector else { return None };
-    let (spec, half) = match side {
-        Side::Fixed => (&own.fixed, &problem.connector().fixed),
-        Side::Moving => (&own.moving, &problem.connector().moving),
-    };
-    let HalfSpec::Parts(parts) = spec else { return None };
-    let nearest = half.solids().iter().map(|solid| solid.distance(point)).enumerate();
-    let nearest = nearest.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(part, _)| part);
-    nearest.filter(|_| parts.len() == half.solids().len())
 }

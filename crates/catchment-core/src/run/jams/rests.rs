@@ -2,7 +2,7 @@
 
 use super::escape::Leaving;
 use super::firmness::{Firmness, Space};
-use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness, part_of};
+use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
@@ -225,4 +225,18 @@ impl Rested {
             points_d: met.contacts.iter().map(|contact| contact.point.to_array()).collect(),
         }
     }
+}
+
+/// The number of the part on which a point of a half lies, in its frame; where every part is one solid.
+fn part_of(problem: &Problem, side: Side, point: DVec3) -> Option<usize> {
+    use crate::design::{ConnectorSpec, HalfSpec};
+    let ConnectorSpec::Own(own) = &problem.design().connector else { return None };
+    let (spec, half) = match side {
+        Side::Fixed => (&own.fixed, &problem.connector().fixed),
+        Side::Moving => (&own.moving, &problem.connector().moving),
+    };
+    let HalfSpec::Parts(parts) = spec else { return None };
+    let nearest = half.solids().iter().map(|solid| solid.distance(point)).enumerate();
+    let nearest = nearest.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(part, _)| part);
+    nearest.filter(|_| parts.len() == half.solids().len())
 }
