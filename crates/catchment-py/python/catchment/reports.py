@@ -115,7 +115,7 @@ class SampleReport(TypedDict):
     seed: int
     #: Poses followed.
     descents: int
-    #: Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; 1 in reports of versions that did not count it.
+    #: Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of versions that did not count it.
     differing: float
     #: Its 95 % interval.
     differing_ci95: list[float]
@@ -387,7 +387,7 @@ class Settings6(TypedDict):
     examined: int
     #: Coefficient of friction between the halves.
     friction: float
-    #: A grid whose merge tree says depths, too; none where nothing is said.
+    #: A grid whose merge tree gives depths, too; none by default.
     resolution: str | None
     #: Whether depths are bounded from below, too, by boxes of poses: of simple halves without friction, with one or two free errors as a rule.
     certified: bool
@@ -545,9 +545,9 @@ class Jam(TypedDict):
     contacts: list[FeatureContact]
     #: What was found out about it; null of jams that were not examined.
     examined: Examined | None
-    #: The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    #: The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
     depth_on_grid_d: float | None
-    #: At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    #: At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
     depth_at_least_d: float | None
 
 
@@ -919,7 +919,7 @@ class TraceReport(TypedDict):
     start: PoseError
     #: How it ends.
     outcome: Literal['aligned', 'jammed', 'missed', 'undecided']
-    #: Why it does not dock; null where that cannot be told.
+    #: Why it does not dock; null where that is not known.
     reason: Literal['crossed'] | None
     #: The last pose error; null if the halves never meet.
     end: PoseError | None
