@@ -1,7 +1,7 @@
-"""What the guides show of the console, from the program itself.
+"""The console blocks of the README and the guides, from the program itself.
 
     python3 site/transcripts.py target/debug/catchment            writes the blocks of the guides again (PAGES)
-    python3 site/transcripts.py target/debug/catchment --check    says which of them the program would print otherwise; without those that take long
+    python3 site/transcripts.py target/debug/catchment --check    lists those that differ from what the program prints; without the slow ones
     python3 site/transcripts.py target/debug/catchment --check all    with those, too
 
 A block ```console that begins with `$ catchment` holds a command and what it prints, stderr among it. The commands run one after another, page after page,
@@ -20,7 +20,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md", ROOT / "docs/source-and-findings.md"]
+PAGES = [ROOT / "README.md", ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md", ROOT / "docs/source-and-findings.md"]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
 #: Thousands of motions of meshes.
 LONG = ("window",)

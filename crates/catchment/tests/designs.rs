@@ -25,12 +25,12 @@ fn every_committed_design_is_mated() {
 }
 
 #[test]
-fn the_design_in_the_readme_is_mated() {
+fn the_whole_design_of_the_guide_is_mated() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
-    let (_, rest) = readme.split_once("```toml\n").unwrap();
+    let guide = std::fs::read_to_string(root.join("docs/parts.md")).unwrap();
+    let (_, rest) = guide.split_once("```toml\n").unwrap();
     let (text, _) = rest.split_once("```").unwrap();
-    let draft = Draft::read(SourceText::new(root.join("designs/meshes/readme.toml"), text));
+    let draft = Draft::read(SourceText::new(root.join("designs/meshes/guide.toml"), text));
     assert_eq!(draft.and_then(Draft::build).unwrap().doubts(), []);
 }
 
