@@ -178,14 +178,15 @@ pub(crate) fn what_was_written() -> String {
 }
 
 /// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns; coloured on a terminal unless `NO_COLOR` is set.
-pub(crate) fn style() -> Style {
+pub(crate) fn style(details: bool) -> Style {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let is_terminal = io::stdout().is_terminal();
     let width =
         || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
     let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let default = Style::default();
-    Style { columns: said.or_else(width).unwrap_or(default.columns), colour: is_terminal && !is_plain }
+    let columns = said.or_else(width).unwrap_or(default.columns);
+    Style { columns, colour: is_terminal && !is_plain, details }
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.

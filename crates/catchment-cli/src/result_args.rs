@@ -39,6 +39,9 @@ pub(crate) struct PrintArgs {
     /// Print the table for programs, in D and radians
     #[arg(long, help_heading = "Output")]
     csv: bool,
+    /// Print details as well: the grid, its re-checks, further figures of merit
+    #[arg(short, long, help_heading = "Output")]
+    verbose: bool,
     /// End with exit code 1 unless this holds of the JSON report; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement, help_heading = "Output")]
     pub(crate) require: Vec<Requirement>,
@@ -389,7 +392,7 @@ impl PrintArgs {
         } else if self.csv {
             to_stdout(&String::from_utf8_lossy(&table(report)?))?;
         } else {
-            to_stdout(&text(document, style()))?;
+            to_stdout(&text(document, style(self.verbose)))?;
         }
         let verdicts = report.verdicts(&self.require)?;
         let unmet: Vec<String> =

@@ -240,7 +240,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             }
             let round = [&own.fixed, &own.moving].into_iter().filter_map(chord_error).reduce(f64::max);
             if let Some(error) = round {
-                row("round parts", &format!("facets inside of them, by at most {}", length(error)));
+                row("round parts", &format!("their facets lie inside them, by at most {}", length(error)));
             }
         }
     }
@@ -278,7 +278,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);
             let parts: Vec<String> = parts.map(amount).collect();
             let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
-            row("settled", &format!("{off}, which is taken as mated"));
+            row("settled", &format!("{off}, taken as the mated pose"));
         }
     }
     row("halves", if ungendered { "alike (ungendered)" } else { "different" });
@@ -288,31 +288,34 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             ", taken from the facets that can touch"
         }
         ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Size, .. }) => {
-            ", as little as the size of the parts allows: what can touch is smaller"
+            ", as small as the parts allow: the facets that can touch are smaller"
         }
         _ => "",
     };
     row("width D", &format!("{} {unit}{from}", design.width));
-    row("free", &names(alignment.free));
+    row("free errors", &names(alignment.free));
     if !alignment.dont_care.is_empty() {
-        row("does not matter", &names(alignment.dont_care));
+        row("ignored", &names(alignment.dont_care));
     }
     row(
         "centre of rotation",
         &format!("{} in front of the face centre", length(alignment.center_of_rotation)),
     );
-    row("rotation length", &length(alignment.rotation_length));
+    row(
+        "rho",
+        &format!("{}: the mount damps a turn of 1 rad like a shift of it", length(alignment.rotation_length)),
+    );
     if alignment.symmetry > 1 {
         row("symmetry", &format!("{}-fold", alignment.symmetry));
     }
-    for dof in alignment.free.iter() {
+    for (k, dof) in alignment.free.iter().enumerate() {
         let half_range = alignment.half_range(dof);
         let range = if dof.is_rotation() {
             format!("{} deg", rounded(half_range.to_degrees()))
         } else {
             length(half_range)
         };
-        row(&format!("error in {}", dof.name()), &format!("up to {range}"));
+        row(if k == 0 { "error box" } else { "" }, &format!("{} ±{range}", dof.name()));
     }
 }
 
@@ -408,7 +411,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
-        assert!(text.contains("  error in pitch     up to 90 deg\n"), "{text}");
+        assert!(text.contains("                     pitch ±90 deg\n"), "{text}");
     }
 
     #[test]

@@ -183,7 +183,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     } else if args.markdown {
         report.markdown()
     } else {
-        text(&report.described(), style())
+        text(&report.described(), style(true))
     };
     to_stdout(&printed)?;
     Ok(ExitStatus::Done)

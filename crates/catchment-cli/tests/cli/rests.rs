@@ -26,7 +26,8 @@ fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
     assert!((report["rests"][0]["examined"]["immobility"]["slope"][0].as_f64().unwrap() - 1.0).abs() < 1e-4);
     let told = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
     assert!(
-        told.starts_with("exit 0\n") && told.contains("escape height at most 10.36 mm: it comes to"),
+        told.starts_with("exit 0\n")
+            && told.contains("escape height at most 10.36 mm; lifted so far it comes to"),
         "{told}"
     );
     assert!(told.contains("first-order immobile (smallest slope 1.000)"), "{told}");

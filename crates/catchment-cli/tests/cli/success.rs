@@ -31,8 +31,9 @@ fn it_tells_the_closed_form_in_millimetres() {
         home.path(),
         &["success", "v.toml", "--free", "x", "--error-sigma", "x=12.5 mm", "--motions", "400"],
     );
-    assert!(told.contains("robot: normal errors, σ x 12.500 mm"), "{told}");
-    assert!(told.contains("fails first") && told.contains("together"), "{told}");
+    let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("robot: normal errors, standard deviations σ x 12.500 mm"), "{told}");
+    assert!(told.contains("nearest failure") && told.contains("all σ together"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
 }

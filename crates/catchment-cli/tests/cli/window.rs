@@ -23,7 +23,7 @@ fn it_tells_the_closed_form_in_millimetres_and_draws_nothing() {
     assert!(told.contains("±24.97"), "{told}");
     let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
     let certificate =
-        "0 failures in 2 000 sampled poses of the window: failure rate below 1 in 666 (95 % confidence)";
+        "0 failures in 2 000 poses sampled in the window: failure rate below 1 in 666 (95 % confidence)";
     assert!(words.contains(certificate), "{told}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
 }

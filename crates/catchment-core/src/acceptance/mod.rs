@@ -49,6 +49,14 @@ impl Outcome {
             Self::Undecided => "undecided",
         }
     }
+
+    /// The word for people: an aligned pose has docked.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Aligned => "docked",
+            other => other.name(),
+        }
+    }
 }
 
 /// Why a pose did not dock, where that can be told from where it ended.

@@ -32,6 +32,9 @@ pub trait Subject: Serialize {
     /// The `kind` of its JSON, which is also the name of its schema.
     const KIND: &'static str;
 
+    /// Whether it depends on the error box and on ρ: the heading then states both.
+    const SAMPLES_ERRORS: bool = true;
+
     /// Warnings that its own numbers give rise to.
     fn warnings(&self) -> Vec<Warning> {
         Vec::new()
@@ -55,6 +58,8 @@ pub struct Section {
     pub title: Option<String>,
     /// Its parts, from top to bottom.
     pub parts: Vec<Part>,
+    /// Whether it answers a second question: terminals show it with `--verbose`, files always.
+    pub is_detail: bool,
 }
 
 /// A part of a section.
@@ -89,7 +94,13 @@ impl Document {
 
     /// Starts a section under a heading that is computed.
     pub fn titled(&mut self, title: Option<String>) -> &mut Self {
-        self.sections.push(Section { title, parts: Vec::new() });
+        self.sections.push(Section { title, ..Section::default() });
+        self
+    }
+
+    /// Starts a section of details.
+    pub fn details(&mut self) -> &mut Self {
+        self.sections.push(Section { is_detail: true, ..Section::default() });
         self
     }
 

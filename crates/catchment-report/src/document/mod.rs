@@ -22,6 +22,7 @@ use crate::schema::{Timing, WarningReport};
 use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{Document, Subject, Table, rounded};
+use catchment_core::pose::Dof;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::ops::{Deref, DerefMut};
@@ -82,7 +83,7 @@ impl<T: Subject> Printed for OfDesign<T> {
 
     /// The heading of its design, which what the result says first continues.
     fn document(&self) -> Document {
-        let mut document = heading(&self.design);
+        let mut document = heading(&self.design, T::SAMPLES_ERRORS);
         let mut rest = self.result.document(&self.design);
         let first = rest.sections.first_mut().filter(|section| section.title.is_none());
         if let (Some(section), Some(heading)) = (first, document.sections.last_mut()) {
@@ -135,8 +136,8 @@ pub struct Described<'a> {
     pub warnings: Vec<String>,
 }
 
-/// The rows about a design that stand above every result.
-pub fn heading(design: &Design) -> Document {
+/// The rows about a design that stand above every result; with the error box and ρ above those that sample pose errors.
+pub fn heading(design: &Design, samples_errors: bool) -> Document {
     let kind = match &design.connector {
         ConnectorSpec::Family(f) => {
             format!("{}, aspect ratio {}", f.family().name(), rounded(f.aspect_ratio()))
@@ -144,19 +145,91 @@ pub fn heading(design: &Design) -> Document {
         ConnectorSpec::Own(_) => "own halves".to_owned(),
     };
     let width =
-        design.unit.map_or_else(|| "D = 1".to_owned(), |u| format!("D = {} {}", design.width, u.symbol()));
-    let alignment = &design.alignment;
-    let free: Vec<&str> = alignment.free.iter().map(catchment_core::pose::Dof::name).collect();
+        design.unit.map_or_else(|| "D".to_owned(), |u| format!("D = {} {}", design.width, u.symbol()));
     let mut document = Document::default();
-    document.row("connector", format!("{kind}, {width}")).row("free errors", free.join(", ")).row(
-        "motion",
-        format!(
-            "COR {} D before the face, rotation length {} D",
-            rounded(alignment.center_of_rotation),
-            rounded(alignment.rotation_length)
-        ),
-    );
+    document.row("connector", format!("{kind}; its width is {width}"));
+    document.row("pose errors", pose_errors(design));
+    if samples_errors {
+        document.row("error box", format!("{} (shares are of this box)", error_box(design)));
+    }
+    document.row("COR", center_of_rotation(design));
+    if samples_errors {
+        let rho = own_length(design, design.alignment.rotation_length);
+        document.row("ρ", format!("{rho}: the mount damps a turn of 1 rad like a shift of {rho}"));
+    }
     document
+}
+
+/// Which errors are free, and what each is: `x, y (shifts); yaw (turn about approach axis z); roll, pitch locked at 0`.
+fn pose_errors(design: &Design) -> String {
+    let free = design.alignment.free;
+    let kinds = [
+        ("shift", &[(Dof::X, ""), (Dof::Y, "")][..]),
+        ("turn", &[(Dof::Roll, "x"), (Dof::Pitch, "y"), (Dof::Yaw, "approach axis z")][..]),
+    ];
+    let mut words: Vec<String> = Vec::new();
+    for (kind, dofs) in kinds {
+        let (names, about): (Vec<&str>, Vec<&str>) = dofs
+            .iter()
+            .filter(|(dof, _)| free.contains(*dof))
+            .map(|(dof, about)| (dof.name(), *about))
+            .unzip();
+        if names.is_empty() {
+            continue;
+        }
+        let many = if names.len() == 1 { "" } else { "s" };
+        let about = about.join(", ");
+        let about = if about.starts_with(", ") || about.is_empty() {
+            String::new()
+        } else {
+            format!(" about {about}")
+        };
+        words.push(format!("{} ({kind}{many}{about})", names.join(", ")));
+    }
+    let locked: Vec<&str> = Dof::ALL.into_iter().filter(|dof| !free.contains(*dof)).map(Dof::name).collect();
+    if !locked.is_empty() {
+        words.push(format!("{} locked at 0", locked.join(", ")));
+    }
+    words.join("; ")
+}
+
+/// The ranges of the free errors, those that are equal together: `x, y ±0.5 D; yaw ±45°`.
+fn error_box(design: &Design) -> String {
+    let mut ranges: Vec<(Vec<&str>, String)> = Vec::new();
+    for dof in design.alignment.free.iter() {
+        let half = design.alignment.half_range(dof);
+        let range = if dof.is_rotation() {
+            format!("±{}°", rounded((half.to_degrees() * 1e4).round() / 1e4))
+        } else {
+            format!("±{}", own_length(design, half))
+        };
+        match ranges.last_mut().filter(|(_, last)| *last == range) {
+            Some((names, _)) => names.push(dof.name()),
+            None => ranges.push((vec![dof.name()], range)),
+        }
+    }
+    let ranges: Vec<String> =
+        ranges.into_iter().map(|(names, range)| format!("{} {range}", names.join(", "))).collect();
+    ranges.join("; ")
+}
+
+/// The centre of rotation: `0.5 D before the moving face: the mount pushes here along -z`.
+fn center_of_rotation(design: &Design) -> String {
+    let cor = design.alignment.center_of_rotation;
+    let place = match own_length(design, cor.abs()) {
+        _ if cor == 0.0 => "at the moving face's centre".to_owned(),
+        length if cor > 0.0 => format!("{length} before the moving face"),
+        length => format!("{length} behind the moving face"),
+    };
+    format!("{place}: the mount pushes here along -z")
+}
+
+/// A length that is given in D, in the unit of the design.
+fn own_length(design: &Design, value: f64) -> String {
+    match design.unit {
+        Some(unit) => format!("{} {}", rounded((value * design.width * 1e6).round() / 1e6), unit.symbol()),
+        None => format!("{} D", rounded(value)),
+    }
 }
 
 #[cfg(test)]

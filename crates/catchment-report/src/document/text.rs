@@ -1,7 +1,7 @@
 //! A document as text, for terminals.
 
 use super::Described;
-use catchment_core::document::{Cell, Column, Document, Part, Table};
+use catchment_core::document::{Cell, Column, Document, Part, Section, Table};
 use catchment_core::terminal::printable;
 
 /// The names of rows take at least so many columns; names that are longer than the most stand out.
@@ -29,11 +29,13 @@ pub struct Style {
     pub columns: usize,
     /// Whether titles are bold and warnings yellow.
     pub colour: bool,
+    /// Whether sections of details are shown.
+    pub details: bool,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { columns: 80, colour: false }
+        Self { columns: 80, colour: false, details: true }
     }
 }
 
@@ -85,7 +87,9 @@ impl Page {
                 _ => None,
             });
         self.names = rows.filter(|name| *name <= LONGEST_NAME).max().unwrap_or(0).max(NAMES);
-        for (k, section) in document.sections.iter().filter(|section| section.is_shown()).enumerate() {
+        let is_shown = |section: &&Section| section.is_shown() && (self.style.details || !section.is_detail);
+        let sections: Vec<&Section> = document.sections.iter().filter(is_shown).collect();
+        for (k, section) in sections.into_iter().enumerate() {
             if k > 0 {
                 self.text.push('\n');
             }

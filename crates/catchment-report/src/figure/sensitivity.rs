@@ -29,7 +29,7 @@ pub fn sensitivity(report: &SensitivityReport) -> Picture {
         Line { name: String::new(), colour: CURVES[0], points: report.over_rho.iter().map(point).collect() };
     let chart = Chart {
         rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
-        x_label: "ρ, rotation length [D]",
+        x_label: "ρ, characteristic length [D]",
         spacing: Spacing::Logarithmic,
         y_label: &format!("Sum [{}]", report.unit),
         lines: &[line],

@@ -24,41 +24,16 @@ impl Printed for RunBody {
     }
 
     fn document(&self) -> Document {
-        let mut document = heading(&self.design);
-        document.row("method", format!("{}, {}", self.method, self.domain()));
-        let friction = self.friction();
-        if friction > 0.0 {
-            document.row("friction", format!("{friction} between the halves (Coulomb)"));
-        }
-        if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
-            document.row("slope threshold", format!("{slope}: motion ends where the height falls less"));
-        }
-        if let ConnectorSpec::Own(own) = &self.design.connector {
-            for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
-                for done in
-                    [half.meshing_told(&self.design), half.repairs_told(&self.design)].into_iter().flatten()
-                {
-                    document.row(name, done);
-                }
-            }
-        }
+        let mut document = Document::default();
+        self.describe_outcomes(&mut document);
         self.describe_limits(&mut document);
-        if let Some(success) = &self.success {
-            let outside = format!("{} of the errors lie outside the error box", percent(success.outside));
-            document.section(None).row("success", format!("{}   ({outside})", percent(success.probability)));
-            let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
-            let what = if success.ci95.is_some() { "95 % CI" } else { "if the border moves by one cell:" };
-            document.more(format!("{what} {lo} … {hi}"));
+        document.append(heading(&self.design, true));
+        self.describe_method(&mut document);
+        if let Some(found) = &self.seat {
+            seat::describe(&mut document, found, &self.design);
         }
         document.section(None);
         self.describe_acceptance(&mut document);
-        if let Some(onaa) = &self.onaa {
-            document.row("ONAA edge", edge(onaa));
-        }
-        if let Some(found) = &self.seat {
-            document.section(None);
-            seat::describe(&mut document, found, &self.design);
-        }
         self.describe_by_products(&mut document);
         if let Some(found) = &self.window {
             document.section(None);
@@ -73,6 +48,61 @@ impl Printed for RunBody {
 }
 
 impl RunBody {
+    /// The first lines: shares of the error box, and the success of a robot.
+    fn describe_outcomes(&self, document: &mut Document) {
+        let a = &self.acceptance;
+        let docked = match (upper_end(a), a.sum_ci95.filter(|_| a.sum > 0.0)) {
+            (Some(_), _) => format!("{} (too few sampled poses docked for more)", sum(a)),
+            (None, Some([lo, hi])) => {
+                let [lo, hi] = [lo, hi].map(|end| percent(end * a.fraction / a.sum));
+                format!("{} of the error box (95 % CI {lo} … {hi})", percent(a.fraction))
+            }
+            (None, None) => format!("{} of the error box", percent(a.fraction)),
+        };
+        document.row("docked", docked);
+        let share =
+            |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
+        let o = &a.outcomes;
+        let open =
+            if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
+        let by = if self.axes.is_empty() { "" } else { ", by the grid" };
+        document
+            .row("not docked", format!("jammed {}, missed {}{open}{by}", share(o.jammed), share(o.missed)));
+        document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
+        if let Some(success) = &self.success {
+            let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
+            let what = if success.ci95.is_some() { "95 % CI" } else { "if the border moves by one cell" };
+            document.row("success", format!("{} ({what} {lo} … {hi})", percent(success.probability)));
+            if success.outside > 0.0 {
+                document.more(format!(
+                    "{} of the given errors lie outside the error box",
+                    percent(success.outside)
+                ));
+            }
+        }
+    }
+
+    /// The method and what it did to the halves, below the heading.
+    fn describe_method(&self, document: &mut Document) {
+        document.row("method", format!("{}, {}", self.method, self.domain()));
+        let friction = self.friction();
+        if friction > 0.0 {
+            document.row("friction", format!("µ = {friction} between the halves (Coulomb)"));
+        }
+        if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
+            document.row("slope threshold", format!("{slope}: motion ends on gentler slopes"));
+        }
+        if let ConnectorSpec::Own(own) = &self.design.connector {
+            for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+                for done in
+                    [half.meshing_told(&self.design), half.repairs_told(&self.design)].into_iter().flatten()
+                {
+                    document.row(name, done);
+                }
+            }
+        }
+    }
+
     /// The by-products of its method.
     fn describe_by_products(&self, document: &mut Document) {
         if let Some(found) = &self.basins {
@@ -94,9 +124,9 @@ impl RunBody {
             );
             let most = percent(found.wrong_ci95[1]);
             document.more(match found.tried {
-                0 => "none of them was re-checked".to_owned(),
+                0 => "without a re-check".to_owned(),
                 _ => {
-                    format!("{} of {tried} re-checked differ (at most {most} of them)", grouped(found.wrong))
+                    format!("{} of {tried} re-checked differ (95 % CI: at most {most})", grouped(found.wrong))
                 }
             });
         }
@@ -118,51 +148,46 @@ impl RunBody {
     /// Its cells or poses.
     fn domain(&self) -> String {
         if self.axes.is_empty() {
-            return format!("{} poses", grouped(self.acceptance.cells));
+            return format!("{} random initial poses", grouped(self.acceptance.cells));
         }
         let cells: Vec<String> = self.axes.iter().map(|a| a.cells.to_string()).collect();
-        format!("{} = {} cells", cells.join(" × "), grouped(self.acceptance.cells))
+        format!("grid of {} = {} initial poses", cells.join(" × "), grouped(self.acceptance.cells))
     }
 
     fn describe_acceptance(&self, document: &mut Document) {
         let a = &self.acceptance;
         let share = match upper_end(a) {
-            Some(_) => "too few sampled poses docked to say more".to_owned(),
+            Some(_) => "too few sampled poses docked for more".to_owned(),
             None => format!("{} of the error box", percent(a.fraction)),
         };
         document.row("AA (Sum)", format!("{}   ({share})", sum(a)));
+        document.more("area of acceptance: the volume of all pose errors that dock");
         if a.sum_ci95.is_some() {
             let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
-            document.more(format!("95 % CI, {} sampled poses", grouped(poses)));
+            document.more(format!("95 % CI, {} poses sampled in the error box", grouped(poses)));
         }
-        if let Some([lo, hi]) = a.sum_bracket.map(|ends| ends.map(significant)) {
-            document.more(match (self.certificate.is_some(), a.sample.is_some()) {
-                (true, _) => format!("for certain: {lo} … {hi}"),
-                (_, true) => {
-                    format!("grid: {}; {lo} … {hi} if its border moves by one cell", significant(a.sum_grid))
-                }
-                (_, false) => format!("{lo} … {hi} if its border moves by one cell"),
-            });
+        let border = a.sum_bracket.map(|ends| ends.map(significant));
+        match (&border, self.certificate.is_some(), a.sample.is_some()) {
+            (Some([lo, hi]), true, _) => _ = document.more(format!("certified: {lo} … {hi}")),
+            (Some([lo, hi]), _, false) => {
+                _ = document.more(format!("{lo} … {hi} if its border moves by one cell"))
+            }
+            _ => {}
+        }
+        document.details();
+        if let (Some([lo, hi]), false, true) = (border, self.certificate.is_some(), a.sample.is_some()) {
+            let grid = significant(a.sum_grid);
+            document.row("Sum by grid", format!("{grid}; {lo} … {hi} if its border moves by one cell"));
+        }
+        if let Some(onaa) = &self.onaa {
+            document.row("ONAA edge", edge(onaa));
         }
         if let Some(sample) = &a.sample {
             let [lo, hi] = sample.differing_ci95.map(percent);
             let share = percent(sample.differing);
             document
-                .row("misclassified", format!("{share} of the error box by the grid (95 % CI {lo} … {hi})"));
+                .row("misclassified", format!("{share} of the error box, by the grid (95 % CI {lo} … {hi})"));
         }
-        let share =
-            |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
-        let o = &a.outcomes;
-        document.row(
-            "outcomes",
-            format!(
-                "aligned {}  jammed {}  missed {}  undecided {}",
-                share(o.aligned),
-                share(o.jammed),
-                share(o.missed),
-                share(o.undecided)
-            ),
-        );
     }
 
     /// The tolerance window, and the limit of each error alone.
@@ -174,7 +199,7 @@ impl RunBody {
         document.section(None);
         let mut is_open = limits(document, &self.design, centered, &self.tolerances);
         if let Some(found) = &self.upright {
-            document.paragraph("with roll and pitch locked");
+            document.paragraph("the same with roll and pitch locked at 0");
             is_open |= limits(document, &self.design, Some(&found.window), &found.tolerances);
         }
         match centered {
@@ -183,17 +208,23 @@ impl RunBody {
                     || "every sampled pose docks".to_owned(),
                     |poses| format!("all of {} sampled poses dock", grouped(poses)),
                 );
-                document.paragraph(format!("window: largest centred box in which {all}"));
+                document.paragraph(format!(
+                    "tolerance window: all errors at once; the error box shrunk until {all} in it"
+                ));
             }
             Some(_) => {
-                document.paragraph("window: largest centred box of accepted cells");
+                document.paragraph(
+                    "tolerance window: all errors at once; the error box shrunk until all its cells dock",
+                );
             }
             None => {}
         }
         if self.tolerances.iter().all(|t| t.followed) {
-            document.paragraph("single-axis limit: one error, all others zero");
+            document.paragraph("single-axis limit: this error, all others zero");
         } else if self.certificate.is_some() {
-            document.paragraph("single-axis limit: at least, as far as whole cells dock for certain");
+            document.paragraph(
+                "single-axis limit: this error, all others zero; at least, by cells that certainly dock",
+            );
         } else {
             let half = |t: &ToleranceReport| {
                 if t.axis.is_rotation() {
@@ -204,12 +235,12 @@ impl RunBody {
             };
             let half: Vec<String> = self.tolerances.iter().map(half).collect();
             document.paragraph(format!(
-                "single-axis limit: one error, all others zero, ± half a cell: {}",
+                "single-axis limit: this error, all others zero; ± half a cell: {}",
                 half.join(", ")
             ));
         }
         if is_open {
-            document.paragraph("* ends at the error box, perhaps larger");
+            document.paragraph("* the error box ends here: the limit may be larger");
         }
     }
 }
@@ -232,20 +263,20 @@ pub(super) fn upper_end(a: &AcceptanceReport) -> Option<f64> {
 
 fn edge(onaa: &OnaaReport) -> String {
     if onaa.bounds.is_empty() {
-        return "0   no cell is accepted".to_owned();
+        return "0   no cell docks".to_owned();
     }
-    format!("{:.4}   of the error box, along every axis", onaa.edge)
+    format!("{:.4} of every range: the largest box that docks, anywhere", onaa.edge)
 }
 
 /// Where motions rest that do not dock, in short.
 fn describe_jams(document: &mut Document, found: &Jams, design: &Design) {
     let count = found.jams.len();
     let places = match count {
-        0 => "none".to_owned(),
-        1 => "one place".to_owned(),
+        0 => "no place".to_owned(),
+        1 => "1 place".to_owned(),
         count => format!("{} places", grouped(count)),
     };
-    document.row("jams", format!("{places}, of {} random poses followed exactly", grouped(found.motions)));
+    document.row("jams", format!("{places}, by {} random poses", grouped(found.motions)));
     for (number, jam) in (1..).zip(found.jams.iter().take(JAMS)) {
         let touching = contacts_in_words(&jam.contacts).join("; ");
         let [of_box, of_failures] = [jam.of_box.share, jam.of_failures].map(tenths);
@@ -282,7 +313,6 @@ fn limits(
         Column::new("error").key("axis").left(),
         Column::new("tolerance window").key("half_width"),
         Column::new("single-axis limit"),
-        Column::new("D, rad"),
         Column::data("minus"),
         Column::data("plus"),
     ]);
@@ -305,7 +335,6 @@ fn limits(
             axis.name().into(),
             half_width.unwrap_or_default(),
             shown(in_own_unit).into(),
-            shown(|limit, _| both(limit, 1.0, 4, "")).into(),
             limit.map(|limit| limit.minus).into(),
             limit.map(|limit| limit.plus).into(),
         ]);
@@ -363,22 +392,26 @@ mod tests {
         for line in text.lines() {
             assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");
         }
-        for word in
-            ["pyramid, AR 1/2", "D = 50 mm", "D²·rad³", "32 768 cells", "ONAA", "mm", "°", "warning: "]
-        {
+        for word in [
+            "pyramid, AR 1/2",
+            "D = 50 mm",
+            "D²·rad³",
+            "32 768 initial poses",
+            "ONAA",
+            "mm",
+            "°",
+            "warning: ",
+        ] {
             assert!(text.contains(word), "{word} is missing in\n{text}");
         }
     }
 
     #[test]
-    fn tolerances_stand_in_every_unit() {
+    fn tolerances_stand_in_the_unit_of_the_design() {
         // x: aligned while 1.96 x² < 0.7, so to the border of the cell with centre 0.59: 0.6 D = 30 mm.
         let text = text([Dof::X].into_iter().collect(), 100);
         let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
-        assert_eq!(
-            row.split_whitespace().collect::<Vec<_>>(),
-            ["x", "±30.000", "mm", "±30.000", "mm", "±0.6000"]
-        );
+        assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["x", "±30.000", "mm", "±30.000", "mm"]);
     }
 
     /// A part of 16 mm whose design is in metres: nothing in it is 0.000 m.
@@ -396,7 +429,7 @@ mod tests {
         let row = |start: &str| text.lines().find(|l| l.trim_start().starts_with(start)).unwrap();
         assert_eq!(
             row("x  ").split_whitespace().collect::<Vec<_>>(),
-            ["x", "±0.00960", "m", "±0.00960", "m", "±0.6000"]
+            ["x", "±0.00960", "m", "±0.00960", "m"]
         );
         assert!(row("seat").contains("within 0.00003 m of"), "{text}");
         for amount in ["±0.00080 m", "0.00032 m", "0.00064 m"] {

@@ -27,15 +27,15 @@ impl Subject for Friction {
         });
         if let Some(Rung { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held) {
             warnings.push(note(format!(
-                "{} poses are lost at a friction of {friction} and dock with a tenth less of it: rigid halves stick there, and halves that give, as real ones \
-                 and those of engines do, may let go",
+                "{} poses are lost at µ = {friction} and dock at 0.9 of it: rigid halves stick there; compliant halves, as real ones and those of physics \
+                 engines, may slip",
                 grouped(*hardly_held),
             )));
         }
         if let Some(friction) = self.wedges_from() {
             warnings.push(note(format!(
-                "from a friction of {friction} on some poses wedge: the halves press against each other, and rigid ones may stay even against a pull straight \
-                 out; halves that give a little, as real ones and those of engines do, may come loose there"
+                "from µ = {friction} on some poses wedge: the halves press against each other, and rigid halves may stay even against a pull straight \
+                 out; compliant halves, as real ones and those of physics engines, may come loose"
             )));
         }
         warnings
@@ -43,15 +43,27 @@ impl Subject for Friction {
 
     fn document(&self, _: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", format!("descent, {} random poses at every friction", grouped(self.motions)));
+        document.row(
+            "method",
+            format!(
+                "descent, the same {} random poses at every friction coefficient µ",
+                grouped(self.motions)
+            ),
+        );
         document.section(None).table(self.table());
+        document.paragraph(format!(
+            "µ: friction coefficient. Of {} poses: lost dock without friction and not at this µ, gained the other way round; may stick dock, but Coulomb's \
+             law also lets them stick; barely stuck are lost, but dock at 0.9 µ. static test: share that docks by a check of equilibrium along the \
+             frictionless motion; its errors: poses that it gets wrong.",
+            grouped(self.motions)
+        ));
         self.describe_kept(&mut document);
         self.describe_sticking(&mut document);
         if self.come_back > 0 {
             let poses = poses(self.come_back);
             document
                 .section(None)
-                .row("note", format!("{poses} are lost at some friction and dock again at a larger one"));
+                .row("note", format!("{poses} are lost at some µ and dock again at a larger µ"));
         }
         document
     }
@@ -60,7 +72,7 @@ impl Subject for Friction {
 impl Friction {
     fn table(&self) -> Table {
         let mut table = Table::new([
-            Column::new("friction").key("friction"),
+            Column::new("µ").key("friction"),
             Column::data("motions"),
             Column::new("docks (95 % CI)").interval("aligned").format(Format::Tenths),
             Column::data("jammed"),
@@ -69,10 +81,10 @@ impl Friction {
             Column::new("lost").key("lost"),
             Column::new("gained").key("gained"),
             Column::new("may stick").key("may_stick"),
-            Column::new("hardly held").key("hardly_held"),
+            Column::new("barely stuck").key("hardly_held"),
             Column::data("wedged"),
-            Column::new("static").key("static_docks"),
-            Column::new("wrong").key("static_wrong"),
+            Column::new("static test").key("static_docks"),
+            Column::new("its errors").key("static_wrong"),
         ]);
         for rung in &self.curve {
             // Without friction there is nothing to compare with.
@@ -102,18 +114,18 @@ impl Friction {
         if self.curve.first().is_none_or(|rung| rung.aligned.count == 0) {
             document
                 .section(None)
-                .paragraph("Nothing docks without friction: there is nothing that friction could take.");
+                .paragraph("No pose docks without friction, so friction cannot prevent docking.");
             return;
         }
-        document.section("of the poses that dock without friction");
+        document.section("of the poses that dock without friction, still docking");
         for kept in &self.kept {
             let friction = if kept.is_top {
-                format!("beyond {}, the largest that was tried", self.top())
+                format!("beyond µ = {}, the largest that was tried", self.top())
             } else {
                 let [lo, hi] = kept.ci95.map(|friction| self.up_to(friction));
-                format!("up to a friction of {:.3}  (95 % CI {lo} … {hi})", kept.friction)
+                format!("up to µ = {:.3}  (95 % CI {lo} … {hi})", kept.friction)
             };
-            document.row(format!("{:.0} % dock", 100.0 * kept.share), friction);
+            document.row(format!("{:.0} %", 100.0 * kept.share), friction);
         }
     }
 
@@ -122,13 +134,14 @@ impl Friction {
         if features.is_empty() {
             return;
         }
-        document.titled(Some(format!("what sticks where the first are lost ({})", poses(*count))));
+        document
+            .titled(Some(format!("contacts that stick first: of the first {} to be lost", poses(*count))));
         for pair in features.iter().take(SHOWN) {
             let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
             document.row(
                 tenths(pair.share),
                 format!(
-                    "{}: from a friction of {least} on, half of them by {median}",
+                    "{}: from µ = {least}, half of them by µ = {median}",
                     contact_in_words(&pair.fixed, &pair.moving)
                 ),
             );

@@ -12,6 +12,7 @@ const NOTHING: f64 = 1e-6;
 
 impl Subject for Hold {
     const KIND: &'static str = "hold";
+    const SAMPLES_ERRORS: bool = false;
 
     fn document(&self, design: &Design) -> Document {
         let units = Units::of(design);
@@ -20,11 +21,13 @@ impl Subject for Hold {
         document.table(self.records());
         let force = self.force_unit();
         if !self.sideways.is_empty() {
-            document.titled(Some(format!("withstood force sideways, in {force}"))).table(self.forces());
+            document
+                .titled(Some(format!("sideways force that the contacts withstand, in {force}")))
+                .table(self.forces());
         }
         if !self.torques.is_empty() {
             document
-                .titled(Some(format!("withstood torque, in {force} {}", units.unit())))
+                .titled(Some(format!("torque that the contacts withstand, in {force} {}", units.unit())))
                 .table(self.moments(units));
         }
         let at = if self.settings.lever == 0.0 {
@@ -33,12 +36,12 @@ impl Subject for Hold {
             format!("{} above", units.length(self.settings.lever))
         };
         document.section(None).paragraph(format!(
-            "Forces sideways act {at} the face centre of the moving half, torques about the centre of rotation. Guided: the half moves as it is pushed and \
-             up, nothing else. Free: it moves in all free errors."
+            "Forces act {at} the face centre of the moving half, torques about the COR. guided: the half can move along the load and up, as on \
+             a linear guide. free: it can move in all free errors."
         ));
         if self.slides() {
             document.paragraph(
-                "0: the half slides sideways as it stands, on level ground or until the play of its fit is used.",
+                "0: the half slides sideways under any force, on level ground or until the play of its fit is used.",
             );
         }
         document
@@ -48,17 +51,20 @@ impl Subject for Hold {
 impl Hold {
     fn describe_rest(&self, units: Units<'_>, document: &mut Document) {
         let preload = self.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
-        document.row("preload", format!("{preload} along -z, through the centre of rotation"));
+        document.row(
+            "preload",
+            format!("{preload}, the force that presses the halves together, along -z through the COR"),
+        );
         let place =
             if self.settings.pose.is_none() { "the mated pose".to_owned() } else { units.pose(&self.pose) };
         let docked = if self.outcome == Outcome::Aligned { "" } else { ", not docked" };
-        document.row("rests", format!("{place}{docked}, touching in {} points", self.contacts.len()));
+        document.row("rests at", format!("{place}{docked}; {} contact points", self.contacts.len()));
         if self.settings.friction > 0.0 {
             let friction = self.settings.friction;
             document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
             let mut loads = self.loads();
             if loads.all(|withstood| withstood.smooth.is_none()) {
-                document.more("without it the preload alone moves the half");
+                document.more("without friction the preload alone moves the half");
             }
         }
     }

@@ -130,9 +130,9 @@ pub(super) fn text(
     line(&format!("name = {}", quoted(&name)));
     line("\n[connector]");
     line(if judged.is_widened {
-        "# D, in which answers are told: as little as the size of the parts allows; what can touch is smaller."
+        "# D, the unit of every result: as small as the parts allow; the facets that can touch are smaller."
     } else {
-        "# D, in which answers are told: the larger lateral extent of the facets that can touch."
+        "# D, the unit of every result: the larger lateral extent of the facets that can touch."
     });
     line(&format!("width = {}", decimal(number(width, ROUNDED * width))));
     line(&format!("unit = \"{}\"", unit.symbol()));
@@ -140,12 +140,12 @@ pub(super) fn text(
         line("# Both parts stand in one frame, docked; moved along the approach to where they first touch.");
         line("drawn = \"assembled\"");
         line(
-            "# Where the moving half comes from: along this direction they hold each other, and nothing is in the way.",
+            "# The moving half approaches along this direction: nothing is in the way, and docked halves hold each other.",
         );
         line(&format!("approach = {}", approach.written()));
     }
     if seat.settle.is_some() {
-        line("# As drawn they do not hold; let go they come to rest near, which is taken as mated.");
+        line("# The drawn pose is not a rest: a nearby rest is taken as the mated pose.");
         line("settle = true");
     }
     let to_axis = [-judged.center, judged.offset - judged.center];
@@ -155,28 +155,28 @@ pub(super) fn text(
             line(&words);
         }
         if let Lie::Facing { fixed, moving, turned } = judged.lie {
-            line("# Where it faces in its file, which is turned to +z.");
+            line("# The direction of its face in its file; it is turned to +z.");
             line(&format!("facing = {}", [fixed, moving][k].written()));
             if k == 1 && turned > 0 {
-                line("# Then a turn about the approach, which brings the features together.");
+                line("# Then turned about the approach axis until the features fit.");
                 line(&format!("rotate = [0, 0, \"{} deg\"]", u32::from(turned) * 90));
             }
             // Facing +z the moving half is not mounted yet.
             let by = Mount::X.apply(to_axis[k].extend(0.0)).truncate();
             let DVec2 { x, y } = if k == 0 { to_axis[k] } else { by };
             let why = if k == 0 {
-                "# Then moved: the approach axis stands in the middle of what can touch."
+                "# Then moved: the approach axis stands in the middle of the facets that can touch."
             } else {
-                "# Then moved to where it lies deepest, in the middle of its play."
+                "# Then moved to its deepest position, in the middle of its play."
             };
             line(why);
             line(&format!("translate = [{}, {}, 0]", length(x), length(y)));
         }
     }
     alignment(&mut line, seat, settings, unit);
-    line("\n# Up to where errors are looked at, to both sides.");
+    line("\n# The error box: pose errors are sampled from minus to plus these values.");
     if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
-        line("# About four times what each error alone tolerates.");
+        line("# About four times the single-axis limit of each error.");
     }
     line("[errors]");
     for dof in seat.free.iter() {
@@ -199,36 +199,36 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit:
         .filter(|dof| !seat.free.contains(*dof) && !seat.dont_care.contains(*dof))
         .collect();
     line(match (settings.free, left.is_empty()) {
-        (Some(_), _) => "# Errors that contact may correct, as was asked.",
-        (None, true) => "# Errors that contact may correct: all that the seat holds.",
-        (None, false) => {
-            "# Errors that contact may correct: those that the seat holds. The others are locked."
-        }
+        (Some(_), _) => "# Free errors, as given by --free; all others are locked at 0.",
+        (None, true) => "# Free errors: the seat corrects all five.",
+        (None, false) => "# Free errors: those that the seat corrects; all others are locked at 0.",
     });
     line(&format!("free = {}", list(seat.free)));
     if !seat.dont_care.is_empty() {
-        line("# It does not matter: the half lies as deep all round.");
+        line("# Ignored: the half is seated at any angle.");
         line(&format!("dont_care = {}", list(seat.dont_care)));
     }
     if seat.symmetry > 1 && seat.free.contains(Dof::Yaw) {
         line(&format!(
-            "# Turned by {} deg about the approach the halves are mated as well. If that counts as docked:",
+            "# Turned by {} deg about the approach axis the halves mate as well. If that counts as docked:",
             number(360.0 / f64::from(seat.symmetry), 1e-3)
         ));
         line(&format!("# symmetry = {}", seat.symmetry));
     }
     line(
-        "# The approach force acts through it: 0 is the face centre; in front of it is positive. Your mount decides, no geometry does:",
+        "# Your mount decides: the point of the moving half where the mount pushes, from the face centre, positive towards the other half;",
     );
     line(&format!("# in D, or with a unit, such as \"5 {}\".", unit.symbol()));
     line("center_of_rotation = 0.0");
-    line("# rho: how far one radian counts as when motion is damped. Declare it; the answer depends on it.");
+    line(
+        "# Your mount decides: rho, the characteristic length. The mount damps a turn of 1 rad like a shift of rho; results depend on it.",
+    );
     line("rotation_length = 0.5");
     let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
     for (k, (dof, play)) in said.enumerate() {
         if k == 0 {
             line(
-                "\n# Walls hold these within a play only, and anywhere in it counts as docked. What is behind the face may need less.",
+                "\n# The seat has this play; any pose in it counts as docked. Pins or plugs behind the face may need less.",
             );
             line("[docked]");
         }

@@ -93,7 +93,7 @@ impl Sensitivity {
 impl Parameter {
     const fn words(self) -> &'static str {
         match self {
-            Self::RotationLength => "rotation length",
+            Self::RotationLength => "ρ",
             Self::CenterOfRotation => "COR",
             Self::AspectRatio => "aspect ratio",
         }

@@ -37,7 +37,7 @@ impl Subject for Success {
         }
         if self.robots.len() > 1 {
             let success = in_percent(self.success.probability);
-            document.section(None).row("most seldom", format!("{}, {success}", self.success.robot));
+            document.section(None).row("lowest success", format!("{}, {success}", self.success.robot));
         }
         document
     }
@@ -97,8 +97,7 @@ impl Docking {
         let Some(fit) = &self.fit else { return warnings };
         if fit.rejected {
             warnings.push(format!(
-                "its measured errors are not normal (p = {:.2}): the probability rests on the rows alone, and the normal fit beside \
-                 it is not to be trusted",
+                "its measured errors are not normal (p = {:.2}): the probability uses the rows alone; do not trust the normal fit",
                 fit.p_value
             ));
         }
@@ -113,14 +112,14 @@ impl Docking {
     }
 
     fn describe(&self, design: &Design, document: &mut Document) {
-        document.section(None).row("robot", format!("{}: {}", self.robot, self.errors_in_words(design)));
+        document.section(None).row("errors", format!("{}: {}", self.robot, self.errors_in_words(design)));
         document.row("success", between(self.probability, self.ci95));
         let motions = grouped(self.motions);
         document.more(if self.grid.cells > 0 {
             let plain = grouped(two_digits(self.plain_motions));
-            format!("{motions} exact motions; as sure as {plain} plain ones")
+            format!("{motions} sampled errors, stratified: as precise as {plain} without strata")
         } else {
-            format!("{motions} exact motions, each error alike")
+            format!("{motions} sampled errors")
         });
         if let Some(fit) = &self.fit {
             fit.describe(self.errors.rows, document);
@@ -148,7 +147,16 @@ impl Docking {
         } else {
             String::new()
         };
-        format!("{kind}, σ {}{mean}", sizes.join(", "))
+        format!("{kind}, standard deviations σ {}{mean}{}", sizes.join(", "), self.without_sigma(design))
+    }
+
+    /// The free errors that have no standard deviation: `; roll, pitch without σ: always 0`.
+    fn without_sigma(&self, design: &Design) -> String {
+        let moments = &self.errors.moments;
+        let (sigma, mean) = (moments.sigma.to_array(), moments.mean.to_array());
+        let is_zero = |axis: &Dof| sigma[axis.index()] == 0.0 && mean[axis.index()] == 0.0;
+        let names: Vec<&str> = design.alignment.free.iter().filter(is_zero).map(Dof::name).collect();
+        if names.is_empty() { String::new() } else { format!("; {} without σ: always 0", names.join(", ")) }
     }
 
     /// The errors of a pose that vary or are not 0.
@@ -165,9 +173,9 @@ impl Docking {
     fn describe_failures(&self, design: &Design, document: &mut Document) {
         let failures = &self.failures;
         if failures.share == 0.0 && failures.first.as_ref().is_none_or(|first| first.distance > 0.0) {
-            document.row("failures", "none in the sample");
+            document.row("failures", "0 in the sample");
             if let Some(first) = &failures.first {
-                self.describe_first(first, "further out", design, document);
+                self.describe_first(first, "nearest failure", design, document);
             }
             return;
         }
@@ -179,19 +187,21 @@ impl Docking {
             .map(|(name, share)| format!("{:.0} % {name}", 100.0 * share))
             .collect();
         if kinds.is_empty() {
-            kinds.push("none of the sample".to_owned());
+            kinds.push("0 in the sample".to_owned());
         }
         let along = failures.dominating.and_then(|axis| {
             let along = failures.along.iter().find(|along| along.axis == axis)?;
             let (axis, failed, docked) = (axis.name(), along.failed?, along.docked?);
-            Some(format!("; mostly by {axis}: {failed:.1} σ on average, {docked:.1} σ where it docks"))
+            Some(format!(
+                "; dominant error {axis} (mean {failed:.1} σ in failures, {docked:.1} σ in successes)"
+            ))
         });
         document.row("failures", kinds.join(", ") + &along.unwrap_or_default());
         match &failures.first {
             Some(first) if first.distance == 0.0 => {
-                document.row("fails first", format!("at its mean: {}", first.outcome.name()));
+                document.row("nearest failure", format!("at the mean error: {}", first.outcome.word()));
             }
-            Some(first) => self.describe_first(first, "fails first", design, document),
+            Some(first) => self.describe_first(first, "nearest failure", design, document),
             None => {}
         }
     }
@@ -202,9 +212,15 @@ impl Docking {
         let axes = self.failures.along.iter().map(|along| along.axis);
         let parts: Vec<String> =
             axes.map(|axis| format!("{} {:+.2}", axis.name(), sigmas[axis.index()])).collect();
-        let (outcome, distance) = (first.outcome.name(), first.distance);
+        let (outcome, distance) = (first.outcome.word(), first.distance);
         document
-            .row(name, format!("{} {unit}: {outcome}, at a distance of {distance:.2}", parts.join(", ")))
+            .row(
+                name,
+                format!(
+                    "{} {unit} from the mean: {outcome}; distance {distance:.2} {unit}",
+                    parts.join(", ")
+                ),
+            )
             .more(self.pose(design, &first.error));
     }
 
@@ -214,7 +230,7 @@ impl Docking {
             Column::new("error").left(),
             Column::new("σ"),
             Column::new("success with σ halved"),
-            Column::new("gain, points"),
+            Column::new("gain (percentage points)"),
             Column::new(format!("σ for {required}")),
         ]);
         let mut is_open = false;
@@ -222,7 +238,7 @@ impl Docking {
             let axis = improve.axis;
             let alone = self.tolerable.alone.iter().find(|alone| alone.axis == axis);
             let allowed = alone.map(|alone| match alone.factor {
-                Factor { is_less: true, .. } => "not by it alone".to_owned(),
+                Factor { is_less: true, .. } => "not by this σ alone".to_owned(),
                 Factor { is_more: true, .. } => format!("> {}", amount(design, axis, alone.sigma)),
                 _ => amount(design, axis, alone.sigma),
             });
@@ -237,13 +253,13 @@ impl Docking {
                 allowed.into(),
             ]);
         }
-        document.section("standard deviations to improve, the most helpful first").table(table);
+        document.section("which standard deviation σ to improve, most helpful first").table(table);
         if is_open {
-            document.paragraph("?: the 95 % interval of the gain includes 0");
+            document.paragraph("?: the gain may be 0 (its 95 % CI includes 0)");
         }
-        document.row("together", self.tolerable.all.in_words(&required));
+        document.row("all σ together", self.tolerable.all.in_words(&required));
         if self.tolerable.all.is_open_below() {
-            document.more("more motions would bound it from below");
+            document.more("sample more errors for a lower bound");
         }
     }
 }
@@ -252,15 +268,18 @@ impl Factor {
     fn in_words(&self, required: &str) -> String {
         let Self { factor, ci95: [lo, hi], .. } = *self;
         if self.is_less {
-            return format!("{required} is not reached however small they all are");
+            return format!("{required} success is not reached however small every σ is");
         }
         if self.is_more {
-            return format!("{required} still holds with all of them {} times as large", significant(factor));
+            return format!(
+                "{required} success even if every σ is {} times as large, the most that was tried",
+                significant(factor)
+            );
         }
         if lo <= 0.0 {
-            return format!("{required} with all of them times {factor:.2} (95 % CI: at most {hi:.2})");
+            return format!("{required} success with every σ times {factor:.2} (95 % CI: at most {hi:.2})");
         }
-        format!("{required} with all of them times {factor:.2} (95 % CI {lo:.2} … {hi:.2})")
+        format!("{required} success with every σ times {factor:.2} (95 % CI {lo:.2} … {hi:.2})")
     }
 
     /// Whether its interval has no lower end above 0.
@@ -283,7 +302,7 @@ impl Fit {
         let least = self.axes.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
         if let (Some(least), Some(rows)) = (least, rows.filter(|rows| *rows < FEW && !self.rejected)) {
             let axis = least.axis;
-            document.more(format!("least normal is {axis}; {rows} rows reject what is far from normal only"));
+            document.more(format!("least normal is {axis}; {rows} rows reject only errors far from normal"));
         }
     }
 }

@@ -40,7 +40,7 @@ impl Subject for Jams {
             let poses: usize = self.jams[SHOWN..].iter().map(|jam| jam.of_box.count).sum();
             let (more, share) = (self.jams.len() - SHOWN, Share::of(poses, self.motions).share);
             document.section(None).paragraph(format!(
-                "and {} more, {} of the error box together",
+                "and {} more jams, {} of the error box together",
                 grouped(more),
                 tenths(share)
             ));
@@ -64,7 +64,7 @@ impl Jams {
         let mut table = Table::new(columns.into_iter().chain(expected));
         for (outcome, share) in &self.outcomes {
             let expected = self.expected.as_ref().map(|of| Cell::from(of.get(outcome).copied()));
-            table.push([outcome.name().into(), (*share).into()].into_iter().chain(expected));
+            table.push([outcome.word().into(), (*share).into()].into_iter().chain(expected));
         }
         table
     }
@@ -88,8 +88,11 @@ impl Jams {
         );
         places.pose(document, &jam.pose, jam.above_mated_d, &jam.extent);
         if let Some(symmetry) = jam.docked_with_symmetry {
-            let turned = "the mated pose, turned by a symmetry of the halves: it counts as docked";
-            document.row("  turned", format!("{turned} where the design has symmetry = {symmetry}"));
+            let turned = "the mated pose, turned by a symmetry of the halves:";
+            document.row(
+                "  turned",
+                format!("{turned} write symmetry = {symmetry} in the design to count it as docked"),
+            );
         }
         if let Some(examined) = &jam.examined {
             Places::order(document, examined);
@@ -111,7 +114,7 @@ impl Jams {
         let mut table = Table::new([
             Column::new("of jams").format(Format::Tenths),
             Column::new("of failures").format(Format::Tenths),
-            Column::new("contact of jams").left(),
+            Column::new("contact that jams").left(),
         ]);
         for pair in self.features.iter().take(SHOWN) {
             let words = contact_in_words(&pair.fixed, &pair.moving);
@@ -189,17 +192,17 @@ impl Jams {
             [most @ .., last] => format!("jams {} and {last} are", most.join(", ")),
         };
         Some(format!(
-            "{which} held by hardly more friction than would let it slip: rigid halves stick there, and halves that give, as those of engines do, may let go"
+            "{which} held by little more friction than would let it slip: rigid halves stick there; compliant halves, as in physics engines, may slip"
         ))
     }
 }
 
 fn escape(places: Places<'_>, examined: &Examined) -> String {
-    let Some(way) = &examined.way_out else { return "no way out was found".to_owned() };
+    let Some(way) = &examined.way_out else { return "no escape path was found".to_owned() };
     let to = match way.to {
         Outcome::Aligned => "docks",
         Outcome::Missed => "slides off",
-        Outcome::Jammed | Outcome::Undecided => "comes to a lower rest",
+        Outcome::Jammed | Outcome::Undecided => "reaches a lower rest",
     };
     places.escape(way.climb, to)
 }

@@ -31,9 +31,13 @@ impl Immobility {
             format!(", curvature {} per D", significant(curvature).replace('-', "−"))
         });
         match self.order {
-            Order::First => format!("first-order immobile (smallest slope {slope})"),
+            Order::First => {
+                format!("first-order immobile: a small shift s raises the COR by {slope} s or more")
+            }
             Order::Second => format!("second-order immobile: {ways} free to first order{bends}"),
-            Order::Neutral if self.free == 0 => "held, but hardly: its smallest slope is almost 0".to_owned(),
+            Order::Neutral if self.free == 0 => {
+                "first-order immobile, but its smallest slope is almost 0".to_owned()
+            }
             Order::Neutral => format!("neutral: {ways} free to first and second order"),
             Order::Unstable => format!("unstable: {ways} free to first order{bends}"),
         }
@@ -44,8 +48,8 @@ impl Sticking {
     /// From which friction it sticks, in words.
     pub fn words(&self) -> String {
         let held = match (self.holds_from, self.slips_until) {
-            (None, _) => "slips at any friction".to_owned(),
-            (Some(0.0), _) => "contacts alone hold it, without friction".to_owned(),
+            (None, _) => "slips at any friction coefficient".to_owned(),
+            (Some(0.0), _) => "its contacts hold it without friction".to_owned(),
             (Some(from), None) => format!("may stick from {from:.3} on, and may slip at any friction"),
             (Some(from), Some(until)) => format!("may stick from {from:.3} on, slips until {until:.3}"),
         };
@@ -115,10 +119,10 @@ impl<'a> Places<'a> {
         above: f64,
         extent: &[Extent],
     ) {
-        document.row("  rests at", format!("{}{}", self.units.pose(pose), self.above(above)));
+        document.row("  final pose", format!("{}{}", self.units.pose(pose), self.above(above)));
         let wide = self.extent(pose, extent);
         if !wide.is_empty() {
-            document.row("  anywhere in", wide);
+            document.row("  extends over", wide);
         }
     }
 
@@ -154,13 +158,13 @@ impl<'a> Places<'a> {
     /// By which order contacts hold it.
     pub(in crate::run) fn order(document: &mut Document, examined: &Examined) {
         if let Some(held) = &examined.immobility {
-            document.row("  order", held.words());
+            document.row("  stability", held.words());
         }
     }
 
     /// How firmly it is held, and by how much friction: with friction, or where contacts alone do not hold it.
     pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
-        document.row("  held", self.firmness(examined));
+        document.row("  neighbours", self.firmness(examined));
         let matters = self.friction > 0.0 || examined.immobility.is_none();
         if let Some(sticks) = examined.sticks.filter(|_| matters) {
             document.row("  friction", sticks.words());
@@ -171,35 +175,35 @@ impl<'a> Places<'a> {
         let push = self.units.length(examined.push_d);
         let Examined { back, pushed, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
-            return format!("by friction alone; {back} of {pushed} poses beside it stay or come back");
+            return format!("held by friction alone; {back} of {pushed} neighbouring poses stay or return");
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Firmness::Level, Some(rise)) => {
                 format!(
-                    "near-level: pushed {push} in the weakest direction it rises by only {}",
+                    "almost level: displaced by {push} in the weakest direction it rises by {}",
                     self.units.fine(rise)
                 )
             }
             (Firmness::Ridge, _) => {
                 format!(
-                    "not at all: pushed {push} in the weakest direction it falls; it came to rest on a ridge"
+                    "unstable: displaced by {push} in the weakest direction it falls; it came to rest on a ridge"
                 )
             }
-            (firmness, Some(rise)) => {
+            (_, Some(rise)) => {
                 let rise = self.units.fine(rise);
-                format!("{}: pushed {push} in the weakest direction it rises by {rise}", firmness.name())
+                format!("stable: displaced by {push} in the weakest direction it rises by {rise}")
             }
-            (firmness, None) => format!("{}: walls all around", firmness.name()),
+            (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {back} of {pushed} poses beside it come back")
+        format!("{rise}; {back} of {pushed} neighbouring poses return")
     }
 
     /// How far it must be lifted to get out, and where that leads.
     pub(in crate::run) fn escape(self, climb: f64, to: &str) -> String {
         if climb < NOTHING {
-            format!("0: it {to}")
+            format!("0; without lifting it {to}")
         } else {
-            format!("at most {}: it {to}", self.units.fine(climb))
+            format!("at most {}; lifted so far it {to}", self.units.fine(climb))
         }
     }
 
@@ -214,9 +218,9 @@ impl<'a> Places<'a> {
         if let Some(depth) = at_least {
             let depth = if depth < NOTHING { 0.0 } else { depth };
             let depth = rounded_down(depth * self.units.scale());
-            document.more(format!("at least {depth} {}, certainly", self.units.unit()));
+            document.more(format!("at least {depth} {}, certified", self.units.unit()));
         } else if certified {
-            document.more("a certain lower bound was not found");
+            document.more("no certified lower bound was found");
         }
         if let Some(depth) = on_grid {
             document.more(format!("{} by the merge tree of the grid", self.units.fine(depth)));
@@ -232,12 +236,20 @@ impl<'a> Places<'a> {
         for (k, words) in contacts_in_words(contacts).into_iter().enumerate() {
             document.row(if k == 0 { "  contact" } else { "" }, words);
         }
-        for contact in contacts.iter().take(MOST_CONTACTS) {
+        // Corners, edges and facets that meet at one point are one place.
+        let mut places: Vec<String> = Vec::new();
+        for contact in contacts {
             let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-            document.more(format!("at {fixed} of the fixed, {moving} of the moving half as drawn"));
+            let place = format!("{fixed} of the fixed half, {moving} of the moving half");
+            if !places.contains(&place) {
+                places.push(place);
+            }
         }
-        if contacts.len() > MOST_CONTACTS {
-            document.more(format!("and at {} more", contacts.len() - MOST_CONTACTS));
+        for (k, place) in places.iter().take(MOST_CONTACTS).enumerate() {
+            document.row(if k == 0 { "  as drawn at" } else { "" }, place.clone());
+        }
+        if places.len() > MOST_CONTACTS {
+            document.more(format!("and at {} more points", places.len() - MOST_CONTACTS));
         }
     }
 

@@ -20,31 +20,31 @@ impl Subject for Rests {
 
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("load", "along -z, through the centre of rotation");
+        document.row("load", "along -z, through the COR");
         document.row("method", format!("descent, {} random poses, no grid", grouped(self.motions)));
         let off = self.outcomes.iter().filter(|(outcome, share)| {
             matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0
         });
         let off: Vec<String> = off
             .map(|(outcome, share)| {
-                format!("{} {} of the error box", outcome.name(), tenths_between(share.share, share.ci95))
+                format!("{} {} of the error box", outcome.word(), tenths_between(share.share, share.ci95))
             })
             .collect();
         if !off.is_empty() {
-            document.row("no rest", off.join(", "));
+            document.row("without rest", off.join(", "));
         }
         for (number, rest) in (1..).zip(self.rests.iter().take(SHOWN)) {
             document.section(None);
             self.describe(&mut document, design, number, rest);
         }
         if self.rests.is_empty() {
-            document.section(None).paragraph("Nothing comes to rest.");
+            document.section(None).paragraph("No pose comes to rest.");
         }
         if self.rests.len() > SHOWN {
             let poses: usize = self.rests[SHOWN..].iter().map(|rest| rest.of_box.count).sum();
             let (more, share) = (self.rests.len() - SHOWN, Share::of(poses, self.motions).share);
             document.section(None).paragraph(format!(
-                "and {} more, {} of the error box together",
+                "and {} more rests, {} of the error box together",
                 grouped(more),
                 tenths(share)
             ));
@@ -77,13 +77,13 @@ impl Rests {
 
     /// How far it must be lifted to leave, and where that leads, in words.
     fn escape(&self, design: &Design, rest: &RestPlace) -> String {
-        let Some(depth) = rest.depth_at_most_d else { return "no way out was found".to_owned() };
+        let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
         Places::of(design, 0.0).escape(depth, &self.leads_to(rest))
     }
 
     /// The same for pictures: `lifted by 1.2 mm at most, and it slides off`.
     pub fn way_out(&self, design: &Design, rest: &RestPlace) -> String {
-        let Some(depth) = rest.depth_at_most_d else { return "no way out was found".to_owned() };
+        let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
         format!("{}, and it {}", lifted(design, depth), self.leads_to(rest))
     }
 

@@ -7,6 +7,8 @@ use crate::document::{Cell, Column, Document, Subject, Table, Units, grouped};
 
 /// Contacts of the worst pose that are shown.
 const MOST_TOUCHES: usize = 4;
+/// An error that may grow by less than this share while the others stay in the window limits it.
+const LIMITING: f64 = 0.01;
 
 impl Subject for Window {
     const KIND: &'static str = "window";
@@ -29,25 +31,29 @@ impl WindowDetails {
     /// The window and its certificate, without the worst pose.
     pub fn describe(&self, document: &mut Document, design: &Design) {
         document.table(self.table(design));
+        document.paragraph(
+            "tolerance window: all errors at once; single-axis limit: this error, all others zero; limit, others in window: this error, the \
+             others anywhere in the window",
+        );
         if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
-            document.paragraph("* the error box ends there: the limit may lie further out");
+            document.paragraph("* the error box ends here: the limit may be larger");
         }
         document.section(None);
         let Certificate { motions, failing_at_most, redrawn } = self.certificate;
         if motions == 0 {
-            document.row("certificate", "none: no random poses were drawn");
+            document.row("certificate", "none: no random poses were sampled");
             return;
         }
         let one_in = grouped((1.0 / failing_at_most).floor() as usize);
         document.row(
             "certificate",
             format!(
-                "0 failures in {} sampled poses of the window: failure rate below 1 in {one_in} (95 % confidence)",
+                "0 failures in {} poses sampled in the window: failure rate below 1 in {one_in} (95 % confidence)",
                 grouped(motions)
             ),
         );
         if redrawn > 0 {
-            document.more(format!("{redrawn} larger windows failed it before"));
+            document.more(format!("{redrawn} larger windows failed this test before"));
         }
     }
 
@@ -55,11 +61,11 @@ impl WindowDetails {
         let units = Units::of(design);
         let mut table = Table::new([
             Column::new("error").key("axis").left(),
-            Column::new("window").key("half_width"),
+            Column::new("tolerance window").key("half_width"),
             Column::data("given"),
-            Column::new("alone").key("alone"),
+            Column::new("single-axis limit").key("alone"),
             Column::data("alone_reaches_border"),
-            Column::new("others in the window").key("beside"),
+            Column::new("limit, others in window").key("beside"),
             Column::data("beside_reaches_border"),
             Column::new("").left(),
         ]);
@@ -68,7 +74,9 @@ impl WindowDetails {
                 let star = if is_border { "*" } else { "" };
                 Cell::shown(format!("{}{star}", units.half_width(side.axis, to)), to)
             };
-            let tightest = if Some(side.axis) == self.tightest { "limits the window" } else { "" };
+            let is_limit = Some(side.axis) == self.tightest
+                || (!side.beside_reaches_border && side.beside <= (1.0 + LIMITING) * side.half_width);
+            let tightest = if is_limit { "limits the window" } else { "" };
             let given = if side.given { "given" } else { tightest };
             table.push([
                 side.axis.name().into(),
@@ -87,10 +95,11 @@ impl WindowDetails {
     fn describe_worst(&self, document: &mut Document, design: &Design) {
         let units = Units::of(design);
         let Some(worst) = &self.worst else {
-            document.row("worst pose", "none was found: the window ends at the error box");
+            document.row("nearest failure", "not found: the window ends at the error box");
             return;
         };
-        document.row("worst pose", format!("{}: {}", units.pose(&worst.error), worst.outcome.name()));
+        document.row("nearest failure", format!("{}: {}", units.pose(&worst.error), worst.outcome.word()));
+        document.more("just outside the window");
         if worst.outcome == Outcome::Jammed {
             document.more(format!("rests at {}", units.pose(&worst.end)));
         }
