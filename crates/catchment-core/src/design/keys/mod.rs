@@ -41,51 +41,51 @@ keys! {
         "Version of this format: 1.");
     /// `name`
     NAME = key(Table::Root, "name", Kind::Line,
-        "What reports call the design.");
+        "Name of the design in reports.");
     /// `[connector]`
     CONNECTOR = key(Table::Root, "connector", Kind::Table(Table::Connector),
         "The two halves: a built-in family with its parameters, or own halves.");
     /// `[alignment]`
     ALIGNMENT = key(Table::Root, "alignment", Kind::Table(Table::Alignment),
-        "The alignment problem: everything but the geometry that the answer depends on.");
+        "The alignment problem: every input besides the geometry that changes the result.");
     /// `[errors]`
     ERRORS = key(Table::Root, "errors", Kind::Table(Table::Errors),
         "Half-ranges of the error box: an error x of 0.5 means x from -0.5 D to 0.5 D.");
     /// `[docked]`
     DOCKED = key(Table::Root, "docked", Kind::Table(Table::Docked),
-        "What counts as docked: how deep, and how far off a half may come to rest.");
+        "Docking tolerance: the depth and the residual misalignment at which a half at rest counts as docked.");
 
     /// `connector.family`
     FAMILY = key(Table::Connector, "family", Kind::Family, family::NAMES);
     /// `connector.width`
     WIDTH = key(Table::Connector, "width", Kind::Width(Range::new(1e-6, 1e6, "")),
-        "D, the width of the connector, in `unit`. Results are in D. Own halves in a unit may leave it out: the larger lateral extent of \
+        "D, the width of the connector, in `unit`. Results are in D. Optional for own halves with a unit; the default is the larger lateral extent of \
          the facets that can touch.");
     /// `connector.unit`
     UNIT = key(Table::Connector, "unit", Kind::Unit,
         "Unit of `width` and of drawn coordinates: um, mm, cm, m or in. Without it the design is dimensionless.");
     /// `connector.aspect_ratio`
     ASPECT_RATIO = parameter("aspect_ratio", Applies::AnyFamily, Kind::Ratio(Range::new(1e-3, 100.0, "")),
-        "H/D: height of the mating profile over the width.");
+        "H/D: height of the mating profile divided by the width D.");
     /// `connector.base_thickness`
     BASE_THICKNESS = parameter("base_thickness", Applies::AnyFamily, Kind::Length(Range::new(0.0, 100.0, "D")),
-        "Material behind the mating surface, which matters once a half tilts. Without it: 0.25 behind sockets and 3-D \
-         X-Faces, nothing behind plugs and planar faces.");
+        "Thickness of the material behind the mating surface; it can touch once a half tilts. Default: 0.25 for sockets and 3-D \
+         X-Faces, 0 for plugs and planar faces.");
     /// `connector.chord_error`
     CHORD_ERROR = parameter("chord_error", ROUND, Kind::Length(Range::new(1e-6, 0.1, "D")),
-        "Largest distance between a circle and the polygon that stands for it.");
+        "Largest distance between a circle and the polygon that approximates it.");
     /// `connector.layer_thickness`
     LAYER_THICKNESS = parameter("layer_thickness", LAYERED, Kind::Length(Range::new(1e-3, 10.0, "D")),
-        "Thickness along y of each of the two layers. With it or layer_gap written, y, roll and yaw may be free.");
+        "Thickness of each of the two layers along y. If this key or `layer_gap` is set, y, roll and yaw may be free.");
     /// `connector.layer_gap`
     LAYER_GAP = parameter("layer_gap", LAYERED, Kind::Length(Range::new(1e-2, 10.0, "D")),
-        "Gap along y between the two layers: how far a flat half may be off before it meets the wrong layer.");
+        "Gap between the two layers along y: the offset at which an unrotated half first touches the wrong layer.");
     /// `connector.lip_height`
     LIP_HEIGHT = parameter("lip_height", LOCKING, Kind::Length(Range::new(1e-4, 10.0, "D")),
         "Height of the lip along the centre lines.");
     /// `connector.draft_angle`
     DRAFT_ANGLE = parameter("draft_angle", LOCKING, Kind::Angle(Range::new(0.0, 80.0 / 180.0 * PI, "rad")),
-        "Inclination of the lip's mating faces from the vertical.");
+        "Angle between the lip's mating faces and the vertical.");
     /// `connector.pins`
     PINS = parameter("pins", PINS_ONLY, Kind::Whole { min: 1, max: 64 },
         "Pins per half.");
@@ -97,30 +97,30 @@ keys! {
         "Radius of a pin.");
     /// `connector.clearance`
     CLEARANCE = parameter("clearance", WITH_PLAY, Kind::Length(Range::new(0.0, 1.0, "D")),
-        "Radial play between pin and hole; play between vertical lips.");
+        "Radial clearance between pin and hole; clearance between vertical lips.");
     /// `connector.chamfer`
     CHAMFER = parameter("chamfer", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
-        "Width of the chamfer around a hole and of the point of a pin.");
+        "Width of the chamfer around a hole and at the tip of a pin.");
     /// `connector.circle_radius`
     CIRCLE_RADIUS = parameter("circle_radius", PINS_ONLY, Kind::Length(Range::new(0.0, 2.0, "D")),
         "Radius of the circle on which pins and holes sit.");
     /// `connector.drawn`
     DRAWN = parameter("drawn", Applies::OwnHalves, Kind::Drawn,
-        "facing: each half in a frame of its own, facing +z, which is the default; assembled: both in one frame, docked.");
+        "facing (default): each half is drawn in its own frame and faces +z; assembled: both halves are drawn docked, in a common frame.");
     /// `connector.approach`
     APPROACH = parameter("approach", Applies::OwnHalves, Kind::Direction,
-        "Where halves are drawn assembled: the direction in which the moving half comes, -z without it.");
+        "For halves drawn assembled: direction of motion of the approaching moving half. Default: -z.");
     /// `connector.settle`
     SETTLE = parameter("settle", Applies::OwnHalves, Kind::Flag,
-        "Whether the mated pose is where the halves come to rest that are let go as drawn; false without it.");
+        "If true, the mated pose is the rest that the halves reach when released as drawn. Default: false.");
     /// `connector.face_height`
     FACE_HEIGHT = parameter("face_height", Applies::OwnHalves, Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
-        "z of the face centre in each half's own frame, in the unit of the design. Without it the halves are mated where they first \
-         touch, and the face centre is at mid height of what they share.");
+        "z of the face centre in the frame of each half, in the unit of the design. Default: the halves are mated at first contact, and the face centre \
+         is at mid height of the region that they share.");
     /// `connector.face_center`
     FACE_CENTER = parameter("face_center", Applies::OwnHalves, Kind::Point(Range::new(-1e3, 1e3, "D")),
-        "Where halves are drawn assembled: the face centre [x, y, z] in their frame, in the unit of the design. Without it: the middle of \
-         the box around what they share.");
+        "For halves drawn assembled: the face centre [x, y, z] in their common frame, in the unit of the design. Default: the centre of \
+         the bounding box of the region that they share.");
     /// `[connector.fixed]`
     FIXED = parameter("fixed", Applies::OwnHalves, Kind::Table(Table::Half),
         "The fixed half, drawn facing +z.");
@@ -136,34 +136,34 @@ keys! {
         "A closed triangle mesh: an STL, OBJ, PLY, 3MF or STEP file, its path relative to the folder of the design file.");
     /// `unit` of a half
     MESH_UNIT = key(Table::Half, "unit", Kind::Unit,
-        "Unit of the mesh file, which cannot say it itself unless it is a 3MF: um, mm, cm, m or in.");
+        "Unit of the mesh file: um, mm, cm, m or in. Of the mesh formats only 3MF stores its unit.");
     /// `parts` of a half
     PARTS = key(Table::Half, "parts", Kind::Parts,
-        "Meshes, pieces, spheres, cylinders, cones, boxes and extruded profiles whose union is the half, each at a place of its own.");
+        "Meshes, pieces, spheres, cylinders, cones, boxes and extruded profiles whose union is the half, each with its own position.");
     /// `repair` of a half
     REPAIR = key(Table::Half, "repair", Kind::Flag,
-        "Whether a mesh that needs it is repaired, which is told; true without it. Triangles without area, doubled ones and lids without thickness are dropped, \
-         windings unified, solids that touch along an edge parted, shells that cross united. Holes are never closed.");
+        "Whether a defective mesh is repaired; every repair is reported. Default: true. Repair removes triangles without area, duplicate triangles and lids without \
+         thickness, unifies windings, separates solids that touch along an edge and unites shells that cross. It never closes holes.");
     /// `simplify` of a half
     SIMPLIFY = key(Table::Half, "simplify", Kind::DrawnLength(Range::new(1e-6, 0.05, "D")),
-        "Describes the mesh with fewer triangles: how far its surface may move, as in \"0.01 mm\"; bare in the unit of the design. \
-         With it a file may have 5 million triangles.");
+        "Simplifies the mesh to fewer triangles: largest displacement of its surface, such as \"0.01 mm\"; a bare number is in the unit of the design. \
+         If set, a file may have 5 million triangles.");
     /// `body` of a half
     BODY = key(Table::Half, "body", Kind::Whole { min: 1, max: 256 },
-        "Which of the separate bodies of a mesh file is the half, where a file holds both halves: 1 is the largest. Without it: all of them.");
+        "Number of the body in a mesh file that is the half, for a file that holds both halves; 1 has the largest bounding box. Default: all bodies.");
     /// `deflection` of a half
     DEFLECTION = key(Table::Half, "deflection", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
-        "How far the facets may be off that stand for the curved faces of a STEP file, as in \"0.01 mm\"; bare in the unit of the design. \
-         Without it: 0.0002 of the part's largest side. Less than the play of the fit.");
+        "Largest distance between the curved faces of a STEP file and the facets that approximate them, such as \"0.01 mm\"; a bare number is in the unit of the design. \
+         Default: 0.0002 of the part's largest side. Choose it smaller than the play of the fit.");
     /// `facing` of a half
     FACING = key(Table::Half, "facing", Kind::Direction,
-        "The direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. It is turned to +z.");
+        "Direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. This direction is rotated to +z.");
     /// `rotate` of a half
     ROTATE = key(Table::Half, "rotate", Kind::Turns(Range::new(-2.0 * PI, 2.0 * PI, "rad")),
-        "Turns about x, then y, then z, after `facing`.");
+        "Rotations about x, then y, then z, applied after `facing`.");
     /// `translate` of a half
     TRANSLATE = key(Table::Half, "translate", Kind::Point(Range::new(-1e3, 1e3, "D")),
-        "Moves the part, after it was turned: [x, y, z] in the unit of the design.");
+        "Translation of the part, applied after the rotations: [x, y, z] in the unit of the design.");
     /// `profile` of a half
     PROFILE = key(Table::Half, "profile", Kind::Later,
         "Not yet supported: a profile in the x-z plane.");
@@ -182,37 +182,37 @@ keys! {
         "A ball about the origin of the part.");
     /// `cylinder` of a part
     PART_CYLINDER = key(Table::Part, "cylinder", Kind::Table(Table::Cylinder),
-        "A pin that stands on the origin of the part, up its z axis.");
+        "A cylinder along the z axis of the part; the centre of its base is the origin.");
     /// `cone` of a part
     PART_CONE = key(Table::Part, "cone", Kind::Table(Table::Cone),
-        "A cone, or what is left of one below its top, that stands on the origin of the part, up its z axis.");
+        "A cone or truncated cone along the z axis of the part; the centre of its base is the origin.");
     /// `box` of a part
     PART_BOX = key(Table::Part, "box", Kind::Point(Range::new(1e-6, 1e3, "D")),
-        "A box [x, y, z] that stands on the origin of the part, the middle of its floor, up its z axis.");
+        "Size [x, y, z] of a box; the centre of its base is the origin of the part, and the box extends along +z.");
     /// `profile` of a part
     PART_PROFILE = key(Table::Part, "profile", Kind::Outline(Range::new(-1e3, 1e3, "D")),
         "The corners [x, y] of a polygon, or the path of an SVG or DXF file with closed outlines, extruded along the part's z axis by `height`.");
     /// `height` of a part
     PART_HEIGHT = key(Table::Part, "height", Kind::DrawnLength(Range::new(1e-6, 1e3, "D")),
-        "How far the profile is extruded, in the unit of the design.");
+        "Length of the extrusion, in the unit of the design.");
     /// `unit` of a part
     PART_UNIT = key(Table::Part, "unit", Kind::Unit,
-        "Unit of the mesh, SVG or DXF file where it does not say it itself: um, mm, cm, m or in.");
+        "Unit of the mesh, SVG or DXF file, if the file does not state it: um, mm, cm, m or in.");
     /// `chord_error` of a part
     PART_CHORD_ERROR = key(Table::Part, "chord_error", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
-        "Largest distance between something round and the facets that stand for it, in the unit of the design. Without it: 0.001 D.");
+        "Largest distance between a round surface and the facets that approximate it, in the unit of the design. Default: 0.001 D.");
     /// `deflection` of a part
     PART_DEFLECTION = key(Table::Part, "deflection", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
-        "How far the facets may be off that stand for the curved faces of a STEP file. Without it: 0.0002 of the part's largest side.");
+        "Largest distance between the curved faces of a STEP file and the facets that approximate them. Default: 0.0002 of the part's largest side.");
     /// `axis` of a part
     PART_AXIS = key(Table::Part, "axis", Kind::Direction,
-        "The direction to which the part's z axis is turned: +x, -x, +y, -y, +z, -z or [x, y, z].");
+        "Direction to which the part's z axis is rotated: +x, -x, +y, -y, +z, -z or [x, y, z].");
     /// `rotate` of a part
     PART_ROTATE = key(Table::Part, "rotate", Kind::Turns(Range::new(-2.0 * PI, 2.0 * PI, "rad")),
-        "Turns about x, then y, then z, after `axis`.");
+        "Rotations about x, then y, then z, applied after `axis`.");
     /// `at` of a part
     PART_AT = key(Table::Part, "at", Kind::Point(Range::new(-1e3, 1e3, "D")),
-        "Where the origin of the part is in its half: [x, y, z] in the unit of the design.");
+        "Position of the part's origin in the frame of its half: [x, y, z] in the unit of the design.");
     /// `radius` of a sphere
     SPHERE_RADIUS = key(Table::Sphere, "radius", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
         "Radius of the ball, in the unit of the design.");
@@ -224,10 +224,10 @@ keys! {
         "Height of the cylinder, in the unit of the design.");
     /// `radius` of a cone
     CONE_RADIUS = key(Table::Cone, "radius", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
-        "Radius of the cone's floor, in the unit of the design.");
+        "Radius of the cone's base, in the unit of the design.");
     /// `top_radius` of a cone
     CONE_TOP_RADIUS = key(Table::Cone, "top_radius", Kind::DrawnLength(Range::new(0.0, 1e3, "D")),
-        "Radius of the cone's top, in the unit of the design. Without it the cone ends in its apex.");
+        "Radius of the cone's top, in the unit of the design. Default: 0, a cone with an apex.");
     /// `height` of a cone
     CONE_HEIGHT = key(Table::Cone, "height", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
         "Height of the cone, in the unit of the design.");
@@ -237,19 +237,19 @@ keys! {
         "Pose errors that occur and that contact may correct: x, y, roll, pitch, yaw. The others are locked.");
     /// `alignment.dont_care`
     DONT_CARE = key(Table::Alignment, "dont_care", Kind::Dofs,
-        "Rotations that do not matter, such as the yaw of a round plug.");
+        "Rotations that are locked and do not count in the outcome, such as the yaw of a round plug.");
     /// `alignment.center_of_rotation`
     CENTER_OF_ROTATION = key(Table::Alignment, "center_of_rotation", Kind::Length(Range::new(-100.0, 100.0, "D")),
         "Distance of the centre of rotation in front of the face centre; the approach force acts through it.");
     /// `alignment.rotation_length`
     ROTATION_LENGTH = key(Table::Alignment, "rotation_length", Kind::Length(Range::new(1e-3, 1e3, "D")),
-        "rho: how far one radian counts as when motion is damped. Declare it; the answer depends on it.");
+        "Characteristic length rho: converts a rotation in radians to a length in the damping metric. State it explicitly; the result depends on it.");
     /// `alignment.mount`
     MOUNT = key(Table::Alignment, "mount", Kind::Mount,
         "Axis of the half turn that brings the moving half face to face with the fixed one: x or y.");
     /// `alignment.symmetry`
     SYMMETRY = key(Table::Alignment, "symmetry", Kind::Whole { min: 1, max: 360 },
-        "n-fold symmetry about the approach axis: turned by 360/n deg the pair is aligned as well.");
+        "n-fold symmetry about the approach axis: a pair that is rotated by a multiple of 360/n deg also counts as docked.");
 
     /// `errors.x`
     ERROR_X = key(Table::Errors, "x", Kind::Length(Range::new(1e-6, 100.0, "D")),
@@ -269,22 +269,22 @@ keys! {
 
     /// `docked.depth`
     DOCKED_DEPTH = key(Table::Docked, "depth", Kind::Length(Range::new(1e-6, 1.0, "D")),
-        "How far above its mated height the half may lie and count as seated.");
+        "Largest height above the mated height at which a half at rest counts as docked.");
     /// `docked.x`
     DOCKED_X = key(Table::Docked, "x", Kind::Length(Range::new(1e-6, 100.0, "D")),
-        "Largest offset along x at rest that still counts. Without it: whatever the seat allows, up to 0.05 D.");
+        "Largest residual offset along x at which a half counts as docked. Default: the play of the seat, at most 0.05 D.");
     /// `docked.y`
     DOCKED_Y = key(Table::Docked, "y", Kind::Length(Range::new(1e-6, 100.0, "D")),
-        "Largest offset along y at rest that still counts.");
+        "Largest residual offset along y at which a half counts as docked. Default as for x.");
     /// `docked.roll`
     DOCKED_ROLL = key(Table::Docked, "roll", Kind::Angle(Range::new(1e-6, PI, "rad")),
-        "Largest rotation about x at rest that still counts. Without it: whatever the seat allows, up to 5 deg.");
+        "Largest residual rotation about x at which a half counts as docked. Default: the play of the seat, at most 5 deg.");
     /// `docked.pitch`
     DOCKED_PITCH = key(Table::Docked, "pitch", Kind::Angle(Range::new(1e-6, PI, "rad")),
-        "Largest rotation about y at rest that still counts.");
+        "Largest residual rotation about y at which a half counts as docked. Default as for roll.");
     /// `docked.yaw`
     DOCKED_YAW = key(Table::Docked, "yaw", Kind::Angle(Range::new(1e-6, PI, "rad")),
-        "Largest rotation about the approach axis at rest that still counts.");
+        "Largest residual rotation about the approach axis at which a half counts as docked. Default as for roll.");
 }
 
 /// The error half-ranges in the order of [`crate::pose::Dof::ALL`].
