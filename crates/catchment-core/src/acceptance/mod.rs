@@ -20,19 +20,19 @@ pub use random::Stream;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What becomes of one pose error.
+/// Outcome of a pose error: the end of its motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[repr(u8)]
 pub enum Outcome {
-    /// Contact brings the halves to the mated pose.
+    /// Docked: contact brings the halves to the mated pose.
     Aligned = 1,
-    /// At rest in contact elsewhere.
+    /// The moving half rests in contact outside the seat.
     Jammed = 2,
-    /// No contact, or slid off.
+    /// The halves never touch, or the moving half slides off.
     Missed = 3,
-    /// The budget ran out.
+    /// The step budget ended before the motion did.
     Undecided = 4,
 }
 
@@ -59,7 +59,7 @@ impl Outcome {
     }
 }
 
-/// Why a pose did not dock, where that can be told from where it ended.
+/// Reason for a failure to dock, if the end of the motion shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -83,7 +83,7 @@ impl Reason {
     }
 }
 
-/// Which pose errors were tried.
+/// The pose errors whose outcomes are decided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -143,74 +143,74 @@ impl Domain {
     }
 }
 
-/// A doubt about a result, carried inside the report.
+/// Warning about a result, carried inside the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
     /// The accepted set reaches the border of the error box: part of it may lie outside.
     TouchesBorder {
-        /// Names of the axes at whose border it does.
+        /// Names of the axes that the set reaches.
         axes: Vec<String>,
     },
-    /// Some poses were not decided.
+    /// Some poses are undecided.
     Undecided {
-        /// How many.
+        /// Number of undecided poses.
         cells: usize,
     },
-    /// Some of the random motions that the Sum comes from were not decided.
+    /// Some of the sampled motions behind the Sum are undecided.
     UndecidedSample {
-        /// How many.
+        /// Number of undecided motions.
         motions: usize,
-        /// Of how many.
+        /// Number of sampled motions.
         of: usize,
     },
     /// The method's direction is quantised by the grid, so its border does not converge to the true one.
     FloodingBias,
     /// Accepted cells lie on level ground, such as the rim of a hole, where nothing slides.
     LevelGround {
-        /// How many.
+        /// Number of such cells.
         cells: usize,
-        /// Of so many accepted ones.
+        /// Number of accepted cells.
         of: usize,
     },
-    /// Motion that leaves the error box was not followed.
+    /// Motions that left the error box were not followed.
     CutOff,
-    /// The measure of the accepted cells lies outside the interval of the Sum from random exact descents.
+    /// The grid estimate of the Sum lies outside the confidence interval of the sampled exact motions.
     OutsideSample {
         /// Measure of the accepted cells, Dᵃ·radᵇ.
         sum_grid: f64,
         /// 95 % interval of the Sum, Dᵃ·radᵇ.
         ci95: [f64; 2],
     },
-    /// No random poses were followed: the Sum is the measure of the accepted cells, right or not.
+    /// No poses were sampled: the Sum is the measure of the accepted cells, without a check.
     NoInterval,
-    /// Cells that the method could not decide by itself, and that were too many to be followed exactly.
+    /// Cells that the method could not decide, too many to follow them exactly.
     Ambiguous {
-        /// How many.
+        /// Number of such cells.
         cells: usize,
-        /// Of how many.
+        /// Number of all cells.
         of: usize,
     },
-    /// Some of the motions that the result rests on end otherwise when their steps are halved.
+    /// Some sampled motions have another outcome if their steps are halved.
     StepDependence {
-        /// Random poses whose outcome changed.
+        /// Number of sampled poses whose outcome changed.
         changed: usize,
-        /// Of how many.
+        /// Number of sampled poses.
         of: usize,
-        /// 95 % interval of the share that changes.
+        /// 95 % interval of the share that changes, in [0, 1].
         ci95: [f64; 2],
     },
     /// Numbers of the dissertation's own conventions, fitted to its tables; not physics.
     DissertationConventions,
     /// The mated pose is not inside the accepted set.
     MatedPoseNotAccepted,
-    /// Cells are undecided, for this reason.
+    /// Some cells are undecided, for the stated reason.
     Open {
-        /// The reason, in a sentence.
+        /// The reason, as a sentence.
         text: String,
     },
-    /// Anything else a reader must know, in a sentence.
+    /// Any other warning, as a sentence.
     Note {
         /// The sentence.
         text: String,

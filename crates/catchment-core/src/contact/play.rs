@@ -16,15 +16,15 @@ use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
 use serde::{Deserialize, Serialize};
 
-/// How far one error may be off at rest.
+/// Play of the seat in one error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Play {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
-    /// Below zero; not negative. D or radians.
+    /// Play towards negative values, as a magnitude ≥ 0. D or radians.
     pub minus: f64,
-    /// Above zero; not negative. D or radians.
+    /// Play towards positive values, ≥ 0. D or radians.
     pub plus: f64,
 }
 

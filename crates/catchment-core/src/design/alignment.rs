@@ -13,22 +13,23 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alignment {
-    /// Errors that occur, and that contact may correct. The others are locked: rotations at 0, translations
-    /// at the COR.
+    /// Errors that occur and that contact may correct. The others are locked: rotations at 0, translations at
+    /// the COR.
     pub free: DofSet,
-    /// Rotations that do not matter (yaw of a round plug): locked in the motion, ignored in the verdict.
+    /// Rotations that do not count in the outcome (yaw of a round plug); they are locked during motion.
     pub dont_care: DofSet,
     /// Signed distance of the COR in front of the face centre, in D.
     pub center_of_rotation: f64,
-    /// ρ: overdamped motion dissipates `|v|² + (ρD)²·|ω|²`, v at the COR. In D.
+    /// Characteristic length ρ: overdamped motion dissipates `|v|² + (ρD)²·|ω|²`, v at the COR. In D.
     pub rotation_length: f64,
     /// The half turn that mounts the moving half.
     pub mount: Mount,
-    /// n-fold symmetry about the approach axis: turned by 2π/n the pair is aligned as well.
+    /// n-fold symmetry about the approach axis: a pair rotated by a multiple of 2π/n also counts as docked.
     pub symmetry: u32,
-    /// Half-ranges of the error box in the order of [`Dof::ALL`]: D and radians. Only free ones count.
+    /// Half-ranges of the error box in the order of [`Dof::ALL`]: D and radians. Only those of free errors
+    /// count.
     pub half_ranges: [f64; 5],
-    /// What counts as docked.
+    /// Docking tolerance.
     #[serde(default)]
     pub docked: Docked,
 }

@@ -5,42 +5,44 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// What a mesh file, or a mesh given in memory, held.
+/// Content of a mesh file, or of a mesh passed in memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MeshContent {
-    /// SHA-256 of its bytes, 64 hexadecimal digits. Of triangles in memory: of their corners in order, as
+    /// SHA-256 of its bytes, 64 hexadecimal digits. For triangles in memory: of their corners in order, as
     /// little-endian doubles, in D.
     pub sha256: String,
-    /// How many bytes there are.
+    /// Number of bytes.
     pub bytes: u64,
-    /// How many triangles they make; of a drawing, how many corners its outlines have.
+    /// Number of triangles; for a drawing, number of corners of its outlines.
     pub triangles: usize,
-    /// How many closed bodies it is the union of; shells that are apart count as one unless the file tells them apart.
+    /// Number of closed bodies in the union; separate shells count as one body unless the file distinguishes
+    /// them.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub bodies: usize,
-    /// Of a drawing, how many entities or elements are hidden in it and left out, each with all that is in it.
+    /// For a drawing, number of hidden entities or elements that were skipped, each with its content.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub hidden: usize,
-    /// What was done to them.
+    /// Repairs that were made.
     #[serde(default, skip_serializing_if = "Repairs::is_none")]
     pub repairs: Repairs,
-    /// How its curved faces became triangles, where it has some (STEP).
+    /// Meshing of its curved faces, if it has any (STEP).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meshed: Option<Box<Meshed>>,
 }
 
-/// How curved faces became triangles.
+/// Meshing of curved faces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Meshed {
-    /// How far the facets may be off, in D.
+    /// Largest allowed distance between curved faces and facets, in D.
     pub deflection: f64,
-    /// How far they are, as what meshed it measures it, in D.
+    /// Largest distance between curved faces and facets as reported by the mesher, in D.
     pub reached: f64,
-    /// What meshed it, and its version.
+    /// Mesher and its version.
     pub by: String,
-    /// SHA-256 of its answer: for every body the corners, little-endian doubles, and the triangles, little-endian 32-bit numbers of corners.
+    /// SHA-256 of the mesher's result: for each body the corners, little-endian doubles, and the triangles,
+    /// little-endian 32-bit indices of corners.
     pub sha256: String,
 }
 

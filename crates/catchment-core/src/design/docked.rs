@@ -9,14 +9,15 @@
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
 
-/// What counts as docked. What it means for a pair of halves is [`crate::contact::Seat`]'s.
+/// Docking tolerance. [`crate::contact::Seat`] defines its effect on a pair of halves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Docked {
-    /// How far above the mated height a half may lie and be seated, in D.
+    /// Largest height above the mated height at which a half at rest counts as docked, in D.
     pub depth: f64,
-    /// The largest error at rest that counts, in the order of [`Dof::ALL`]: D and radians; none: whatever the seat allows.
+    /// Largest residual misalignment that counts as docked, in the order of [`Dof::ALL`]: D and radians;
+    /// null: the play of the seat, limited.
     pub limits: [Option<f64>; 5],
 }
 

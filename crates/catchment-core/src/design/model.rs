@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Design {
-    /// What the person called it.
+    /// Name given by the user.
     pub name: String,
     /// The two halves.
     pub connector: ConnectorSpec,
@@ -73,7 +73,7 @@ impl LengthUnit {
     }
 }
 
-/// Where the geometry comes from.
+/// Source of the geometry.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -81,49 +81,50 @@ impl LengthUnit {
 pub enum ConnectorSpec {
     /// A built-in family.
     Family(FamilySpec),
-    /// The person's own halves.
+    /// The user's own halves.
     Own(OwnSpec),
 }
 
-/// The person's own halves.
+/// The user's own halves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OwnSpec {
-    /// z of the face centre in the frame of each half that faces +z, in D; `None`: found from where they first touch.
+    /// z of the face centre in the frame of each half that faces +z, in D; `None`: derived from first
+    /// contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub face_height: Option<f64>,
-    /// In which frames they are drawn.
+    /// Frames in which the halves are drawn.
     #[serde(default, skip_serializing_if = "Drawn::is_facing")]
     pub drawn: Drawn,
-    /// Where D comes from.
+    /// Source of D.
     #[serde(default, skip_serializing_if = "WidthFrom::is_written")]
     pub width_from: WidthFrom,
-    /// Whether the mated pose is where the halves come to rest that are let go as drawn.
+    /// If true, the mated pose is the rest that the halves reach when released as drawn.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub settle: bool,
     /// The fixed half.
     pub fixed: HalfSpec,
     /// The moving half.
     pub moving: HalfSpec,
-    /// How the fixed half is placed.
+    /// Placement of the fixed half.
     #[serde(default, skip_serializing_if = "Placement::is_none")]
     pub fixed_placement: Placement,
-    /// How the moving half is placed.
+    /// Placement of the moving half.
     #[serde(default, skip_serializing_if = "Placement::is_none")]
     pub moving_placement: Placement,
 }
 
-/// Where D comes from.
+/// Source of D.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum WidthFrom {
-    /// The design says it, or is dimensionless.
+    /// Stated in the design, or 1 because the design is dimensionless.
     #[default]
     Written,
     /// The larger lateral extent of the facets that can touch.
     Touching,
-    /// As little as the size of the parts allows; what can touch is smaller.
+    /// The smallest value that the size of the parts permits; the region that can touch is smaller.
     Size,
 }
 
@@ -160,7 +161,7 @@ impl OwnSpec {
     }
 }
 
-/// One half of the person's own.
+/// One of the user's own halves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -169,11 +170,12 @@ pub enum HalfSpec {
     Pieces(Vec<Vec<[f64; 3]>>),
     /// A closed triangle mesh in a file.
     Mesh(FileSpec),
-    /// Parts, each at a place of its own, whose union is the half.
+    /// Parts with individual positions; their union is the half.
     Parts(Vec<PartSpec>),
-    /// Triangles that a program gave in memory, in D. The design says only what they were, not the triangles.
+    /// Triangles that a program passed in memory, in D. The design stores their description, not the
+    /// triangles.
     Memory {
-        /// What they were.
+        /// Description of the triangles.
         content: MeshContent,
     },
 }

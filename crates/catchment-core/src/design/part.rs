@@ -16,24 +16,24 @@ use super::{MeshContent, Treatment};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A file of geometry, and what leads from its coordinates to D.
+/// A file of geometry, and the conversion of its coordinates to D.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FileSpec {
     /// The file, absolute or relative to the working directory.
     pub path: PathBuf,
-    /// Multiplies the file's coordinates to give D; where [`FileUnit::InFile`] says so, metres.
+    /// Factor from the file's coordinates to D; for [`FileUnit::InFile`] from metres to D.
     pub scale: f64,
-    /// Who says the unit.
+    /// Source of the file's unit.
     #[serde(default, skip_serializing_if = "FileUnit::is_beside")]
     pub unit: FileUnit,
-    /// The unit that the design writes beside it, which messages say.
+    /// The unit that the design states beside the file, for messages.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub written: Option<LengthUnit>,
-    /// What may be done to a mesh before it is used.
+    /// Permitted changes to a mesh before use.
     #[serde(default, skip_serializing_if = "Treatment::is_default")]
     pub treatment: Treatment,
-    /// What the file held, once it was read.
+    /// Content of the file, once it was read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub content: Option<MeshContent>,
 }
@@ -68,17 +68,17 @@ impl FileSpec {
     }
 }
 
-/// Who says in which unit the coordinates of a file are.
+/// Source of the unit of a file's coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FileUnit {
-    /// The scale alone: the file cannot say it, or the design is dimensionless.
+    /// Only the scale: the file does not state a unit, or the design is dimensionless.
     #[default]
     Beside,
-    /// The design: a file that says another one is refused.
+    /// The design states it; a file that states another unit is rejected.
     Stated(LengthUnit),
-    /// The file.
+    /// The file states it.
     InFile,
 }
 
@@ -93,13 +93,13 @@ impl FileUnit {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartSpec {
-    /// What it is.
+    /// Shape of the part.
     pub shape: ShapeSpec,
-    /// Unit vector to which its z axis is turned, by the shortest turn; about x where that is −z.
+    /// Unit vector to which the part's z axis is rotated, by the shortest rotation; about x for −z.
     pub axis: [f64; 3],
-    /// Turns about x, then y, then z, after that.
+    /// Rotations about x, then y, then z, applied after `axis`, in radians.
     pub rotate: [f64; 3],
-    /// Where its origin is.
+    /// Position of its origin.
     pub at: [f64; 3],
 }
 
@@ -113,7 +113,7 @@ impl PartSpec {
     }
 }
 
-/// What a part is.
+/// Shape of a part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -126,30 +126,30 @@ pub enum ShapeSpec {
     Sphere {
         /// Its radius.
         radius: f64,
-        /// Largest distance to its facets, which lie inside.
+        /// Largest distance of the surface to its facets, which lie inside.
         chord_error: f64,
     },
-    /// A cone that stands on the origin, or what is left of one below its top; a cylinder where both radii are the same.
+    /// A cone or truncated cone that stands on the origin; a cylinder if both radii are equal.
     Cone {
-        /// Radius of its floor.
+        /// Radius of its base.
         radius: f64,
         /// Radius of its top; 0 for an apex.
         top_radius: f64,
         /// Its height.
         height: f64,
-        /// Largest distance to its facets, which lie inside.
+        /// Largest distance of the surface to its facets, which lie inside.
         chord_error: f64,
     },
-    /// A box that stands on the origin, the middle of its floor.
+    /// A box that stands on the origin, the centre of its base.
     Box {
-        /// Along x, y and z.
+        /// Size along x, y and z.
         size: [f64; 3],
     },
     /// Outlines extruded from z = 0.
     Profile {
         /// The outlines.
         outline: OutlineSpec,
-        /// How far.
+        /// Length of the extrusion.
         height: f64,
         /// Largest distance of a curve to its chords.
         chord_error: f64,
@@ -161,9 +161,9 @@ pub enum ShapeSpec {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum OutlineSpec {
-    /// The corners of one polygon, in order.
+    /// The corners of a single polygon, in order.
     Corners(Vec<[f64; 2]>),
-    /// The closed outlines of an SVG or DXF file; what lies in an odd number of them is solid.
+    /// The closed outlines of an SVG or DXF file; a point inside an odd number of outlines is solid.
     File(FileSpec),
 }
 

@@ -13,19 +13,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// In which frames the two parts are drawn.
+/// Frames in which the two parts are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Drawn {
-    /// Each in its own, facing +z once it is placed; a half turn brings the moving half face to face with the fixed one.
+    /// Each half in its own frame, facing +z after placement; a half turn brings the moving half face to face
+    /// with the fixed half.
     #[default]
     Facing,
-    /// Both in one, docked.
+    /// Both halves docked, in a common frame.
     Assembled {
-        /// Unit vector along which the moving half comes.
+        /// Unit vector of the approach of the moving half.
         approach: [f64; 3],
-        /// The face centre in that frame, in D; `None`: in the middle of the box around what the mated halves share.
+        /// The face centre in the common frame, in D; `None`: the centre of the bounding box of the region
+        /// that the mated halves share.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         face_center: Option<[f64; 3]>,
     },
@@ -38,15 +40,16 @@ impl Drawn {
     }
 }
 
-/// How a part is turned and moved from its file; in this order.
+/// Rotation and translation of a part from the coordinates of its file; applied in the order of the fields.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Placement {
-    /// Unit vector in which the part faces in its file: turned to +z by the shortest turn, about x where it faces −z.
+    /// Unit vector in which the part faces in its file; rotated to +z by the shortest rotation, about x for
+    /// −z.
     pub facing: [f64; 3],
-    /// Turns about x, then y, then z, in radians.
+    /// Rotations about x, then y, then z, in radians.
     pub rotate: [f64; 3],
-    /// Moved by, in D.
+    /// Translation, in D.
     pub translate: [f64; 3],
 }
 

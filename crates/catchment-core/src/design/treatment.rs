@@ -7,20 +7,23 @@ use crate::terminal::shown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What may be done to a mesh before it is used.
+/// Permitted changes to a mesh before use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Treatment {
-    /// Whether it may be repaired where it bounds a solid beyond doubt. Nothing is done to a mesh that needs nothing.
+    /// Whether a mesh may be repaired, if it clearly bounds a solid. A mesh without defects is not changed.
     #[serde(default = "yes")]
     pub repair: bool,
-    /// How far its surface may move where it is described with fewer triangles, in D; `None`: it stays as it is.
+    /// Largest displacement of the surface by simplification to fewer triangles, in D; `None`: no
+    /// simplification.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simplify: Option<f64>,
-    /// How far the facets may be off that stand for the curved faces of a STEP file, in D; `None`: 0.0002 of the part's largest side.
+    /// Largest distance between the curved faces of a STEP file and their facets, in D; `None`: 0.0002 of the
+    /// part's largest side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deflection: Option<f64>,
-    /// Which of the separate bodies of the file it is, counted from 1, the largest box first; `None`: all of them.
+    /// Number of the separate body of the file to use, from 1, largest bounding box first; `None`: all
+    /// bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<u16>,
 }
@@ -47,32 +50,34 @@ impl Default for Treatment {
     }
 }
 
-/// What was done to a mesh before it was used.
+/// Changes made to a mesh before use.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Repairs {
-    /// Triangles without area that were taken away; where such a one lay along an edge, the edge was divided for its neighbour.
+    /// Triangles without area that were removed; if such a triangle lay along an edge, the edge was split for
+    /// its neighbour.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub without_area: usize,
-    /// Triangles taken away that lay on others with the same corners.
+    /// Triangles removed because another triangle has the same corners.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub doubled: usize,
-    /// Triangles taken away of lids: sheets without thickness across a hole, without which the body is closed.
+    /// Triangles removed as lids: sheets without thickness across a hole, without which the body is closed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub lids: usize,
-    /// Triangles that were turned over.
+    /// Triangles whose winding was reversed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turned: usize,
-    /// Edges where solids touched, at which they were parted.
+    /// Edges at which touching solids were separated.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub parted: usize,
-    /// Places at which the surface crossed itself, which were united; counted up to a limit.
+    /// Self-intersections of the surface that were united; counted up to a limit.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub united: usize,
-    /// How many triangles there were and are, where the mesh was simplified.
+    /// Number of triangles before and after simplification, if the mesh was simplified.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simplified: Option<[usize; 2]>,
-    /// Largest distance between the surface before and after, in D, as measured at corners, middles of edges and of triangles of both.
+    /// Largest distance between the surfaces before and after, in D, measured at corners, edge midpoints and
+    /// triangle centres of both.
     pub deviation: f64,
 }
 

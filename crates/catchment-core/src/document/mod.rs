@@ -152,15 +152,15 @@ impl Document {
     }
 }
 
-/// A count as a share of all, with the uncertainty of a sample.
+/// A count as a share of all, with its sampling uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Share {
-    /// How many.
+    /// The count.
     pub count: usize,
-    /// Their share of all, in [0, 1].
+    /// The count divided by the total, in [0, 1].
     pub share: f64,
-    /// Its 95 % interval (Wilson).
+    /// 95 % interval of the share (Wilson).
     pub ci95: [f64; 2],
 }
 

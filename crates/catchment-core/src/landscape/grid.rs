@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridAxis {
-    /// Which error.
+    /// The error.
     pub dof: Dof,
-    /// Lower border, D or radians.
+    /// Lower border of the axis, in D or radians.
     pub lo: f64,
-    /// Upper border, D or radians.
+    /// Upper border of the axis, in D or radians.
     pub hi: f64,
     /// Number of cells.
     pub cells: usize,

@@ -9,8 +9,8 @@ use std::str::FromStr;
 
 /// Number of cells per axis of the error grid.
 ///
-/// Written as comma-separated parts: a bare number for every axis that is not named, `axis=number` for one axis.
-/// Axes without a number get the default of the method for the number of axes sampled.
+/// Text form: comma-separated parts; `number` applies to every axis that is not named, `axis=number` to one
+/// axis. An axis without a number has the default of the method for the number of sampled axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(try_from = "String", into = "String")]

@@ -38,38 +38,41 @@ pub struct Paired<'a> {
     pub second: Cow<'a, Acceptance>,
 }
 
-/// How two acceptances compare.
+/// Comparison of two acceptances.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
-    /// Poses compared.
+    /// Number of poses compared.
     pub poses: usize,
-    /// `confusion[i][j]`: poses with outcome i by the first and j by the second, in the order of [`Outcome::ALL`].
+    /// `confusion[i][j]`: number of poses with outcome i in the first and j in the second, in the order of
+    /// [`Outcome::ALL`].
     pub confusion: [[usize; 4]; 4],
-    /// Accepted by both, over accepted by any; 1 where nothing is accepted.
+    /// Jaccard index: poses accepted by both, divided by poses accepted by either; 1 if neither accepts a
+    /// pose.
     pub jaccard: f64,
     /// Share of the poses that both accept or both reject.
     pub agreement: f64,
-    /// Poses that the first alone accepts.
+    /// Number of poses that only the first accepts.
     pub only_first: usize,
-    /// Poses that the second alone accepts.
+    /// Number of poses that only the second accepts.
     pub only_second: usize,
     /// Measure of each accepted set over these poses, Dᵃ·radᵇ.
     pub sums: [f64; 2],
     /// The unit of the measures, like `D²·rad³`.
     pub unit: String,
-    /// Second over first; null where the first accepts nothing.
+    /// Sum of the second divided by that of the first; null if the first accepts no pose.
     pub sum_ratio: Option<f64>,
     /// ONAA edges; null for listed poses.
     pub onaa_edges: Option<[f64; 2]>,
-    /// Second over first; null where the first accepts nothing, and for listed poses.
+    /// ONAA of the second divided by that of the first; null if the first accepts no pose, and for listed
+    /// poses.
     pub onaa_ratio: Option<f64>,
-    /// How far from the border of the first set the two differ; null where they do not, where there is no border, and for
-    /// listed poses.
+    /// Distances of the differing cells from the border of the first set; null if no cell differs, if there
+    /// is no border, and for listed poses.
     pub distances: Option<Distances>,
 }
 
-/// Distances of the cells that differ from the border of the first set.
+/// Distances of the differing cells from the border of the first set.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Distances {
@@ -79,15 +82,15 @@ pub struct Distances {
     pub error_box: Quantiles,
 }
 
-/// What a list of distances is like.
+/// Quantiles of a list of distances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Quantiles {
-    /// Half of them are at most this.
+    /// Half of the distances are at most this.
     pub median: f64,
-    /// 95 % of them are at most this.
+    /// 95 % of the distances are at most this.
     pub p95: f64,
-    /// The largest.
+    /// The largest distance.
     pub max: f64,
 }
 

@@ -20,10 +20,10 @@
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Estimate {
-    /// The smallest edge among the slices: a cube of the whole that shows in them is no larger.
+    /// The smallest edge among the slices: an upper bound on the edge of a cube that intersects all of them.
     pub optimistic: f64,
-    /// The edge d of the cube whose corner lies on the hyperplane through the corners of the slices' cubes; never more
-    /// than the optimistic one.
+    /// The edge d of the cube whose corner lies on the hyperplane through the corners of the slices' cubes;
+    /// at most the optimistic edge.
     pub conservative: f64,
 }
 

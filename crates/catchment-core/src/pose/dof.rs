@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// One of the five ways in which a docking pose can be wrong.
+/// One of the five components of a pose error.
 ///
 /// Written and read ([`FromStr`]) by its lower-case name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

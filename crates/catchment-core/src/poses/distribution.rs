@@ -7,8 +7,8 @@ use crate::design::{Design, Quantity};
 use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
 
-/// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
-/// not occur.
+/// Distribution of pose errors. Lists of five numbers are in the order of [`Dof::ALL`], in D and radians; 0
+/// for errors that do not occur.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
@@ -26,9 +26,9 @@ pub enum Distribution {
         mean: PoseError,
         /// Covariance matrix, in D², D·rad and rad².
         covariance: [[f64; 5]; 5],
-        /// Number of random poses.
+        /// Number of sampled poses.
         samples: u32,
-        /// Seed of the random numbers: the same seed gives the same answer anywhere.
+        /// Seed of the random numbers: the same seed gives the same result on any machine.
         seed: u64,
     },
     /// Uniform in a box.

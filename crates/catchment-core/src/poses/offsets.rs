@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum OffsetsAt {
-    /// The face centre: what a [`PoseError`] says.
+    /// The face centre, as in [`PoseError`].
     #[default]
     Face,
     /// The centre of rotation.

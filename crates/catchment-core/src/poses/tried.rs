@@ -15,16 +15,16 @@ use crate::pose::PoseError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// What was seen of a trial.
+/// Observed result of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Observed {
     /// It docked.
     Aligned,
-    /// It docked, turned by a symmetry of the halves.
+    /// It docked in a pose rotated by a symmetry of the halves.
     AlignedElsewhere,
-    /// It came to rest elsewhere.
+    /// It came to rest outside the seat.
     Jammed,
     /// It slid off, or the halves never met.
     Missed,

@@ -22,15 +22,15 @@ use serde::Serialize;
 /// Contacts steeper than this (z of their normal) are walls: no lift takes an overlap with them away.
 const WALL: f64 = 0.05;
 
-/// A contact at the end of a motion: two features, and where they touch.
+/// A contact at the end of a motion: two features and their contact point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EndContact {
-    /// The feature of the fixed half, in words.
+    /// Description of the feature of the fixed half.
     pub fixed: String,
-    /// The feature of the moving half, in words.
+    /// Description of the feature of the moving half.
     pub moving: String,
-    /// Where they touch, in the world frame, in D.
+    /// Contact point in the world frame, in D.
     pub point_d: [f64; 3],
 }
 

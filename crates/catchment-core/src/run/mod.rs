@@ -55,39 +55,39 @@ use crate::problem::Problem;
 use jams::JamsError;
 use serde::{Deserialize, Serialize};
 
-/// Everything that changes an answer, beside the problem.
+/// All settings that change a result, besides the problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Run {
-    /// Decides the cells.
+    /// Method that decides the cells.
     pub method: Method,
-    /// Which poses are decided.
+    /// Poses that are decided.
     pub over: Over,
-    /// Random poses that correct the Sum of a grid.
+    /// Sampled poses that correct the Sum of a grid.
     pub sample: Sample,
-    /// Seed of all random poses.
+    /// Seed of all sampled poses.
     pub seed: u64,
-    /// Errors that a robot makes: adds the success probability.
+    /// Pose-error distribution of a robot: adds the success probability.
     pub errors: Option<Distribution>,
-    /// What must hold of the report.
+    /// Requirements that the report must fulfil.
     pub requirements: Vec<Requirement>,
-    /// Keep the heights over the grid, also where the method needs none.
+    /// Whether to keep the heights over the grid even if the method does not need them.
     pub heights: bool,
-    /// Look for the places where motions rest that do not dock, by [`jams`].
+    /// Whether to find the rests outside the seat, by [`jams`].
     pub jams: bool,
-    /// Look for the largest box of errors that all dock, by [`window`].
+    /// Whether to find the tolerance window, by [`window`].
     pub window: bool,
 }
 
-/// Which poses are decided.
+/// The poses that are decided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Over {
     /// The centres of the cells of a grid over the error box.
     Grid(Resolution),
-    /// So many poses drawn uniformly from the error box; pose k depends on the seed and k alone.
+    /// This number of poses, sampled uniformly from the error box; pose k depends only on the seed and k.
     Stream(usize),
 }
 
@@ -97,17 +97,17 @@ impl Default for Over {
     }
 }
 
-/// How many random poses correct the Sum of a grid.
+/// Number of sampled poses that correct the Sum of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Sample {
-    /// What the method does when nothing is said.
+    /// Default of the method.
     #[default]
     ByMethod,
-    /// None: the Sum is that of the grid.
+    /// No samples: the Sum is that of the grid.
     None,
-    /// Until this says so.
+    /// Until this stopping rule applies.
     Until(Stop),
 }
 

@@ -27,12 +27,12 @@ use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Which part of a run.
+/// Number of a part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
-    /// Its number, from 0.
+    /// Number of the part, from 0.
     pub number: usize,
-    /// How many parts there are.
+    /// Number of parts.
     pub of: usize,
 }
 
@@ -46,16 +46,16 @@ impl Part {
     }
 }
 
-/// What one machine found.
+/// Results of one part of a run, from one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PartAnswer {
     /// Digest of the problem.
     pub problem: String,
-    /// The run that it is a part of.
+    /// The run to which the part belongs.
     pub run: Run,
-    /// Which part.
+    /// Number of the part.
     pub part: Part,
-    /// Outcomes of its poses, in their order: one letter each, the first of the outcome's name.
+    /// Outcomes of its poses in order: for each the first letter of the outcome's name.
     #[serde(with = "letters")]
     pub outcomes: Vec<Outcome>,
 }

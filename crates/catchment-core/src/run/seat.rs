@@ -21,44 +21,45 @@ use crate::tolerance;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The seat, and what comes to rest in it.
+/// The seat, and the residual misalignment of docked poses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Seating {
-    /// How far above its mated height a half may lie and be seated, in D.
+    /// Largest height above the mated height at which a half at rest counts as docked, in D.
     pub depth: f64,
-    /// How far off it may rest and lie as deep, per free error that matters; no less than what docked poses were seen to use.
+    /// Play of the seat per free error that counts; at least as large as the residual misalignment of the
+    /// docked poses.
     pub play: Vec<Play>,
-    /// Accepted poses that were followed until they had come to rest.
+    /// Number of accepted poses that were followed to rest.
     pub poses: usize,
-    /// How far off they rested, per free error that matters; empty if there were none.
+    /// Residual misalignment of these poses per free error that counts; empty if no pose was followed.
     pub residual: Vec<Residual>,
-    /// The deepest of them, if it lay deeper than the mated pose, which then is none.
+    /// The deepest rest, if it lies below the mated pose, which is then not a rest itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deeper: Option<Deeper>,
 }
 
-/// A place of rest below the mated pose, in the same seat.
+/// A rest below the mated pose, in the same seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Deeper {
-    /// How much deeper, in D.
+    /// Depth below the mated pose, in D.
     pub sinks: f64,
-    /// Where.
+    /// Pose error of this rest.
     pub error: PoseError,
 }
 
-/// How far off docked poses rest along one error, whichever way. D or radians.
+/// Residual misalignment of docked poses in one error, as absolute values. D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Residual {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
     /// Mean.
     pub mean: f64,
-    /// 95 % of the poses rest nearer.
+    /// 95 % of the poses have less.
     pub p95: f64,
-    /// The farthest.
+    /// Maximum.
     pub most: f64,
 }
 

@@ -37,14 +37,14 @@ const EVEN: f64 = 0.035;
 /// Heights that differ by less are one, in D.
 const LEVEL: f64 = tolerance::SINGLE;
 
-/// What a feature is.
+/// Kind of a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Part of the surface without an edge in it.
+    /// Part of the surface without an edge inside it.
     Face,
-    /// Where two faces meet, convex.
+    /// Convex intersection of two faces.
     Edge,
     /// A point.
     Corner,

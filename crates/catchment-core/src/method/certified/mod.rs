@@ -61,11 +61,11 @@ use tube::Tube;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Undecided share of the error box at which it is enough, in [0, 1].
+    /// Undecided share of the error box at which refinement stops, in [0, 1].
     pub gap: f64,
-    /// Boxes that are looked at at most; then what is undecided stays so.
+    /// Largest number of boxes that are examined; the remaining undecided boxes stay undecided.
     pub boxes: usize,
-    /// The same of time, in seconds: how many boxes that are depends on the machine.
+    /// Time limit in seconds; the number of boxes examined in this time depends on the machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub budget_s: Option<f64>,
 }
@@ -115,26 +115,26 @@ pub const LEAST_BOXES: usize = 64;
 /// Pairs of features at most: each is looked at over the largest boxes.
 pub const MOST_MEETINGS: usize = 200_000;
 
-/// What is certain of an error box.
+/// Certified shares of an error box.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
-    /// Share of the error box whose every pose docks.
+    /// Share of the error box in which every pose docks.
     pub yes: f64,
-    /// Share whose no pose docks.
+    /// Share in which no pose docks.
     pub no: f64,
-    /// Share that is left open.
+    /// Share that is undecided.
     pub undecided: f64,
     /// Measures of the three, Dᵃ·radᵇ.
     pub measures: [f64; 3],
-    /// How high a seated half must be lifted before it can leave, above the mated height, in D: at least. Also the energy that it takes per
-    /// unit of the force that holds it.
+    /// Certified lower bound on the retention: the height above the mated height that a seated half must
+    /// reach before it can leave, in D. Also the energy per unit of the force that holds it.
     pub retention_at_least: f64,
-    /// At most; nothing where no way out was found.
+    /// Certified upper bound on the retention; null if no escape path was found.
     pub retention_at_most: Option<f64>,
-    /// The largest window that is certain: every pose docks of the error box, made smaller about zero by this factor, in [0, 1].
+    /// Certified window: every pose docks in the error box scaled about zero by this factor, in [0, 1].
     pub window: f64,
-    /// Boxes that were looked at.
+    /// Number of boxes examined.
     pub boxes: usize,
 }
 

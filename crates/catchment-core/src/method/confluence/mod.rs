@@ -46,20 +46,22 @@ use rayon::prelude::*;
 use river::River;
 use serde::{Deserialize, Serialize};
 
-/// What may change the answer.
+/// Settings that may change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Share of the centres around a pose that must be known, all of them alike, above ½ and at most 1. Of the eight and fewer that
-    /// grids of up to three axes have, all must be.
+    /// Share of the cell centres around a pose that must be decided, all with the same outcome, before the
+    /// pose inherits it; above ½ and at most 1. Grids of up to three axes have at most eight such centres,
+    /// and all must agree.
     pub known: f64,
-    /// Motions after which no further batch of cells is begun; cells that were not reached, the highest ones, are undecided. As many as it
-    /// takes where nothing is said.
+    /// Number of motions after which no further batch of cells is started; cells not reached, the highest
+    /// ones, are undecided. Default: no limit.
     pub motions: Option<usize>,
-    /// The same by the clock, in seconds from the beginning: how far it comes depends on the machine. Heights are computed in any case.
+    /// Time limit in seconds from the start; progress within it depends on the machine. Heights are always
+    /// computed.
     pub budget_s: Option<f64>,
-    /// How poses are followed.
+    /// Settings of the exact motions.
     pub descent: descent::Settings,
 }
 
@@ -104,21 +106,21 @@ pub enum ConfluenceError {
     Cancelled(#[from] Cancelled),
 }
 
-/// How many cells were decided by others, and how often that was wrong.
+/// Number of cells with an inherited label, and how often that label was wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Joined {
     /// Cells in contact; mirror images count once.
     pub cells: usize,
-    /// How many of them joined others, on their way or at once.
+    /// Cells that inherited their label, during their motion or at its start.
     pub joined: usize,
-    /// How many motions were followed, to their end or until they joined others.
+    /// Motions that were followed, to their end or until they inherited a label.
     pub motions: usize,
-    /// Cells that joined others, drawn at random and followed to their end.
+    /// Cells with an inherited label that were sampled at random and followed to their end.
     pub tried: usize,
-    /// How many of these end otherwise than they were labelled.
+    /// Number of these cells whose exact outcome differs from their label.
     pub wrong: usize,
-    /// 95 % interval of the share of the joined cells that do, in [0, 1].
+    /// 95 % interval of the share of misclassified cells among the inherited labels, in [0, 1].
     pub wrong_ci95: [f64; 2],
 }
 

@@ -47,9 +47,9 @@ use strata::Strata;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
-    /// Seed of the random poses.
+    /// Seed of the sampled poses.
     pub seed: u64,
-    /// When to stop.
+    /// Stopping rule.
     pub stop: Stop,
 }
 
@@ -86,21 +86,22 @@ impl From<DecideError> for CorrectionError {
     }
 }
 
-/// What was seen in one stratum.
+/// Results of a stratum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Stratum {
-    /// What it holds.
+    /// Poses that the stratum contains.
     pub name: String,
     /// Its share of the error box, in [0, 1]; exact.
     pub share: f64,
-    /// Poses followed in it.
+    /// Number of poses followed in the stratum.
     pub descents: usize,
-    /// How many of them aligned.
+    /// Number of them that docked.
     pub aligned: usize,
-    /// How many could not be followed to their end.
+    /// Number of them that could not be followed to their end.
     pub undecided: usize,
-    /// Estimated share of its poses that align, in [0, 1]: the mean over batches, near `aligned / descents`.
+    /// Estimated share of the stratum that docks, in [0, 1]: the mean over batches, close to
+    /// `aligned / descents`.
     pub accepted: f64,
 }
 

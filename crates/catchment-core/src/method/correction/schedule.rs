@@ -13,18 +13,18 @@ use super::interval::{Seen, Whole};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// When to stop.
+/// Stopping rule of a sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Stop {
-    /// After this many poses; at least one is drawn in every stratum.
+    /// After this many poses; every stratum receives at least one.
     Samples(usize),
-    /// When half the width of the interval is this share of the Sum, or of [`FAINT`] of the box where the Sum is
-    /// smaller. Looked at after every batch.
+    /// When the half-width of the interval is this share of the Sum, or of [`FAINT`] of the box if the Sum is
+    /// smaller. Checked after every batch.
     Tolerance(f64),
-    /// When this much time has passed: as many poses as it allows, after a first batch that is always drawn. The
-    /// number depends on the machine, what is computed from them does not.
+    /// After this time, with at least the first batch. The number of poses depends on the machine; the
+    /// results for a given number do not.
     Budget(Duration),
 }
 

@@ -50,18 +50,18 @@ const MORE: f64 = 1e-3;
 /// Halvings of what the forces of contacts leave open.
 const HALVINGS: usize = 40;
 
-/// By which order a rest is held.
+/// Order of immobility of a rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Order {
-    /// It rises in proportion to every push.
+    /// Height rises in proportion to the displacement, in every direction.
     First,
-    /// Some way it rises with the square of the push.
+    /// In some direction height rises with the square of the displacement.
     Second,
-    /// Some way it neither rises nor falls, to second order.
+    /// In some direction height neither rises nor falls, to second order.
     Neutral,
-    /// Some way it falls with the square of the push: it rests there by chance.
+    /// In some direction height falls with the square of the displacement: an unstable equilibrium.
     Unstable,
 }
 
@@ -77,20 +77,22 @@ impl Order {
     }
 }
 
-/// By which order a rest is held (Rimon and Burdick).
+/// Immobility of a rest by its contacts (Rimon and Burdick).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Immobility {
     /// `first`, `second`, `neutral` or `unstable`.
     pub order: Order,
-    /// From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion; 0 where first order does not hold.
+    /// Bounds on the smallest slope of a first-order rest, in D per D of the metric of the motion; 0 if the
+    /// rest is not first-order immobile.
     pub slope: [f64; 2],
     /// Independent directions that are free to first order.
     pub free: usize,
-    /// The least curvature of the height among them, per D: pushed by s it rises by half of it times s². Null where none is free.
+    /// Smallest curvature of the height among these directions, per D: a displacement s raises it by half of
+    /// this times s². Null if no direction is free.
     #[serde(rename = "curvature_per_d")]
     pub curvature: Option<f64>,
-    /// The direction of that: offsets in D and turns in radians; 0 where none is free.
+    /// The direction of smallest curvature: offsets in D and rotations in radians; 0 if no direction is free.
     pub weakest: PoseError,
 }
 

@@ -63,22 +63,24 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sticking::{Doubting, OnTheWay};
 
-/// What may change the answer of [`run`].
+/// Settings of [`run`] that may change its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Longest step in the ρ-metric, in D; twice as long where motion is straight. Halving it must not change outcomes; it is
-    /// here to be tested.
+    /// Longest step in the ρ-metric, in D; twice as long if the motion is straight. Halving it must not
+    /// change outcomes; the setting exists for that test.
     pub step: f64,
-    /// Largest mismatch between a step's predicted and true height, as a share of the step; beyond it the step is halved.
+    /// Largest difference between predicted and true height after a step, as a share of the step; beyond it
+    /// the step is halved.
     pub surprise: f64,
-    /// Steps after which a motion counts as undecided.
+    /// Number of steps after which a motion counts as undecided.
     pub max_steps: usize,
     /// Coefficient of friction between the halves, at least 0.
     pub friction: f64,
-    /// Motion ends where the height falls by no more than this per length in the ρ-metric: the simple variant of friction (dissertation, 7.2). Of
-    /// offsets alone on one facet it is friction; where halves turn it is a rule of thumb, and derived from no coefficient.
+    /// Motion ends if the height falls by no more than this per length in the ρ-metric: the simple variant of
+    /// friction (dissertation, 7.2). For offsets alone on a single facet it equals friction; with rotations
+    /// it is a rule of thumb that follows from no coefficient.
     pub slope_threshold: f64,
 }
 
@@ -138,16 +140,16 @@ impl Settings {
     }
 }
 
-/// Where a pose ends.
+/// End of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct End {
-    /// How it ended.
+    /// Outcome of the motion.
     pub outcome: Outcome,
     /// The last pose error.
     pub error: PoseError,
-    /// z of the COR in the world frame in that state, in D. Under an overhang it lies below first contact at the same error; `None` where the
-    /// moving half missed.
+    /// z of the COR in the world frame at the end, in D. Under an overhang it lies below first contact at the
+    /// same error; `None` if the moving half missed.
     pub height: Option<f64>,
 }
 

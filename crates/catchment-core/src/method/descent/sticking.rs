@@ -26,15 +26,16 @@ use crate::contact::{Contact, Pair};
 use crate::pose::PoseError;
 use serde::{Deserialize, Serialize};
 
-/// From which friction on a half may stick where it touches, by Coulomb's law.
+/// Friction coefficients at which a touching half may stick, by Coulomb's law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sticking {
-    /// From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
+    /// Sticking threshold: from this friction coefficient on, forces exist that hold the half; 0 if the
+    /// contacts hold it without friction; null: never.
     pub holds_from: Option<f64>,
-    /// Up to this friction there is a way to slip; null: at any.
+    /// Slipping threshold: up to this friction coefficient the half can slip; null: always.
     pub slips_until: Option<f64>,
-    /// From this friction on it wedges, and may hold against a pull straight out as well; null: at none.
+    /// From this friction coefficient on the half wedges and may also resist a straight pull; null: never.
     pub wedges_from: Option<f64>,
 }
 

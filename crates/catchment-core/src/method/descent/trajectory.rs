@@ -5,11 +5,11 @@ use crate::pose::PoseError;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A point where the halves touch.
+/// A contact point of the halves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Touch {
-    /// Where, in the world frame, in D.
+    /// Position in the world frame, in D.
     #[serde(rename = "point_d")]
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub point: DVec3,

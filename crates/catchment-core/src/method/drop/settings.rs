@@ -5,51 +5,54 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What may change the answer of [`run`](super::run).
+/// Settings of [`run`](super::run) that may change its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// What drives the moving half along the approach.
+    /// Force that drives the moving half along the approach.
     pub push: Push,
-    /// What the moving half weighs, and how it resists turning.
+    /// Mass and inertia of the moving half.
     pub body: Body,
-    /// Friction with the surroundings per velocity of the COR and per mass, in 1/s: the force −mass·`damping`·v.
+    /// Damping by the surroundings per velocity of the COR and per mass, in 1/s: the force −mass·`damping`·v.
     pub damping: f64,
-    /// The same for turning, in 1/s: the torque −mass·`angular_damping`·ρ²·ω, with ρ the `rotation_length` of the alignment.
-    /// Equal to `damping` it makes friction dissipate c·(|v|² + ρ²|ω|²), c = mass·`damping`: the metric of `descent`.
+    /// Rotational damping, in 1/s: the torque −mass·`angular_damping`·ρ²·ω, with the characteristic length ρ
+    /// of the alignment. If it equals `damping`, friction dissipates c·(|v|² + ρ²|ω|²), c = mass·`damping`:
+    /// the metric of `descent`.
     pub angular_damping: f64,
     /// Coefficient of Coulomb friction between the halves.
     pub friction: f64,
     /// Share of the approach speed that a bounce gives back, in [0, 1].
     pub restitution: f64,
-    /// A plane to fall onto, this far below the lowest point of the fixed half, in D: 0 where that stands on the ground.
+    /// Distance of a ground plane below the lowest point of the fixed half, in D; 0 if the fixed half stands
+    /// on the ground.
     pub ground: Option<f64>,
-    /// Height above first contact from which the half is let go, in D.
+    /// Height above first contact from which the half is released, in D.
     pub drop_height: f64,
-    /// How it moves then; at rest where nothing is said.
+    /// Motion of the half at release; at rest by default.
     pub launch: Launch,
-    /// Inertia, and friction with the surroundings against turning, are so many times what they would be: 10⁵ all but locks rotations,
-    /// which is how the dissertation did it (section 4.2.2).
+    /// Factor on inertia and rotational damping: 10⁵ practically locks rotations, as in the dissertation
+    /// (section 4.2.2).
     pub inertia_factor: f64,
-    /// Time between two states of the engine, in s.
+    /// Time step of the engine, in s.
     pub timestep: f64,
-    /// Simulated time after which a trial ends, in s: jammed if it is at rest, else undecided.
+    /// Simulated time after which a trial ends, in s: jammed if the half is at rest, undecided if not.
     pub timeout: f64,
-    /// Missed: the face centres are farther apart than at first contact by this much, in D.
+    /// A trial has missed if the face centres are farther apart than at first contact by this much, in D.
     pub lost_beyond: f64,
-    /// At rest: moving more slowly than this, v at the COR and ρ·ω together, in D/s, averaged over 64 steps, twice in a row.
+    /// The half is at rest if its speed, v at the COR and ρ·ω combined, in D/s, averaged over 64 steps, is
+    /// below this twice in a row.
     pub rest_speed: f64,
-    /// Trials per pose; more than half of them must align.
+    /// Trials per pose; more than half of them must dock.
     pub trials: u32,
-    /// Largest perturbation of the start of a trial, uniform and independent in every free error: D, and for angles
-    /// radians times ρ.
+    /// Largest perturbation of the start of a trial, uniform and independent in every free error: in D; for
+    /// angles radians times ρ.
     pub perturbation: f64,
     /// Seed of the perturbations.
     pub seed: u64,
 }
 
-/// What drives the moving half against the fixed one.
+/// Force that drives the moving half against the fixed half.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -60,7 +63,7 @@ pub enum Push {
     Gravity(f64),
 }
 
-/// How the moving half moves when it is let go. What is said of errors that the design locks does not count.
+/// Motion of the moving half at release. Components of locked errors are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -80,17 +83,18 @@ pub struct Launch {
 pub enum Body {
     /// Given.
     Given {
-        /// In kg.
+        /// Mass in kg.
         mass: f64,
-        /// Radius of gyration about every axis through the centre of mass, in D: the inertia is mass·gyration². `None`: ρ, so that the
-        /// metric of inertia is that of friction.
+        /// Radius of gyration about every axis through the centre of mass, in D: the inertia is
+        /// mass·gyration². `None`: ρ, so that inertia and friction have the same metric.
         gyration: Option<f64>,
-        /// Where the centre of mass is, from the face centre of the moving half, along the axes of the fixed half when it is docked (z away
-        /// from that), in D. `None`: at the COR.
+        /// Centre of mass, from the face centre of the moving half, along the axes of the fixed half in the
+        /// docked pose (z away from the fixed half), in D. `None`: at the COR.
         #[serde(default)]
         center: Option<[f64; 3]>,
     },
-    /// A solid of this density: mass, centre of mass and inertia follow from the geometry. Pieces that overlap count twice.
+    /// A solid of this density: mass, centre of mass and inertia follow from the geometry. Overlapping pieces
+    /// count twice.
     Solid {
         /// In kg/D³.
         density: f64,

@@ -70,16 +70,16 @@ pub use tolerance::{Choice, Reason};
 pub use tree::{Link, MergeTree, Minimum, Step};
 pub use watersheds::{Counts, DAM, Watersheds};
 
-/// Where a cell drains to.
+/// Rule that selects the cell to which a cell drains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Rule {
-    /// To the lowest of its 3ⁿ − 1 neighbours, the first in memory among equals. No distance enters.
+    /// The lowest of its 3ⁿ − 1 neighbours, the first in memory if several are equal. Distance has no effect.
     #[default]
     Lowest,
-    /// To the neighbour with the greatest fall per distance, the first in memory among equals; the distance is that of
-    /// exact descent: lateral steps of the COR and ρ times the angle between rotations.
+    /// The neighbour with the greatest fall per distance, the first in memory if several are equal. The
+    /// distance is that of exact motion: lateral steps of the COR and ρ times the angle between rotations.
     Steepest,
 }
 
@@ -93,14 +93,15 @@ impl Rule {
     }
 }
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it is chosen from the depths.
+    /// Basins shallower than this are merged, in D; 0 keeps every minimum. By default it is chosen from the
+    /// depths.
     pub depth_tolerance: Option<f64>,
-    /// Where a cell drains to.
+    /// Rule that selects the cell to which a cell drains.
     pub rule: Rule,
 }
 
@@ -155,14 +156,15 @@ pub struct Basin {
     pub minimum: usize,
     /// Its height, in D; −∞ for the basin of all cells without contact.
     pub height: f64,
-    /// How far the water must rise above the minimum to reach a lower one, in D; infinite if there is none.
+    /// Height that the water must rise above the minimum to reach a lower minimum, in D; infinite if no
+    /// minimum is lower.
     pub depth: f64,
-    /// How far the water must rise above the minimum to run over into any other basin, in D: how hard this
-    /// equilibrium is to shake loose. Infinite for the only basin.
+    /// Height that the water must rise above the minimum to overflow into any other basin, in D: a measure of
+    /// the stability of this equilibrium. Infinite for a single basin.
     pub escape: f64,
-    /// How many cells drain to it.
+    /// Number of cells that drain to it.
     pub cells: usize,
-    /// What becomes of them.
+    /// Outcome of these cells.
     pub outcome: Outcome,
 }
 

@@ -23,28 +23,28 @@
 use super::tree::{MergeTree, Step};
 use serde::{Deserialize, Serialize};
 
-/// The tolerance that was used, and why.
+/// The tolerance that was used, and the reason for it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Choice {
     /// Basins shallower than this were merged, in D.
     pub depth: f64,
-    /// Why this one.
+    /// Reason for this tolerance.
     pub reason: Reason,
 }
 
-/// Why a tolerance was used.
+/// Reason for a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// It was given.
+    /// The caller set it.
     Given,
     /// It lies in the widest gap between the depths.
     WidestGap {
-        /// No depth lies between these two, in D.
+        /// No depth lies between these two bounds, in D.
         between: [f64; 2],
-        /// How much the height differs between neighbouring cells, in D: the largest mean along any axis.
+        /// Height difference between neighbouring cells, in D: the largest mean along any axis.
         height_step: f64,
     },
 }

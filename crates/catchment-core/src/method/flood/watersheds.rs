@@ -25,7 +25,7 @@ pub struct Watersheds {
     pub outside: Option<u32>,
 }
 
-/// How many watersheds there are. That of the cells without contact is none.
+/// Numbers of watersheds, without the region of cells without contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Counts {
@@ -33,7 +33,7 @@ pub struct Counts {
     pub first: usize,
     /// After merging.
     pub merged: usize,
-    /// Cells between two of them, before merging.
+    /// Cells between two watersheds, before merging.
     pub dams: usize,
     /// Cells whose watershed was merged into another.
     pub moved: usize,

@@ -60,11 +60,11 @@ pub enum Face {
     XFace,
 }
 
-/// What the answer depends on; lengths in D.
+/// The parameters that determine the result; lengths in D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
-    /// Which face.
+    /// The planar face.
     pub face: Face,
     /// H/D, H from the lowest to the highest point of the face.
     pub aspect_ratio: f64,

@@ -50,7 +50,7 @@ pub const STEP: f64 = 0.02;
 /// than once.
 pub const MOST_STEPS: usize = 100_000;
 
-/// How the stepping of a start halts.
+/// End of the stepping from a given start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

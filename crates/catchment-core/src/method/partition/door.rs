@@ -22,7 +22,7 @@ const INFO: Info = Info {
 /// Its line in the registry.
 pub(in crate::method) const ENTRY: Entry = Entry::of::<Partitioned>(&INFO);
 
-/// The partition; what is not said follows from the number of free rotations.
+/// Settings of the partition; unset values follow from the number of free rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]

@@ -48,16 +48,16 @@ use serde::{Deserialize, Serialize};
 pub use solids::{Solid, SolidError, Solids, Subject, shapes};
 use watershed::{Parts, Watersheds};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Rotation slices across the error box of every free rotation.
     pub slices: usize,
-    /// Strips per D into which the moving half is cut across x (and y) before its slices are joined. An edge that turns
-    /// is composed to a corrugated face whose slopes are wrong by up to half a strip's length however many slices there are,
-    /// so strips must grow with the slices. 1 is the dissertation's method.
+    /// Strips per D into which the moving half is cut across x (and y) before its slices are joined. A
+    /// rotating edge is approximated by a corrugated face whose slopes are wrong by up to half a strip's
+    /// length, for any number of slices, so strips must grow with the slices. 1 is the dissertation's method.
     pub strips: usize,
 }
 
@@ -140,17 +140,17 @@ pub enum PartitionError {
     Cancelled(#[from] Cancelled),
 }
 
-/// How much there was of everything.
+/// Size of a partition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Counts {
-    /// Polytopes of the Minkowski sum.
+    /// Number of polytopes of the Minkowski sum.
     pub polytopes: usize,
-    /// Cells of the contact space.
+    /// Number of cells of the contact space.
     pub cells: usize,
-    /// Parts of cells, each of which drains to one other.
+    /// Number of parts of cells; each part drains to a single other part.
     pub parts: usize,
-    /// Places of rest: base watersheds.
+    /// Number of rests: base watersheds.
     pub rests: usize,
 }
 

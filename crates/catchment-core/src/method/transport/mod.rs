@@ -45,14 +45,15 @@ use serde::{Deserialize, Serialize};
 use solve::Shares;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// What may change the answer.
+/// Settings that may change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Motion that leaves the error box is followed exactly when the grid has at most this many cells at its surface.
+    /// Motions that leave the error box are followed exactly if the grid has at most this many cells at its
+    /// surface.
     pub followed_out: usize,
-    /// How ends are decided.
+    /// Settings of the exact motions that decide ends.
     pub descent: descent::Settings,
 }
 

@@ -53,11 +53,12 @@ const MAX_SHEETS: usize = 400_000;
 /// Seams for drawings that are rounded, up to the tenth part of a thousandth of D that no fit notices.
 const SEAMS: [f64; 5] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5];
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
-    /// Positions closer than this, in D, are one; more are, where motions over both translations disagree.
+    /// Positions closer than this, in D, count as equal. If exact motions over both translations disagree,
+    /// coarser seams are tried.
     pub seam: f64,
 }
 

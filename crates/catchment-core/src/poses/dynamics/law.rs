@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};
 
-/// How a number is distributed.
+/// Distribution of a number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Law {
     /// Always the same.
     Constant {
-        /// The number.
+        /// The value.
         value: f64,
     },
     /// Normal.
@@ -20,21 +20,22 @@ pub enum Law {
         /// Its standard deviation.
         sigma: f64,
     },
-    /// Even between two numbers.
+    /// Uniform between two bounds.
     Uniform {
-        /// The lower.
+        /// Lower bound.
         from: f64,
-        /// The upper.
+        /// Upper bound.
         to: f64,
     },
     /// The logarithm is normal.
     Lognormal {
-        /// Half lies below it.
+        /// The median.
         median: f64,
-        /// The exponential of the logarithm's standard deviation: two thirds lie within median/factor and median·factor.
+        /// Exponential of the logarithm's standard deviation: two thirds of the values lie within
+        /// median/factor and median·factor.
         factor: f64,
     },
-    /// Any of these, each as likely as any other.
+    /// One of these values, all equally likely.
     Measured {
         /// The values.
         measured: Vec<f64>,

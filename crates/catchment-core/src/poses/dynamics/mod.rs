@@ -26,30 +26,30 @@ pub use read::{parse_draw, read_dynamics};
 
 use serde::{Deserialize, Serialize};
 
-/// A circumstance of a docking.
+/// A dynamic parameter of a docking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Circumstance {
-    /// Speed along the approach when it is let go, in D/s.
+    /// Speed along the approach at release, in D/s.
     Speed,
-    /// Velocity of the centre of rotation along x then, in D/s.
+    /// Velocity of the centre of rotation along x at release, in D/s.
     DriftX,
-    /// The same along y.
+    /// Velocity of the centre of rotation along y at release, in D/s.
     DriftY,
-    /// Rate of roll then, in rad/s.
+    /// Rate of roll at release, in rad/s.
     SpinRoll,
-    /// Rate of pitch.
+    /// Rate of pitch at release, in rad/s.
     SpinPitch,
-    /// Rate of yaw.
+    /// Rate of yaw at release, in rad/s.
     SpinYaw,
     /// Mass of the moving half, in kg.
     Mass,
     /// Coefficient of friction between the halves.
     Friction,
-    /// Share of the approach speed that a bounce gives back.
+    /// Coefficient of restitution: share of the approach speed after a bounce.
     Restitution,
-    /// Height above first contact from which it is let go, in D.
+    /// Height above first contact at release, in D.
     Height,
 }
 
@@ -122,7 +122,7 @@ impl Circumstance {
     }
 }
 
-/// The laws of all circumstances that are declared.
+/// The distributions of all declared parameters.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]

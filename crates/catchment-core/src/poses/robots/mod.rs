@@ -88,7 +88,7 @@ pub struct Moments {
     pub mean: PoseError,
     /// Standard deviation of each error.
     pub sigma: PoseError,
-    /// Correlations; an error that does not vary has none.
+    /// Correlation matrix; an error that does not vary is uncorrelated.
     pub correlation: Matrix,
 }
 

@@ -40,16 +40,16 @@ const OPEN: f64 = tolerance::TOUCHING;
 /// What counts as lower, in D: above what motions leave.
 const LOWER: f64 = 1e-5;
 
-/// A way out of a jam.
+/// An escape path from a jam.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WayOut {
-    /// How far the half must be lifted to get out, at most, in D.
+    /// Upper bound on the escape height, in D.
     #[serde(rename = "climb_at_most_d")]
     pub climb: f64,
-    /// Its outcome then: docked, off, or a rest that is lower.
+    /// Outcome at its end: docked, missed, or jammed at a lower rest.
     pub to: Outcome,
-    /// The pose error from which motion leads there.
+    /// The pose error on the path from which the motion to that end starts.
     pub over: PoseError,
 }
 

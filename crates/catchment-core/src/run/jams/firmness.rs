@@ -29,18 +29,18 @@ const FALL: f64 = 1e-7;
 const TRIES: usize = 16;
 const MOVES: u64 = 64;
 
-/// How a half rests.
+/// Stability of a rest, by the change of height when it is displaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Firmness {
-    /// It rises in proportion to the push, whichever way.
+    /// Height rises in proportion to the displacement, in every direction.
     Sharp,
-    /// Some way it rises with the square of the push.
+    /// In some direction height rises with the square of the displacement.
     Rounded,
-    /// Some way it hardly rises.
+    /// In some direction height hardly rises.
     Level,
-    /// Some way it falls.
+    /// In some direction height falls.
     Ridge,
 }
 

@@ -56,24 +56,26 @@ use rests::{Follow, Rested, Which};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
+    /// Number of poses sampled from the error box. Default: 4000 for simple halves, fewer for halves with
+    /// many facets.
     pub motions: Option<usize>,
-    /// Their seed, and that of every search.
+    /// Seed of the samples and of every search.
     pub seed: u64,
-    /// Errors that a robot makes: as many poses are drawn from them, too.
+    /// Pose-error distribution of a robot: if given, as many poses are also sampled from it.
     pub errors: Option<Distribution>,
-    /// How many jams are examined, those with most of the poses.
+    /// Number of jams to examine, those with the largest basins first.
     pub examined: usize,
     /// Coefficient of friction between the halves.
     pub friction: f64,
-    /// A grid whose merge tree gives depths, too; none by default.
+    /// Grid whose merge tree also gives escape heights; null: no grid.
     pub resolution: Option<Resolution>,
-    /// Whether depths are bounded from below, too, by boxes of poses: of simple halves without friction, with one or two free errors as a rule.
+    /// Whether to certify lower bounds on escape heights by boxes of poses: for simple halves without
+    /// friction, usually with one or two free errors.
     pub certified: bool,
 }
 
@@ -94,83 +96,86 @@ impl Default for Settings {
 /// How far a half is pushed aside to see how much it rises, in the metric of the motion, in D.
 pub const PUSH: f64 = 0.01;
 
-/// Where motions rest that do not dock.
+/// The jams of a pair: rests outside the seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Jams {
-    /// The settings, everything filled in.
+    /// The settings, with all defaults filled in.
     pub settings: Settings,
-    /// Random poses of the error box that were followed.
+    /// Number of poses sampled from the error box and followed.
     pub motions: usize,
-    /// Their outcomes.
+    /// Outcomes of the sampled poses.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_by_outcome"))]
     pub outcomes: BTreeMap<Outcome, Share>,
-    /// The same of poses drawn from the errors that a robot makes; null where none were given.
+    /// Outcomes of poses sampled from the errors of the robot; null if no errors were given.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_or_null"))]
     pub expected: Option<BTreeMap<Outcome, Share>>,
-    /// The table that those poses come from; null where they were not measured.
+    /// The table of measured errors from which those poses come; null if the errors were not measured.
     #[serde(default)]
     pub measured: Option<String>,
-    /// The jams, the one with most of the poses first.
+    /// The jams, largest basin first.
     pub jams: Vec<Jam>,
-    /// Which pairs of features touch in jams, the one that does so most often first.
+    /// Pairs of features in contact in jams, most frequent first.
     pub features: Vec<JammingPair>,
 }
 
-/// A place, or places alike, where halves come to rest that do not dock.
+/// A rest outside the seat, or several equivalent ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Jam {
-    /// How many poses of the error box end here, and which share that is.
+    /// Poses of the error box that end here: number and share.
     pub of_box: Share,
-    /// Their share of the poses that jam.
+    /// Share of the jammed poses that end here.
     pub of_jams: f64,
-    /// Their share of the poses that do not dock.
+    /// Share of the failed poses that end here.
     pub of_failures: f64,
-    /// The same of the errors that a robot makes; null where none were given.
+    /// Poses from the errors of the robot that end here; null if no errors were given.
     pub expected: Option<Share>,
-    /// The pose error of the rest in its middle.
+    /// Pose error of the central rest.
     pub pose: PoseError,
-    /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
+    /// Range of the rests in each free error, with symmetric images mapped onto each other.
     pub extent: Vec<Extent>,
-    /// At how many places that are images of each other rests were seen.
+    /// Number of symmetric images of this place at which rests were observed.
     pub places: usize,
     /// z of the COR in the world frame, in D.
     pub height_d: f64,
-    /// How far it is above the mated pose, in D.
+    /// Height above the mated pose, in D.
     pub above_mated_d: f64,
-    /// It is the mated pose turned by a symmetry of the halves, and counts as docked where the design has `symmetry` of this; null where it is not.
+    /// The value of `symmetry` with which this rest would count as docked, because it is the mated pose
+    /// rotated by a symmetry of the halves; null if it is no such pose.
     #[serde(default)]
     pub docked_with_symmetry: Option<u32>,
-    /// What touches.
+    /// The contacts.
     pub contacts: Vec<FeatureContact>,
-    /// What was found out about it; null of jams that were not examined.
+    /// Results of the examination; null for a jam that was not examined.
     pub examined: Option<Examined>,
-    /// The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
+    /// Escape height in the merge tree of a grid, in D; neither an upper nor a lower bound; null without
+    /// `resolution`, or if the tree does not contain the rest.
     pub depth_on_grid_d: Option<f64>,
-    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
+    /// Certified lower bound on the escape height to another rest, in D; null without `certified`, or if no
+    /// bound is known.
     pub depth_at_least_d: Option<f64>,
 }
 
-/// From where to where rests lie along an error, in D or radians.
+/// Range of the rests in an error, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Extent {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
-    /// From here.
+    /// Lower end.
     pub from: f64,
-    /// To here.
+    /// Upper end.
     pub to: f64,
 }
 
-/// Two features that touch, and where.
+/// A contact between two features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FeatureContact {
-    /// Where, in the world frame, in D: the places where it carries.
+    /// Contact points in the world frame, in D: the points that carry force.
     pub points_d: Vec<[f64; 3]>,
-    /// Unit normal at the first of them, from the fixed half to the moving one.
+    /// Contact normal at the first point: unit vector from the fixed half to the moving half.
     pub normal: [f64; 3],
     /// The feature of the fixed half.
     pub fixed: NamedFeature,
@@ -178,29 +183,30 @@ pub struct FeatureContact {
     pub moving: NamedFeature,
 }
 
-/// A feature of a half that touches.
+/// A feature of a half in contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NamedFeature {
     /// `face`, `edge` or `corner`.
     pub kind: FeatureKind,
-    /// In words: `edge between top and wall`.
+    /// Description, such as `edge between top and wall`.
     pub name: String,
-    /// The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
+    /// Number of its part in the design file, from 0; null if the half does not consist of parts with one
+    /// surface each.
     pub part: Option<usize>,
-    /// Where it touches, in the coordinates in which its half was drawn, in D.
+    /// Contact point in the coordinates in which the half was drawn, in D.
     pub drawn_d: [f64; 3],
 }
 
-/// A pair of features, and how often it touches where halves jam.
+/// A pair of features, and how often they are in contact in jams.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JammingPair {
-    /// Poses of the error box that jam on it.
+    /// Number of poses of the error box that jam on this pair.
     pub count: usize,
-    /// Their share of the poses that jam.
+    /// Share of the jammed poses.
     pub of_jams: f64,
-    /// Their share of the poses that do not dock.
+    /// Share of the poses that fail to dock.
     pub of_failures: f64,
     /// The feature of the fixed half.
     pub fixed: NamedFeature,
@@ -208,28 +214,28 @@ pub struct JammingPair {
     pub moving: NamedFeature,
 }
 
-/// What was found out about a place of rest.
+/// Results of the examination of a rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Examined {
     /// `sharp`, `rounded`, `level` or `ridge`.
     pub firmness: Firmness,
-    /// By how much it is pushed aside, in the metric of the motion, in D.
+    /// Displacement of the test, in the metric of the motion, in D.
     pub push_d: f64,
-    /// The least rise found, in D: the true least is at most that. Null where walls stop it all around.
+    /// Smallest rise found, in D: an upper bound on the true minimum. Null if walls block every direction.
     pub rise_at_most_d: Option<f64>,
-    /// The direction of that push: offsets in D and turns in radians.
+    /// Direction of the smallest rise: offsets in D and rotations in radians.
     pub weakest: PoseError,
-    /// By which order contacts alone hold it; null where they do not hold the load, as where friction does.
+    /// Immobility by the contacts alone; null if they do not balance the load without friction.
     pub immobility: Option<Immobility>,
-    /// From which friction on it may stick; null where it touches nothing.
+    /// Friction thresholds for stiction; null if the half touches nothing.
     #[serde(default)]
     pub sticks: Option<Sticking>,
-    /// The lowest way out that was found; null where none was.
+    /// Lowest escape path that was found; null if the search found no path.
     pub way_out: Option<WayOut>,
-    /// Poses a little off that were followed.
+    /// Number of nearby poses that were followed.
     pub pushed: usize,
-    /// How many of them came back.
+    /// Number of these that returned to the rest.
     pub back: usize,
 }
 

@@ -40,20 +40,22 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
+    /// Number of poses sampled from the error box. Default: 4000 for simple halves, fewer for halves with
+    /// many facets.
     pub motions: Option<usize>,
-    /// Their seed, and that of every search.
+    /// Seed of the samples and of every search.
     pub seed: u64,
-    /// How many rests are examined, those with most of the poses.
+    /// Number of rests to examine, those with the largest basins first.
     pub examined: usize,
-    /// A grid whose merge tree gives depths, too; none by default.
+    /// Grid whose merge tree also gives escape heights; null: no grid.
     pub resolution: Option<Resolution>,
-    /// Whether depths are bounded from below, too, by boxes of poses: of simple halves with one or two free errors as a rule.
+    /// Whether to certify lower bounds on escape heights by boxes of poses: for simple halves, usually with
+    /// one or two free errors.
     pub certified: bool,
 }
 
@@ -63,50 +65,54 @@ impl Default for Settings {
     }
 }
 
-/// Where halves come to rest.
+/// The rests of a pair.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rests {
-    /// The settings, everything filled in.
+    /// The settings, with all defaults filled in.
     pub settings: Settings,
-    /// Random poses of the error box that were followed.
+    /// Number of poses sampled from the error box and followed.
     pub motions: usize,
-    /// Their outcomes.
+    /// Outcomes of the sampled poses.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::document::shares_by_outcome"))]
     pub outcomes: BTreeMap<Outcome, Share>,
-    /// The rests, the one with most of the poses first.
+    /// The rests, largest basin first.
     pub rests: Vec<RestPlace>,
 }
 
-/// A place of rest, or places alike.
+/// A rest, or several equivalent ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RestPlace {
-    /// How many poses of the error box end here: its basin.
+    /// Basin: poses of the error box that end here, number and share.
     pub of_box: Share,
-    /// How many of them count as docked.
+    /// Number of these poses that count as docked.
     pub docked: usize,
-    /// The pose error of the rest in its middle.
+    /// Pose error of the central rest.
     pub pose: PoseError,
-    /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
+    /// Range of the rests in each free error, with symmetric images mapped onto each other.
     pub extent: Vec<Extent>,
-    /// At how many places that are images of each other rests were seen.
+    /// Number of symmetric images of this place at which rests were observed.
     pub places: usize,
     /// z of the centre of rotation in the world frame, in D: the energy per unit of weight.
     pub height_d: f64,
-    /// How far it is above the mated pose, in D.
+    /// Height above the mated pose, in D.
     pub above_mated_d: f64,
-    /// At most so far it must be lifted to leave, in D; null where no way out was found, or it was not examined.
+    /// Upper bound on the escape height, in D; null if no escape path was found, or if the rest was not
+    /// examined.
     pub depth_at_most_d: Option<f64>,
-    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
+    /// Certified lower bound on the escape height to another rest, in D; null without `certified`, or if no
+    /// bound is known.
     pub depth_at_least_d: Option<f64>,
-    /// The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
+    /// Escape height in the merge tree of a grid, in D; neither an upper nor a lower bound; null without
+    /// `resolution`, or if the tree does not contain the rest.
     pub depth_on_grid_d: Option<f64>,
-    /// The rest to which that way leads, from 0 in this list; null where it leads off.
+    /// Index in this list, from 0, of the rest to which the escape path leads; null if it leads off the
+    /// connector or to no rest of the list.
     pub leads_to: Option<usize>,
-    /// What touches.
+    /// The contacts.
     pub contacts: Vec<FeatureContact>,
-    /// What was found out about it; null of rests that were not examined.
+    /// Results of the examination; null for a rest that was not examined.
     pub examined: Option<Examined>,
 }
 

@@ -44,18 +44,21 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Deref;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Half-widths that are given, in the order of [`Dof::ALL`], in D and radians: these errors occur so far, and the others are asked about.
+    /// Given half-widths, in the order of [`Dof::ALL`], in D and radians: these errors have this range, and
+    /// the window is sought for the others.
     pub fixed: [Option<f64>; 5],
-    /// Proportions of the others; the ranges of the error box where nothing is said. 0 for errors that do not occur.
+    /// Proportions of the other half-widths; by default the ranges of the error box. 0 for errors that do not
+    /// occur.
     pub proportions: Option<PoseError>,
-    /// Random poses of the certificate; 300 000 where nothing is said, of halves with many facets as many as can be followed in three core-seconds.
+    /// Number of samples for the certificate. Default: 300 000; for halves with many facets as many as can be
+    /// followed in three core-seconds.
     pub motions: Option<usize>,
-    /// Their seed, and that of the search.
+    /// Seed of the samples and of the search.
     pub seed: u64,
     /// Coefficient of friction between the halves.
     pub friction: f64,
@@ -67,39 +70,41 @@ impl Default for Settings {
     }
 }
 
-/// The largest box of errors around zero that all dock, as far as exact motions show.
+/// The tolerance window: the largest box of errors around zero in which every pose docks, as far as exact
+/// motions show.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Window {
-    /// ± so much of every free error, by its name, in D and radians.
+    /// Half-width of every free error, by its name, in D and radians.
     pub window: HalfWidths,
-    /// The settings of the search and everything else that it found.
+    /// The settings of the search and all its other results.
     #[serde(flatten)]
     pub found: WindowDetails,
 }
 
-/// ± so much of every free error, in D and radians.
+/// Half-width of every free error, in D and radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct HalfWidths(pub BTreeMap<Dof, f64>);
 
-/// A window beside its half-widths.
+/// Details of a window besides its half-widths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowDetails {
-    /// The settings, everything filled in.
+    /// The settings, with all defaults filled in.
     pub settings: Settings,
     /// Every free error.
     pub sides: Vec<Side>,
-    /// Half-widths that were not given are so many times their proportions.
+    /// Factor between `proportions` and the half-widths that were not given.
     pub scale: f64,
-    /// The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
+    /// The error with the least room to its limit while all others vary within the window; null if every
+    /// limit is the border of the error box.
     pub tightest: Option<Dof>,
-    /// The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
+    /// The nearest failure, measured in proportions of the window; null if the window reaches the error box.
     pub worst: Option<Worst>,
-    /// The evidence of random poses.
+    /// The certificate from sampled poses.
     pub certificate: Certificate,
-    /// Exact motions in all.
+    /// Number of exact motions in total.
     pub motions: usize,
 }
 
@@ -107,19 +112,19 @@ pub struct WindowDetails {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Side {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
-    /// ± so much is in the window.
+    /// Half-width of the window in this error.
     pub half_width: f64,
-    /// Whether that was given.
+    /// Whether the half-width was given.
     pub given: bool,
-    /// ± so far with all others 0.
+    /// Single-axis limit: tolerance ± while all other errors are 0.
     pub alone: f64,
-    /// The error box ends there.
+    /// Whether the single-axis limit is the border of the error box.
     pub alone_reaches_border: bool,
-    /// ± so far with all others anywhere within their half-widths.
+    /// Tolerance ± while all other errors vary within their half-widths.
     pub beside: f64,
-    /// The error box ends there.
+    /// Whether that tolerance ends at the border of the error box.
     pub beside_reaches_border: bool,
 }
 
@@ -132,7 +137,7 @@ struct Reach {
     is_border: bool,
 }
 
-/// The pose nearest to zero, in proportions, that does not dock.
+/// The nearest failure: the failing pose nearest to zero, in proportions of the window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Worst {
@@ -140,21 +145,22 @@ pub struct Worst {
     pub error: PoseError,
     /// Its outcome.
     pub outcome: Outcome,
-    /// Where it ends.
+    /// Pose error at the end of its motion.
     pub end: PoseError,
-    /// What touches there, in the world frame of the fixed face centre, in D, with the normal towards the moving half; empty where the halves never meet.
+    /// Contacts at the end, in the world frame of the fixed face centre, in D, with normals towards the
+    /// moving half; empty if the halves never touch.
     pub touches: Vec<Touch>,
 }
 
-/// The evidence of random poses of the window: none of them failed.
+/// The certificate: sampled poses of the window, none of which failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
-    /// How many poses.
+    /// Number of sampled poses.
     pub motions: usize,
-    /// At most this share of the window fails, with 95 % confidence; 1 if nothing was tried.
+    /// Upper bound on the failing share of the window, at 95 % confidence; 1 if no pose was sampled.
     pub failing_at_most: f64,
-    /// Windows before this one in which some random pose failed.
+    /// Number of earlier windows that were rejected because a sampled pose failed.
     pub redrawn: usize,
 }
 

@@ -20,15 +20,15 @@ use crate::method::flood::tree::explains;
 use crate::method::flood::{self, FloodError, Rule, Watersheds, target, verdict};
 use serde::{Deserialize, Serialize};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it lies in the widest gap between the
-    /// depths, as that of [`flood`](super::super::flood) does.
+    /// Basins shallower than this are merged, in D; 0 keeps every minimum. The default lies in the widest gap
+    /// between the depths, as in [`flood`](super::super::flood).
     pub depth_tolerance: Option<f64>,
-    /// Where the text may be read in two ways.
+    /// Choices at ambiguous points of the text.
     #[serde(default)]
     pub rules: Rules,
 }

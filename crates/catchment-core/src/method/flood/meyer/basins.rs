@@ -24,7 +24,7 @@ pub(super) const fn is_basin(label: u32) -> bool {
     label != UNSEEN && label < LABEL_LIMIT
 }
 
-/// Where flooding may be read in two ways. The default is the one of Meyer's text.
+/// Choices at ambiguous points of the description of flooding. The default follows Meyer's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

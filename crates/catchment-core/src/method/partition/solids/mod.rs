@@ -32,16 +32,16 @@ use crate::pose::{Dof, DofSet};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Which shape.
+/// The solid to export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Subject {
     /// Both halves, docked.
     Halves,
-    /// The reflected moving half over its angle.
+    /// The reflected moving half, swept over its angle.
     Swept,
-    /// All places of the centre of rotation at which the halves overlap.
+    /// All positions of the centre of rotation at which the halves overlap.
     Collision,
 }
 
