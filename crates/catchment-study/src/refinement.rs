@@ -15,7 +15,7 @@ use catchment_core::problem::Problem;
 use catchment_core::run;
 use serde::Serialize;
 
-/// What one method says at one resolution.
+/// Result of a method at one resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refinement {
@@ -23,17 +23,18 @@ pub struct Refinement {
     pub resolution: usize,
     /// Cells in all.
     pub cells: usize,
-    /// Wall-clock time of deciding every cell.
+    /// Wall-clock time to decide every cell, in seconds.
     pub seconds: f64,
     /// The Sum, Dᵃ·radᵇ.
     pub sum: f64,
     /// Unit of the Sum, like `D²·rad³`.
     pub unit: String,
-    /// The accepted cells without those at the border, and with their neighbours, in the same unit.
+    /// Measure of the accepted cells without the border cells, and with the rejected neighbours, in the same
+    /// unit.
     pub bracket: [f64; 2],
     /// ONAA edge, in [0, 1].
     pub onaa_edge: f64,
-    /// Undecided cells.
+    /// Number of undecided cells.
     pub undecided: usize,
 }
 

@@ -50,57 +50,58 @@ impl Default for Settings {
     }
 }
 
-/// Every method of a design on one grid.
+/// Results of all methods for a design on a common grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Agreement {
-    /// Cells per axis, by axis.
+    /// Number of cells of each axis.
     pub cells: Vec<usize>,
-    /// Seconds that each method could take.
+    /// Time limit for each method, in seconds.
     pub time_limit_s: f64,
     /// Unit of the Sums.
     pub unit: String,
-    /// Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
+    /// All methods. Seconds differ between equal runs, and so does the result of a method that the time limit
+    /// stops.
     pub methods: Vec<Decided>,
-    /// Of the methods that came to a result, in their order: how each two agree.
+    /// For the methods with a result, in their order: the agreement of each pair.
     pub agreement: Vec<Vec<PairAgreement>>,
 }
 
-/// One method of many.
+/// Result of a single method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Decided {
-    /// Its name.
+    /// Name of the method.
     pub method: &'static str,
-    /// What it found.
+    /// Result of the method; null without a result.
     pub result: Option<MethodResult>,
-    /// Why it found nothing.
+    /// Reason for the missing result.
     pub left_out: Option<String>,
 }
 
-/// What one method found.
+/// Result of a method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodResult {
     /// The measure of the accepted cells.
     pub sum_grid: f64,
-    /// The Sum: corrected where the method draws random poses.
+    /// The Sum; corrected if the method draws samples.
     pub sum: f64,
     /// Its 95 % interval, if there is one.
     pub sum_ci95: Option<[f64; 2]>,
-    /// The ONAA edge.
+    /// Edge of the ONAA cube.
     pub onaa_edge: Option<f64>,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
 }
 
-/// How two methods agree.
+/// Agreement of two methods.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PairAgreement {
     /// Share of the cells that both accept or both reject.
     pub agreement: f64,
-    /// Accepted by both over accepted by any.
+    /// Jaccard index: cells accepted by both, divided by cells accepted by either.
     pub jaccard: f64,
 }
 

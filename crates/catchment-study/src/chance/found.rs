@@ -12,89 +12,91 @@ use serde::{Serialize, Serializer};
 /// A number for each outcome, in the order of [`Outcome::ALL`].
 pub type ByOutcome<N> = [N; Outcome::ALL.len()];
 
-/// How likely a half docks.
+/// Docking probability under dynamics.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Chance {
     /// The settings.
     pub settings: Settings,
-    /// Every declared circumstance with its law.
+    /// Every declared parameter with its distribution.
     pub declared: Vec<Declared>,
-    /// How far a half coasts that comes with the mean speed, before damping has taken it, in D; null without speed or damping.
+    /// Distance that a half with the mean speed coasts until damping stops it, in D; null without speed or
+    /// damping.
     pub coasting_d: Option<f64>,
     /// The preset that the settings come from, if any.
     pub preset: Option<PresetOpen>,
-    /// The probability under the errors that are expected; null where none are.
+    /// Docking probability under the expected errors; null if no errors were given.
     pub overall: Option<Overall>,
-    /// The same with every velocity multiplied, in ascending order.
+    /// Docking probability with every velocity multiplied by a factor, in ascending order of the factor.
     pub curve: Vec<AtSpeed>,
-    /// Each pose, in the order of the question.
+    /// Results for each pose, in the order of the input.
     pub poses: Vec<PoseChance>,
-    /// The cells of a map; null where there is none.
+    /// The cells of a map; null without a map.
     pub map: Option<Map>,
-    /// Trials in all.
+    /// Number of trials in total.
     pub trials: usize,
 }
 
-/// A circumstance and its law.
+/// A dynamic parameter and its distribution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Declared {
-    /// Which.
+    /// The parameter.
     pub circumstance: Circumstance,
-    /// The unit of its numbers; empty of bare numbers.
+    /// Unit of its values; empty if they have no unit.
     pub unit: &'static str,
-    /// Its law.
+    /// Its distribution.
     pub law: Law,
-    /// Share of the law that lies outside of what is possible, and is drawn again, in [0, 1].
+    /// Share of the distribution outside the possible range, in [0, 1]; such values are drawn again.
     pub cut: f64,
 }
 
-/// Settings under a name.
+/// A named set of settings.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PresetOpen {
     /// The name.
     pub name: &'static str,
-    /// What its source leaves open.
+    /// Values that its source leaves open.
     pub unknown: Vec<&'static str>,
 }
 
-/// How likely one pose docks.
+/// Docking probability of a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PoseChance {
     /// The pose error.
     pub error: PoseError,
-    /// Trials.
+    /// Number of trials.
     pub trials: usize,
-    /// Trials by outcome.
+    /// Number of trials by outcome.
     #[serde(serialize_with = "by_outcome")]
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, usize>"))]
     pub outcomes: ByOutcome<usize>,
-    /// Share of the trials that aligned, in [0, 1].
+    /// Share of the trials that docked, in [0, 1].
     pub probability: f64,
-    /// Wilson's 95 % interval of it; undecided trials widen it upwards.
+    /// Wilson's 95 % interval of that share; undecided trials widen it upwards.
     pub ci95: [f64; 2],
-    /// Share of the draws that dock by exact quasi-static motion: 0 or 1 where friction does not vary.
+    /// Share of the draws that dock by exact quasi-static motion: 0 or 1 if friction does not vary.
     pub quasi_static: f64,
-    /// Share of the trials that differ from most of them: of a pose that has one true end, how often a single trial errs.
+    /// Share of the trials whose outcome differs from the most frequent outcome; the error rate of a single
+    /// trial for a pose with a single true outcome.
     pub minority: f64,
-    /// How often the majority of three such trials would be of the minority: 3E² − 2E³.
+    /// Error rate of the majority of three such trials: 3E² − 2E³ for an error rate E.
     pub majority_of_three: f64,
 }
 
-/// Cells over one error or two.
+/// Cells over one or two errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Map {
     /// The axes; the first runs fastest.
     pub axes: Vec<GridAxis>,
-    /// The centre of each cell, all other errors 0.
+    /// Results at the centre of each cell, with all other errors 0.
     pub cells: Vec<PoseChance>,
 }
 
-/// How likely a half docks under the errors that are expected.
+/// Docking probability under the expected errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Overall {
@@ -104,9 +106,9 @@ pub struct Overall {
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Trials that this took.
+    /// Number of trials behind it.
     pub trials: usize,
-    /// Plain trials of random errors whose interval would be as wide.
+    /// Effective sample size: number of plain trials of random errors whose interval would be as wide.
     pub plain_trials: f64,
     /// Share of the errors by outcome, in [0, 1].
     #[serde(serialize_with = "by_outcome")]
@@ -114,25 +116,25 @@ pub struct Overall {
     pub outcomes: ByOutcome<f64>,
     /// The sample, by stratum.
     pub strata: Vec<Stratum>,
-    /// Cells of the quasi-static grid that decided where trials are made most.
+    /// Cells of the quasi-static grid that allocates the trials to strata.
     pub grid_cells: usize,
-    /// The probability by exact quasi-static motions of the same errors and draws of friction, in [0, 1].
+    /// Probability by exact quasi-static motions of the same errors and friction draws, in [0, 1].
     pub quasi_static: f64,
     /// Its 95 % interval.
     pub quasi_static_ci95: [f64; 2],
-    /// Motions that this took, those of the grid included.
+    /// Number of motions behind it, including those of the grid.
     pub motions: usize,
 }
 
-/// The probability with every velocity multiplied.
+/// Docking probability with every velocity multiplied by a factor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtSpeed {
-    /// By what every velocity is multiplied.
+    /// Factor on every velocity.
     pub factor: f64,
-    /// Mean approach speed then, in D/s.
+    /// Mean approach speed with this factor, in D/s.
     pub speed: f64,
-    /// Trials that this took.
+    /// Number of trials behind it.
     pub trials: usize,
     /// Probability of docking, in [0, 1].
     pub probability: f64,

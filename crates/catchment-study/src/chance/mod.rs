@@ -49,20 +49,22 @@ pub use found::{
 pub use report::unit_of;
 use serde::{Deserialize, Serialize};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// What is not declared; its trials, seed and, with held speed, its push do not count.
+    /// Constants of the drop test for all parameters without a distribution; its trials and seed are ignored,
+    /// and its push too if the speed is held.
     pub drop: drop::Settings,
-    /// What is.
+    /// Distributions of the declared parameters.
     pub dynamics: Dynamics,
-    /// Whether the half is pushed as damping balances at its speed, in the place of what `drop` says.
+    /// Whether the push is the force that damping balances at the approach speed, instead of the push in
+    /// `drop`.
     pub held: bool,
-    /// Trials of each pose and of each cell of a map.
+    /// Number of trials for each pose and each cell of a map.
     pub trials: usize,
-    /// Trials of the probability under expected errors, and of each speed of the curve.
+    /// Number of trials for the probability under the expected errors, and for each speed of the curve.
     pub overall: usize,
     /// Seed of all draws.
     pub seed: u64,

@@ -21,24 +21,25 @@ use catchment_core::method::{Decide, Method, descent};
 use catchment_core::problem::Problem;
 use serde::Serialize;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
-    /// Largest change that counts as stable: a share of the Sum, and a share of the error box's edge for ONAA.
+    /// Largest change that counts as stable: as a share of the Sum, and as a share of the error box's edge
+    /// for the ONAA.
     pub tolerance: f64,
-    /// Seconds that each method may take.
+    /// Time limit for each method, in seconds.
     pub time_limit_s: f64,
-    /// Cells of the finest grid that may be tried, after the coarsest.
+    /// Largest number of cells of a grid, except for the coarsest grid.
     pub most_cells: u64,
-    /// Which methods.
+    /// Methods to compare.
     #[serde(serialize_with = "names")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub methods: Vec<Method>,
-    /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none. Where nothing is
-    /// said, as many as a run by descent draws.
+    /// Number of samples, followed exactly, that correct the Sum of each method's finest grid; 0 disables
+    /// them. Default: as many as a run with `descent` draws.
     pub descents: Option<usize>,
-    /// Their seed.
+    /// Seed of the samples.
     pub seed: u64,
 }
 
@@ -59,17 +60,17 @@ impl Default for Settings {
     }
 }
 
-/// How one method fared.
+/// Results of a method over its refinements.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sequence {
-    /// Which.
+    /// Name of the method.
     pub method: &'static str,
-    /// Coarse to fine.
+    /// Results from coarse to fine.
     pub trials: Vec<Refinement>,
-    /// Why there are no more.
+    /// Reason why the sequence ends.
     pub end: StopReason,
-    /// What exact descents say of the finest grid's Sum, if any were asked for.
+    /// Sum of the finest grid as corrected by exact motions; null without samples.
     pub corrected: Option<CorrectedSum>,
 }
 
@@ -81,29 +82,29 @@ pub struct CorrectedSum {
     pub sum: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Descents that it took.
+    /// Number of samples behind it.
     pub descents: usize,
 }
 
-/// Why a sequence ended.
+/// Reason why a sequence ends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum StopReason {
-    /// Two refinements in a row changed little enough.
+    /// Two consecutive refinements changed the result by less than the tolerance.
     Stable,
     /// The next refinement would take too long.
     Time {
         /// Its cells per axis.
         resolution: usize,
-        /// Seconds it would take, by the time per cell of the last one.
+        /// Estimated seconds, from the time per cell of the last refinement.
         expected_s: f64,
     },
     /// The next refinement would need too much memory.
     Memory {
         /// Its cells per axis.
         resolution: usize,
-        /// What does not fit.
+        /// Description of the shortage.
         message: String,
     },
     /// The next refinement would have too many cells.
@@ -113,15 +114,15 @@ pub enum StopReason {
     },
 }
 
-/// What refinement showed.
+/// Results of the refinements of all methods.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Convergence {
-    /// What else changes the answer.
+    /// Settings that change the result.
     pub settings: Settings,
     /// Unit of the Sums, like `D²·rad³`.
     pub unit: String,
-    /// One per method.
+    /// The sequence of each method.
     pub sequences: Vec<Sequence>,
 }
 

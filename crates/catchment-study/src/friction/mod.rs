@@ -40,16 +40,17 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// The ladder: coefficients of friction at which poses are followed, beside none.
+    /// Friction coefficients at which poses are followed, besides 0.
     pub frictions: Vec<f64>,
-    /// Random poses of the error box; 1000 of simple halves where nothing is said, fewer of halves with many facets.
+    /// Number of poses sampled from the error box. Default: 1000 for simple halves, fewer for halves with
+    /// many facets.
     pub motions: Option<usize>,
-    /// Their seed.
+    /// Seed of the samples.
     pub seed: u64,
 }
 
@@ -69,31 +70,32 @@ const SHARES: [f64; 4] = [0.99, 0.95, 0.9, 0.5];
 const FIRST: usize = 10;
 const AT_LEAST: usize = 20;
 
-/// What friction does to a design.
+/// Effect of friction on a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Friction {
-    /// The settings, everything filled in.
+    /// The settings, with all defaults filled in.
     pub settings: Settings,
-    /// Random poses of the error box, the same at every friction.
+    /// Number of poses sampled from the error box, the same at every friction coefficient.
     pub motions: usize,
-    /// The outcomes of the poses at every friction, none first.
+    /// Outcomes of the poses at every friction coefficient, 0 first.
     pub curve: Vec<Rung>,
-    /// Up to which friction what docks without it docks still, by the share of it: `p95` is 95 %.
+    /// Critical friction by share: up to it this share of the poses that dock without friction still docks;
+    /// `p95` is 95 %.
     #[serde(serialize_with = "by_share")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "report::kept_schema"))]
     pub kept: Vec<Kept>,
-    /// What sticks where the first poses are lost.
+    /// Contacts with stiction at the poses that are lost first.
     pub sticks_first: SticksFirst,
-    /// Poses that are lost at some friction and dock again at a larger one.
+    /// Poses that are lost at some friction coefficient and dock again at a larger one.
     pub come_back: usize,
 }
 
-/// The outcomes of the poses at one friction of the ladder.
+/// Outcomes of the poses at one friction coefficient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rung {
-    /// The coefficient of friction.
+    /// Friction coefficient.
     pub friction: f64,
     /// Poses that dock.
     pub aligned: Share,
@@ -101,59 +103,61 @@ pub struct Rung {
     pub jammed: Share,
     /// Poses that miss.
     pub missed: Share,
-    /// Poses of which it is not known.
+    /// Poses that are undecided.
     pub undecided: Share,
-    /// Poses that dock without friction and not at this.
+    /// Poses that dock without friction and not at this coefficient.
     pub lost: usize,
-    /// Poses that dock at this friction and not without.
+    /// Poses that dock at this coefficient and not without friction.
     pub gained: usize,
-    /// Poses that dock, and by Coulomb's law might have stuck on the way.
+    /// Poses that dock, although Coulomb's law also permits stiction during their motion.
     pub may_stick: usize,
-    /// Of the lost those that dock with a tenth less friction: halves that give a little may dock as well.
+    /// Lost poses that dock with 10 % less friction: slightly compliant halves may dock there as well.
     pub hardly_held: usize,
-    /// Poses that jam and wedge there: some force would hold them against a pull straight out as well.
+    /// Poses that jam and wedge: some contact forces would also resist a straight pull.
     pub wedged: usize,
-    /// Poses that dock by the static test along the frictionless way.
+    /// Poses that dock according to the static test along the frictionless motion.
     pub static_docks: usize,
-    /// Poses of which that test says the wrong thing.
+    /// Poses that the static test misclassifies.
     pub static_wrong: usize,
 }
 
-/// Up to which friction a share of what docks without it docks still.
+/// Critical friction: the coefficient up to which a share of the poses that dock without friction still
+/// docks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Kept {
-    /// The share, in (0, 1).
+    /// Critical friction coefficient.
     pub share: f64,
     /// Up to this friction.
     pub friction: f64,
-    /// Its 95 % interval, by order statistics; an end at the top of the ladder may lie anywhere beyond it.
+    /// Its 95 % interval, by order statistics; an end at the largest tried coefficient may lie anywhere
+    /// beyond it.
     pub ci95: [f64; 2],
-    /// It is the largest friction that was tried, and perhaps more.
+    /// Whether the value is the largest coefficient that was tried, and so only a lower bound.
     pub is_top: bool,
 }
 
-/// What sticks where the first poses are lost.
+/// Contacts with stiction at the poses that are lost first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SticksFirst {
-    /// How many poses were looked at: those that are lost first and stick.
+    /// Number of poses examined: those that are lost first and stick.
     pub poses: usize,
-    /// The pairs of features that touch there, the one that does so most often first.
+    /// The pairs of features in contact there, most frequent first.
     pub features: Vec<StickingPair>,
 }
 
-/// Two features that touch where poses stick.
+/// A pair of features in contact at poses that stick.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StickingPair {
-    /// In how many of the poses.
+    /// Number of the poses with this contact.
     pub count: usize,
-    /// Their share.
+    /// Share of the poses with this contact.
     pub share: f64,
-    /// The least of the frictions at which these poses are lost.
+    /// Smallest friction coefficient at which one of these poses is lost.
     pub critical_least: f64,
-    /// The median of them.
+    /// Median of the friction coefficients at which these poses are lost.
     pub critical_median: f64,
     /// The feature of the fixed half.
     pub fixed: NamedFeature,

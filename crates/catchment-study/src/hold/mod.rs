@@ -37,20 +37,20 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Coefficient of friction between the halves; 0 for none.
+    /// Friction coefficient between the halves; 0 for a frictionless contact.
     pub friction: f64,
-    /// Directions sideways that are tried where both x and y are free.
+    /// Number of lateral directions that are tried if both x and y are free.
     pub directions: usize,
-    /// How far above the face centre of the moving half forces sideways act, in D.
+    /// Height above the face centre of the moving half at which lateral forces act, in D.
     pub lever: f64,
-    /// What is no farther apart touches, in D: the play that is taken for used.
+    /// Largest gap that counts as contact, in D: play that is treated as taken up.
     pub play: f64,
-    /// The pose error that is let go of, to be held where it comes to rest; the mated pose where there is none.
+    /// Pose error at which the half is released; the rest that it reaches is tested. Null: the mated pose.
     pub pose: Option<PoseError>,
 }
 
@@ -66,33 +66,33 @@ pub const ANY: f64 = catchment_core::method::descent::MOST_LOAD;
 /// Fewest and most directions: the axes, and a tenth of a degree.
 const DIRECTIONS: [usize; 2] = [4, 3600];
 
-/// What a half withstands of a kind of load: shares of the preload, or of it times D.
+/// Holding force or torque for a load: as a share of the preload, or of the preload times D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Withstood {
-    /// Where it can move the way of the load alone, and up; null: any.
+    /// If the half can move only in the direction of the load and up; null: any load is resisted.
     pub guided: Option<f64>,
-    /// Where it can move in all free errors, and up; null: any.
+    /// If the half can move in all free errors and up; null: any load is resisted.
     pub free: Option<f64>,
 }
 
-/// What it withstands, without friction and with it.
+/// Resistance to a load without and with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Both {
-    /// Without friction; null where friction alone holds the preload.
+    /// Without friction; null if the preload is held only by friction.
     pub smooth: Option<Withstood>,
-    /// With the friction of the settings; null where that is 0.
+    /// With the friction of the settings; null if that is 0.
     pub rough: Option<Withstood>,
 }
 
-/// A force sideways.
+/// A lateral force.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sideways {
     /// Its direction from x towards y, in radians, in [0, 2π).
     pub direction_rad: f64,
-    /// What the half withstands of it.
+    /// Holding force in this direction.
     #[serde(flatten)]
     pub withstood: Both,
 }
@@ -101,16 +101,16 @@ pub struct Sideways {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Torque {
-    /// About which axis: roll x, pitch y, yaw z.
+    /// Axis of the torque: roll x, pitch y, yaw z.
     pub axis: Dof,
-    /// 1 or −1.
+    /// Sign of the torque: 1 or −1.
     pub sign: f64,
-    /// What the half withstands of it.
+    /// Holding torque.
     #[serde(flatten)]
     pub withstood: Both,
 }
 
-/// The weakest directions sideways; null where any force is withstood.
+/// The weakest lateral directions; null if any force is resisted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Weakest {
@@ -124,32 +124,32 @@ pub struct Weakest {
     pub rough_free: Option<Sideways>,
 }
 
-/// What a half withstands: forces as shares of the preload, torques of the preload times D.
+/// Holding forces as shares of the preload, holding torques as shares of the preload times D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hold {
     /// The settings.
     pub settings: Settings,
-    /// The preload, in N; null where it is not known. People read forces in N where it is.
+    /// The preload, in N; null if it is not known. If it is, texts state forces in N.
     pub preload_n: Option<f64>,
-    /// The pose error in which it rests.
+    /// Pose error of the rest.
     pub pose: PoseError,
-    /// Whether that counts as docked.
+    /// Outcome of the rest: whether it counts as docked.
     pub outcome: Outcome,
-    /// z of the centre of rotation there, in D.
+    /// z of the centre of rotation at the rest, in D.
     pub height_d: f64,
-    /// Points in which it touches.
+    /// Contact points.
     pub contacts: Vec<Touch>,
-    /// Forces sideways, by their directions; those along x or y alone where only one is free.
+    /// Lateral forces by direction; only those along x or y if only that error is free.
     pub sideways: Vec<Sideways>,
-    /// The weakest direction of every column.
+    /// The weakest direction for each combination.
     pub weakest: Weakest,
-    /// Torques about free axes, either way.
+    /// Torques about the free axes, with both signs.
     pub torques: Vec<Torque>,
-    /// The least of all forces sideways in free errors, with friction where the settings have some; 10⁶ where any is withstood,
-    /// null where none can act: x and y are locked.
+    /// Smallest holding force over all lateral forces in free errors, with friction if the settings have any;
+    /// 10⁶ if any force is resisted, null if no lateral force can act because x and y are locked.
     pub least_force: Option<f64>,
-    /// The same of torques; null where rotations are locked.
+    /// Smallest holding torque, likewise; null if rotations are locked.
     pub least_torque: Option<f64>,
 }
 

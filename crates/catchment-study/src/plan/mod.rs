@@ -39,22 +39,22 @@ pub use slices::{CELLS, Panel, panels};
 
 use crate::validate::LIMIT;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Where trials are made.
+    /// Pattern of the trial poses.
     pub pattern: Pattern,
-    /// Standard deviation of each error, in D and radians; 0 for those that are exact.
+    /// Standard deviation of each error of the robot, in D and radians; 0 for exact errors.
     pub accuracy: PoseError,
-    /// Only errors of positive sign: the halves are taken to be symmetric.
+    /// Whether only positive errors are tried, because the halves are assumed to be symmetric.
     pub symmetric: bool,
-    /// How often each pose is tried.
+    /// Number of trials per pose.
     pub repeats: usize,
-    /// Parts of the test, as one operator or one day each, that hold about as many trials.
+    /// Number of parts of the test, such as operators or days, with about equal numbers of trials.
     pub blocks: usize,
-    /// Whether trials come in random order, or as the pattern has them.
+    /// Whether the trials are in random order instead of the order of the pattern.
     pub shuffled: bool,
     /// Whether each line ends with its first predicted failure.
     pub stop_at_first_failure: bool,
@@ -90,7 +90,8 @@ pub const MOST_TRIALS: usize = 10_000;
 pub struct Plan {
     /// The settings.
     pub settings: Settings,
-    /// The point of the moving half at which the table for the robot gives x and y; the offsets of this report are those of the face centre.
+    /// The point of the moving half at which the table for the robot gives x and y; the offsets of this
+    /// report are those of the face centre.
     pub offsets_at: OffsetsAt,
     /// Counts of trials, poses and lines.
     #[serde(rename = "plan")]
@@ -115,15 +116,16 @@ pub struct Counts {
     pub lines: usize,
     /// Poses that are predicted to dock.
     pub docking: usize,
-    /// All other poses.
+    /// Number of all other poses.
     pub failing: usize,
-    /// Of all poses, those nearer to the border than the accuracy of the robot: they may dock or fail.
+    /// Poses closer to the border than the standard deviation of the robot: they may dock or fail.
     pub either: usize,
-    /// Of all poses, those that decide: two accuracies or more from the border.
+    /// Decisive poses: at least two standard deviations from the border.
     pub deciding: usize,
-    /// Poses whose outcome changes with the signs of their errors, and not for want of accuracy; 0 unless the plan has positive errors alone.
+    /// Poses whose outcome changes with the signs of their errors, beyond the uncertainty of the robot; 0
+    /// unless the plan has only positive errors.
     pub asymmetric: usize,
-    /// Directions along which nothing fails within the error box; 0 unless the pattern is a bracket.
+    /// Directions without a failure inside the error box; 0 unless the pattern is a bracket.
     pub open: usize,
 }
 
@@ -131,9 +133,9 @@ pub struct Counts {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Point {
-    /// The pose error, in D and radians.
+    /// Pose error, in D and radians.
     pub error: PoseError,
-    /// Its line, from 1; 0 for none.
+    /// Number of its line, from 1; 0 without a line.
     pub line: usize,
     /// Its prediction by exact motion.
     #[serde(flatten)]
@@ -147,11 +149,11 @@ pub struct Trial {
     /// Its number from 1, in the order in which trials are made.
     #[serde(rename = "trial")]
     pub number: usize,
-    /// Its part of the test, from 1.
+    /// Number of its part of the test, from 1.
     pub block: usize,
-    /// How often the pose was tried by then, this time included.
+    /// Number of trials of this pose so far, including this one.
     pub repeat: usize,
-    /// The number of its pose in `points`, from 0.
+    /// Index of its pose in `points`, from 0.
     pub point: usize,
 }
 

@@ -27,38 +27,38 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Pattern {
-    /// So many points along each error, evenly up to the largest.
+    /// A number of points along each error, evenly spaced up to the largest value.
     Grid {
-        /// How many, 2 or more; errors without stay 0.
+        /// Number of points, at least 2; errors without a number stay 0.
         steps: [Option<usize>; 5],
-        /// The largest; the half-ranges of the error box where nothing is said.
+        /// Largest value; by default the half-ranges of the error box.
         max: [Option<f64>; 5],
     },
     /// Multiples of a step.
     Lattice {
-        /// The step of each error; errors without stay 0.
+        /// Step of each error; errors without a step stay 0.
         step: [Option<f64>; 5],
-        /// The largest; the half-ranges of the error box where nothing is said.
+        /// Largest value; by default the half-ranges of the error box.
         max: [Option<f64>; 5],
-        /// Only points within one step of the predicted border, on either side.
+        /// Whether to keep only points within one step of the predicted border, on either side.
         along_border: bool,
     },
-    /// The face turns about a joint of the robot, which moves x and pitch together.
+    /// The face rotates about a joint of the robot, which couples x and pitch.
     Arc {
-        /// From the joint to the face centre, in D, above 0.
+        /// Distance from the joint to the face centre, in D, above 0.
         lever: f64,
         /// Angles of the joint.
         pitch: Vec<f64>,
-        /// Yaws at which that is done.
+        /// Yaw angles at which the arc is repeated.
         yaw: Vec<f64>,
     },
-    /// On both sides of the border, along lines from zero, and a few far from it.
+    /// Poses on both sides of the border, along lines from zero, and a few far from it.
     Bracket {
-        /// Trials in all.
+        /// Number of trials in total.
         trials: usize,
-        /// Lines; as many as there can be where nothing is said, with two points each.
+        /// Number of lines; by default as many as possible with two points each.
         lines: Option<usize>,
-        /// How near to the border it is worth trying; nothing finer than twice the accuracy.
+        /// Smallest useful distance to the border; never below two standard deviations of the robot.
         resolution: [Option<f64>; 5],
     },
 }

@@ -11,17 +11,18 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The prediction of a pose by exact motion. Distances are null where no border was found within the error box.
+/// Prediction of a pose by exact motion. Distances are null if the error box contains no border.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Prediction {
-    /// Its predicted outcome; null where that is undecided.
+    /// Predicted outcome; null if it is undecided.
     pub predicted: Option<Observed>,
-    /// Whether it is nearer to the border than the accuracy of the robot: it may dock or fail.
+    /// Whether the border is closer than the standard deviation of the robot, so that the pose may dock or
+    /// fail.
     pub either: bool,
-    /// Its distance to the border at most, in D, rotations times the rotation length.
+    /// Upper bound on the distance to the border, in D, with rotations times the characteristic length.
     pub distance_to_border: Option<f64>,
-    /// The same distance in units of the accuracy.
+    /// The same distance in standard deviations of the robot.
     pub margin_in_sigma: Option<f64>,
     /// The same distance as a share of the error box.
     pub margin_in_box: Option<f64>,

@@ -31,22 +31,23 @@ use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use serde::{Deserialize, Serialize};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct Settings {
-    /// Random poses; where nothing is said, three times as many as a run by descent draws: slopes need more of them.
+    /// Number of samples. Default: three times as many as a run with `descent` draws, because slopes need
+    /// more.
     pub poses: Option<usize>,
-    /// Their seed.
+    /// Seed of the samples.
     pub seed: u64,
-    /// h as a share of ρ and of the aspect ratio.
+    /// Step h as a share of ρ and of the aspect ratio.
     pub relative_step: f64,
-    /// h of the centre of rotation, in D.
+    /// Step h of the centre of rotation, in D.
     pub cor_step: f64,
     /// Values of ρ over which the spread is taken, in D.
     pub rotation_lengths: Vec<f64>,
-    /// How every pose is followed.
+    /// Settings of the exact motions.
     pub descent: descent::Settings,
 }
 
@@ -75,7 +76,7 @@ impl Default for Settings {
     }
 }
 
-/// What is changed.
+/// The parameter that is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -88,15 +89,15 @@ pub enum Parameter {
     AspectRatio,
 }
 
-/// How the Sum moves with one parameter.
+/// Derivative of the Sum with respect to a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Slope {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its value in the design.
     pub value: f64,
-    /// The values on both sides of it that were compared.
+    /// The two values on either side that were compared.
     pub between: [f64; 2],
     /// d(Sum)/d(parameter): Dᵃ·radᵇ per D, or per unit of a ratio.
     pub slope: f64,
@@ -104,9 +105,9 @@ pub struct Slope {
     pub standard_error: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Poses aligned only at the upper value.
+    /// Number of poses that dock only at the upper value.
     pub gained: usize,
-    /// Poses aligned only at the lower value.
+    /// Number of poses that dock only at the lower value.
     pub lost: usize,
 }
 
@@ -118,23 +119,23 @@ pub struct AtRho {
     pub rotation_length: f64,
     /// The Sum, Dᵃ·radᵇ.
     pub sum: f64,
-    /// Its 95 % interval. Those of different ρ are of the same poses: they move together.
+    /// Its 95 % interval. Intervals at different ρ use the same poses and so are correlated.
     pub ci95: [f64; 2],
 }
 
-/// What moves the Sum of a design.
+/// Sensitivity of the Sum to the parameters of a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
-    /// What else changes the answer.
+    /// Settings that change the result.
     pub settings: Settings,
     /// Unit of the Sum, like `D²·rad³`.
     pub unit: String,
-    /// The Sum of the design itself, by the same poses.
+    /// The Sum of the design itself, from the same poses.
     pub sum: f64,
     /// Its 95 % interval.
     pub sum_ci95: [f64; 2],
-    /// One per parameter that the design has.
+    /// The slope for each parameter of the design.
     pub slopes: Vec<Slope>,
     /// The Sum over ρ, ascending.
     pub over_rho: Vec<AtRho>,
@@ -142,11 +143,11 @@ pub struct Sensitivity {
     pub least: AtRho,
     /// The ρ of the largest Sum.
     pub greatest: AtRho,
-    /// Largest less smallest Sum.
+    /// Largest Sum minus smallest Sum.
     pub spread: f64,
-    /// Its 95 % interval, by the poses that fare differently at the two.
+    /// Its 95 % interval, from the poses whose outcomes differ between the two.
     pub spread_ci95: [f64; 2],
-    /// Undecided poses, over all runs; they count as rejected.
+    /// Undecided poses over all runs; they count as rejected.
     pub undecided: usize,
 }
 

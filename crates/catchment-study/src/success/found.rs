@@ -7,158 +7,160 @@ use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Moments;
 use serde::{Deserialize, Serialize};
 
-/// Whether robots dock.
+/// Docking success of robots.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Success {
-    /// The settings, everything filled in.
+    /// The settings, with all defaults filled in.
     pub settings: Settings,
-    /// The robot that docks most seldom.
+    /// The robot with the lowest success probability.
     pub success: Headline,
-    /// Each robot, in the order of their file; at least one.
+    /// Results for each robot, in the order of the file; at least one.
     pub robots: Vec<Docking>,
-    /// Exact motions in all, those of grids left out.
+    /// Number of exact motions, without those of grids.
     pub motions: usize,
 }
 
-/// The robot that docks most seldom.
+/// The robot with the lowest success probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Headline {
-    /// The name of the robot.
+    /// Name of the robot.
     pub robot: String,
     /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// By how much all its σ may be multiplied for the success that is required.
+    /// Largest factor on all its σ at which the required success is reached.
     pub tolerable: f64,
 }
 
-/// Whether a robot docks. Lengths in D, angles in radians.
+/// Docking success of a robot. Lengths in D, angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Docking {
-    /// The name of the robot.
+    /// Name of the robot.
     pub robot: String,
-    /// Which errors are expected of it.
+    /// Its expected errors.
     pub errors: Errors,
     /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Exact motions that this took.
+    /// Number of exact motions behind it.
     pub motions: usize,
-    /// How many of them could not be followed to their end: they count as failures.
+    /// Number of motions that could not be followed to their end: they count as failures.
     pub undecided: usize,
-    /// Plain motions of random errors whose interval would be as wide.
+    /// Effective sample size: number of plain samples whose interval would be as wide.
     pub plain_motions: f64,
-    /// The grid that decided where motions are followed most.
+    /// The grid that allocates the motions to strata.
     pub grid: GridCost,
-    /// Share of the errors that lie outside of the design's error box, in [0, 1].
+    /// Share of the errors outside the error box of the design, in [0, 1].
     pub outside_box: f64,
     /// The sample, by stratum.
     pub strata: Vec<Stratum>,
-    /// What fails.
+    /// The failures.
     pub failures: Failures,
-    /// What it helps to improve each error, the most helpful first.
+    /// Effect of an improvement of each error, largest effect first.
     pub improve: Vec<Improvement>,
-    /// How much larger σ may be.
+    /// Largest tolerable increase of σ.
     pub tolerable: Tolerable,
-    /// The probability with all σ multiplied by some factors, in ascending order.
+    /// Success probability with all σ multiplied by a factor, in ascending order of the factor.
     pub curve: Vec<AtFactor>,
-    /// Whether measured errors are normal; null of others, and of fewer than eight rows.
+    /// Test of measured errors for normality; null for other errors, and for fewer than eight rows.
     pub fit: Option<Fit>,
 }
 
-/// Which errors are expected.
+/// The expected errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
     /// `normal`, `uniform` or `measured`.
     pub kind: &'static str,
-    /// Rows of measured errors; null of others.
+    /// Number of rows of measured errors; null for other errors.
     pub rows: Option<usize>,
     /// Mean, standard deviations and correlations, in the order x, y, roll, pitch, yaw.
     #[serde(flatten)]
     pub moments: Moments,
 }
 
-/// The effort of a grid.
+/// Cost of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridCost {
-    /// Cells that were decided; 0 where there was no grid.
+    /// Number of cells that were decided; 0 without a grid.
     pub cells: usize,
-    /// Motions that this took, to their end or not.
+    /// Number of motions for it, complete or not.
     pub motions: usize,
 }
 
-/// What was seen of a stratum of errors.
+/// Results of a stratum of errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Stratum {
-    /// What it holds.
+    /// Errors that the stratum contains.
     pub name: String,
     /// Its share of all errors, in [0, 1].
     pub share: f64,
-    /// Motions in it.
+    /// Number of motions in the stratum.
     pub motions: usize,
-    /// How many of them docked.
+    /// Number of them that docked.
     pub docked: usize,
-    /// How many could not be followed to their end.
+    /// Number of them that could not be followed to their end.
     pub undecided: usize,
-    /// Share of its errors that dock, in [0, 1].
+    /// Estimated share of the stratum that docks, in [0, 1].
     pub probability: f64,
 }
 
-/// What fails.
+/// The failures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failures {
     /// Share of all errors, in [0, 1].
     pub share: f64,
-    /// Of the failures the share that jams.
+    /// Share of the failures that jams.
     pub jammed: f64,
-    /// The share that misses.
+    /// Share of the failures that misses.
     pub missed: f64,
-    /// The share that could not be followed to its end.
+    /// Share of the failures that could not be followed to their end.
     pub undecided: f64,
-    /// The error that is larger, in σ, where docking fails than where it does not, by more than any other; null where nothing fails.
+    /// Dominant error: the one whose mean distance in σ differs most between failures and successes; null
+    /// without failures.
     pub dominating: Option<Dof>,
-    /// Where failures lie, error by error.
+    /// Statistics of the failures for each error.
     pub along: Vec<AlongAxis>,
-    /// The likeliest failure that was found; null where nothing failed.
+    /// The nearest failure; null without a failure.
     pub first: Option<First>,
 }
 
-/// How large an error is where docking fails, and where it does not.
+/// Size of an error in failures and in successes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AlongAxis {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
-    /// Mean distance from its mean, in σ (half-widths of uniform errors), of what fails; null where nothing does.
+    /// Mean distance from its mean in failures, in σ (in half-widths for uniform errors); null without
+    /// failures.
     pub failed: Option<f64>,
-    /// The same of what docks.
+    /// Mean distance from its mean in successes.
     pub docked: Option<f64>,
 }
 
-/// The failing error that is nearest to the mean.
+/// The nearest failure: the failing error nearest to the mean.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct First {
     /// The pose error.
     pub error: PoseError,
-    /// The same in σ from the mean (half-widths of uniform errors).
+    /// The pose error in σ from the mean (in half-widths for uniform errors).
     pub sigmas: PoseError,
-    /// Mahalanobis' distance from the mean; of uniform errors the largest of their half-widths.
+    /// Mahalanobis distance from the mean; for uniform errors the largest component in half-widths.
     pub distance: f64,
     /// Its outcome.
     pub outcome: Outcome,
-    /// Where it ends.
+    /// Pose error at the end of its motion.
     pub end: PoseError,
-    /// What touches there, in the world frame of the fixed face centre.
+    /// Contacts at the end, in the world frame of the fixed face centre.
     pub touches: Vec<Touch>,
 }
 
@@ -173,65 +175,67 @@ pub(crate) struct Slope {
     pub ci95: [f64; 2],
 }
 
-/// What it helps to improve an error.
+/// Effect of an improvement of one error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Improvement {
-    /// Which.
+    /// The error.
     pub axis: Dof,
     /// Its standard deviation, in D or radians.
     pub sigma: f64,
-    /// dP/dσ (by the half-width of uniform errors), in 1/D or 1/rad; null where it is not known.
+    /// Derivative dP/dσ of the probability (by the half-width for uniform errors), in 1/D or 1/rad; null if
+    /// it is not known.
     pub slope: Option<f64>,
     /// Its 95 % interval.
     pub slope_ci95: Option<[f64; 2]>,
-    /// Probability of docking with this σ halved.
+    /// Success probability with this σ halved.
     pub halved: f64,
     /// Its 95 % interval.
     pub halved_ci95: [f64; 2],
-    /// What that gains.
+    /// Gain in probability from halving σ.
     pub gain: f64,
-    /// Its 95 % interval, as of two independent probabilities: common random errors make it narrower than stated, never wider.
+    /// Its 95 % interval, computed as for two independent probabilities; common random errors can only make
+    /// the true interval narrower.
     pub gain_ci95: [f64; 2],
 }
 
-/// How much larger σ may be.
+/// Largest tolerable increase of σ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Tolerable {
-    /// The success that is required.
+    /// Required success probability.
     pub required: f64,
-    /// All of them together.
+    /// Factor on all σ together.
     #[serde(flatten)]
     pub all: Factor,
-    /// Each alone, in the order of the errors.
+    /// Factor on each σ by itself, in the order of the errors.
     pub alone: Vec<Alone>,
 }
 
-/// How much larger one σ may be.
+/// Largest tolerable increase of a single σ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alone {
-    /// Which.
+    /// The error.
     pub axis: Dof,
-    /// The standard deviation then, in D or radians.
+    /// Its standard deviation with this factor, in D or radians.
     pub sigma: f64,
     /// The factor.
     #[serde(flatten)]
     pub factor: Factor,
 }
 
-/// By how much σ may be multiplied for the success that is required.
+/// Largest factor on σ with which the required success is reached.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Factor {
-    /// The factor: 0 if none suffices, the largest one tried if all do.
+    /// The factor: 0 if the success is never reached, the largest tried factor if it is always reached.
     pub factor: f64,
-    /// Where the ends of the interval of the probability cross what is required.
+    /// Factors at which the ends of the probability's interval cross the required success.
     pub ci95: [f64; 2],
-    /// Whether even the largest factor tried suffices.
+    /// Whether the success is reached even at the largest factor tried.
     pub is_more: bool,
-    /// Whether not even the smallest one does.
+    /// Whether the success is missed even at the smallest factor tried.
     pub is_less: bool,
 }
 
@@ -247,37 +251,38 @@ pub struct AtFactor {
     pub ci95: [f64; 2],
 }
 
-/// A normal fit to measured errors.
+/// Test of a normal fit to measured errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fit {
-    /// Whether it is rejected at 5 %.
+    /// Whether normality is rejected at the 5 % level.
     pub rejected: bool,
-    /// Chance of normal errors to look so little normal, in [0, 1], however many tests there are.
+    /// Combined p-value: probability that normal errors deviate this much from normality in any of the tests,
+    /// in [0, 1].
     pub p_value: f64,
-    /// Each error by itself.
+    /// Test of each error.
     pub axes: Vec<AxisFit>,
-    /// Mardia's kurtosis; null where errors follow from each other.
+    /// Mardia's kurtosis; null if errors are linearly dependent.
     pub kurtosis: Option<f64>,
     /// Its p-value.
     pub kurtosis_p_value: Option<f64>,
-    /// Errors of which neighbouring rows are alike: rows that are no independent measurements.
+    /// Errors with correlated neighbouring rows, so that rows are not independent measurements.
     pub trending: Vec<Dof>,
-    /// Probability of docking if errors were as the fit has them.
+    /// Success probability if the errors followed the fit.
     pub probability: Option<f64>,
     /// Its 95 % interval.
     pub ci95: Option<[f64; 2]>,
 }
 
-/// One error of a fit.
+/// Test of one error of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AxisFit {
-    /// Which.
+    /// The error.
     pub axis: Dof,
-    /// Anderson's and Darling's statistic, corrected for the number of rows.
+    /// Anderson–Darling statistic, corrected for the number of rows.
     pub anderson_darling: f64,
-    /// Chance of normal errors to have such a one or a larger, in [0, 1].
+    /// Probability of this or a larger statistic for normal errors, in [0, 1].
     pub p_value: f64,
     /// Correlation of neighbouring rows.
     pub lag: f64,

@@ -53,21 +53,22 @@ use std::f64::consts::SQRT_2;
 use strata::Strata;
 use tolerable::Curve;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Exact motions of the probability of each robot; gains take half as many each, factors a quarter. Where nothing is said 8000 of simple
-    /// halves, fewer of those with many facets.
+    /// Number of exact motions for the probability of each robot; gains use half as many each, factors a
+    /// quarter. Default: 8000 for simple halves, fewer for halves with many facets.
     pub motions: Option<usize>,
-    /// Seed of the random errors.
+    /// Seed of the sampled errors.
     pub seed: u64,
-    /// The success for which factors are sought, above 0 and below 1.
+    /// Success probability for which factors are sought, above 0 and below 1.
     pub required: f64,
-    /// Cells per axis of the grid that says where to look; 0 for none, by the number of errors where nothing is said.
+    /// Cells per axis of the grid that guides the sampling; 0 disables it. The default depends on the number
+    /// of errors.
     pub cells: Option<usize>,
-    /// Coefficient of friction between the halves. The grid that says where to look knows none.
+    /// Friction coefficient between the halves. The guiding grid is frictionless.
     pub friction: f64,
 }
 

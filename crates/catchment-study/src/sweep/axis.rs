@@ -12,7 +12,7 @@ use std::str::FromStr;
 pub struct Axis {
     /// Path of the key, such as `connector.aspect_ratio`.
     pub key: String,
-    /// As a person writes them.
+    /// Values as the user writes them.
     pub values: Vec<String>,
 }
 

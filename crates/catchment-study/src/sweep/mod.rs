@@ -38,13 +38,13 @@ pub const MOST: usize = 100_000;
 /// Bytes that the figures of a design take while all are held, without its outline.
 const FIGURES_BYTES: u64 = 2048;
 
-/// What a sweep does: which keys take which values, and what is computed of every design.
+/// Definition of a sweep: the keys with their values, and the run for every design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// The keys and their values; the last one changes fastest.
     pub axes: Vec<Axis>,
-    /// What is computed.
+    /// The run for every design.
     pub run: Run,
 }
 
@@ -56,43 +56,43 @@ pub struct Plan {
     drafts: Vec<Draft>,
 }
 
-/// How far one error may go alone, in D or rad.
+/// Single-axis limits of an error, in D or rad.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Along {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
-    /// Below zero; not negative.
+    /// Limit below zero; not negative.
     pub minus: f64,
-    /// Above zero; not negative.
+    /// Limit above zero; not negative.
     pub plus: f64,
 }
 
-/// A slice of the outcomes through zero: over the first two free errors, all others at zero.
+/// A slice of the outcomes through zero: over the first two free errors, with all others 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outline {
-    /// Its two errors.
+    /// The two errors of the slice.
     pub axes: [Dof; 2],
     /// Lower borders, D or rad.
     pub lo: [f64; 2],
     /// Upper borders, D or rad.
     pub hi: [f64; 2],
-    /// Cells along each.
+    /// Number of cells along each axis.
     pub cells: [usize; 2],
-    /// The other errors, and the centres of the cells that hold zero.
+    /// The other errors, with the centres of the cells that contain zero.
     pub at: Vec<(Dof, f64)>,
-    /// A digit per cell, the first axis fastest: 0 none, 1 aligned, 2 jammed, 3 missed, 4 undecided.
+    /// A digit per cell, the first axis fastest: 0 no outcome, 1 docked, 2 jammed, 3 missed, 4 undecided.
     pub outcomes: String,
 }
 
-/// What one design is worth.
+/// Figures of merit of a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Figures {
-    /// The measure of the accepted set, in `unit`: unbiased where random poses were drawn.
+    /// The Sum, in `unit`: unbiased if poses were sampled.
     pub sum: f64,
-    /// Its 95 % interval; null where none were.
+    /// Its 95 % interval; null without samples.
     pub sum_ci95: Option<[f64; 2]>,
     /// Unit of the Sum, like `D²·rad`.
     pub unit: String,
@@ -102,24 +102,24 @@ pub struct Figures {
     pub onaa_edge: Option<f64>,
     /// Edge of the largest cube around zero.
     pub centered_edge: Option<f64>,
-    /// How far each error may go alone.
+    /// Single-axis limits of each error.
     pub tolerances: Vec<Along>,
-    /// Probability of success, where errors to expect were given.
+    /// Success probability, if expected errors were given.
     pub success: Option<f64>,
-    /// Doubts, as sentences.
+    /// Warnings, as sentences.
     pub warnings: Vec<String>,
-    /// What is accepted near zero; null with fewer than two free errors.
+    /// Outcomes near zero; null with fewer than two free errors.
     pub outline: Option<Outline>,
 }
 
-/// What became of one design.
+/// Result for a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Found {
-    /// It was computed.
+    /// The figures of merit.
     Figures(Box<Figures>),
-    /// It cannot be, for this reason.
+    /// The design cannot be computed, for this reason.
     Refused(String),
 }
 
@@ -133,28 +133,28 @@ impl Found {
     }
 }
 
-/// One design of a sweep.
+/// A design of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trial {
     /// The values of the axes, as written.
     pub values: Vec<String>,
-    /// What became of it.
+    /// Result for the design.
     #[serde(flatten)]
     pub found: Found,
 }
 
-/// Everything that a sweep found.
+/// Result of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep {
-    /// What was asked for.
+    /// Definition of the sweep.
     pub settings: Settings,
-    /// Every combination, the last axis fastest.
+    /// Every combination of values, the last axis fastest.
     pub designs: Vec<Trial>,
-    /// Number of the design with the largest Sum, the first of equals.
+    /// Number of the design with the largest Sum, the first if several are equal.
     pub largest: Option<usize>,
-    /// Number of the design with the smallest Sum, the first of equals.
+    /// Number of the design with the smallest Sum, the first if several are equal.
     pub smallest: Option<usize>,
 }
 

@@ -47,31 +47,31 @@ pub struct Settings {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Round {
-    /// Trials along every free translation.
+    /// Number of trials along every free translation.
     pub resolution: usize,
-    /// Time step in s; null for a method that has none.
+    /// Time step in s; null for a method without a time step.
     pub timestep: Option<f64>,
-    /// All trials.
+    /// Number of trials.
     pub trials: usize,
-    /// Trials in the exact region that do not dock.
+    /// Number of trials in the exact region that do not dock.
     pub rejected_inside: usize,
-    /// Trials out of the exact region that dock.
+    /// Number of trials outside the exact region that dock.
     pub accepted_outside: usize,
-    /// Trials that still move when the time is up; they count as not docked.
+    /// Number of trials that still move when the time is up; they count as failures.
     pub undecided: usize,
     /// Share of the error box over which the trials contradict the exact region, in [0, 1].
     pub disagreeing: f64,
     /// Its 95 % confidence interval.
     pub disagreeing_ci95: [f64; 2],
-    /// The same as a measure, in `unit`.
+    /// The disagreement as a measure, in `unit`.
     pub measure: f64,
     /// Its 95 % confidence interval.
     pub measure_ci95: [f64; 2],
-    /// Measure of the offsets that dock by trials, in `unit`.
+    /// Measure of the offsets that dock in the trials, in `unit`.
     pub accepted: f64,
 }
 
-/// A trial of the last round. Its rotations are 0.
+/// A trial of the last round, with rotations 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trial {
@@ -85,21 +85,21 @@ pub struct Trial {
     pub inside: bool,
 }
 
-/// Trials beside the exact region.
+/// Comparison of trials with the exact region.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trials {
     /// Name of the method that decides the trials.
     pub method: &'static str,
-    /// Its settings. The time step is that of the first rounds.
+    /// Its settings, with the time step of the first rounds.
     pub settings: Value,
-    /// Seed of the places in the cells.
+    /// Seed of the positions within the cells.
     pub seed: u64,
     /// `D` or `D²`: the unit of all measures.
     pub unit: &'static str,
     /// Measure of the exact region, in `unit`.
     pub exact: f64,
-    /// One per resolution and time step, in this order.
+    /// Rounds by resolution and time step, in this order.
     pub rounds: Vec<Round>,
     /// The trials of the last round, in the order of the cells.
     pub trials: Vec<Trial>,

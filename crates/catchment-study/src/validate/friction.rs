@@ -22,33 +22,34 @@ use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use serde::Serialize;
 
-/// The coefficients of friction that explain the trials best.
+/// The friction coefficients that explain the trials best.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrictionInterval {
-    /// Whether some coefficient leaves no disagreement beyond the limit.
+    /// Whether a coefficient exists without disagreements beyond the limit.
     pub explains: bool,
-    /// The fewest disagreements beyond the limit that any coefficient leaves.
+    /// The smallest number of disagreements beyond the limit over all coefficients.
     pub fewest: usize,
-    /// The smallest coefficient that leaves so few.
+    /// The smallest coefficient with this number.
     pub low: f64,
-    /// The largest coefficient that leaves so few.
+    /// The largest coefficient with this number.
     pub high: f64,
-    /// Whether the interval continues beyond the largest coefficient that was tried.
+    /// Whether the interval continues beyond the largest tried coefficient.
     pub open: bool,
-    /// Whether some coefficient within the interval leaves more.
+    /// Whether a coefficient inside the interval has more disagreements.
     pub broken: bool,
-    /// Every coefficient that was tried, in ascending order.
+    /// Every tried coefficient, in ascending order.
     pub tried: Vec<FrictionTried>,
 }
 
-/// The disagreements that a coefficient of friction leaves.
+/// Disagreements at a friction coefficient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrictionTried {
     /// The coefficient.
     pub friction: f64,
-    /// Disagreements beyond the limit: at least so many where the coefficient is clearly worse than the best before it.
+    /// Number of disagreements beyond the limit; a lower bound if the coefficient is clearly worse than the
+    /// best before it.
     pub beyond: usize,
 }
 

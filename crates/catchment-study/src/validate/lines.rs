@@ -14,17 +14,17 @@ pub struct Line {
     /// Its number in the table, from 1.
     #[serde(rename = "line")]
     pub number: usize,
-    /// Trials that were made on it.
+    /// Number of trials on it.
     pub trials: usize,
-    /// The outermost pose error that docked, in D and radians; null where none did.
+    /// The outermost pose error that docked, in D and radians; null without a success.
     pub last_success: Option<PoseError>,
-    /// The innermost pose error that did not dock; null where all did.
+    /// The innermost pose error that failed to dock; null without a failure.
     pub first_failure: Option<PoseError>,
-    /// The outermost pose error that was predicted to dock; null where none was.
+    /// The outermost pose error with a predicted success; null without one.
     pub predicted_success: Option<PoseError>,
-    /// The innermost pose error that was predicted to fail; null where none was.
+    /// The innermost pose error with a predicted failure; null without one.
     pub predicted_failure: Option<PoseError>,
-    /// Whether every pose that docked lies nearer to zero than every one that did not.
+    /// Whether every success lies nearer to zero than every failure.
     pub in_order: bool,
 }
 

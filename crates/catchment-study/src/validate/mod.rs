@@ -41,18 +41,18 @@ use serde::{Deserialize, Serialize};
 pub use statistics::clopper_pearson;
 use statistics::{chance, tail};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Standard deviation of each error of the robot, in D and radians; 0 for those that are exact.
+    /// Standard deviation of each error of the robot, in D and radians; 0 for exact errors.
     pub accuracy: PoseError,
-    /// k: disagreements nearer to the border than so many accuracies do not count.
+    /// k: disagreements within k standard deviations of the border do not count.
     pub limit: f64,
     /// Coefficient of friction of the prediction.
     pub friction: f64,
-    /// Whether to look for the friction that explains the trials.
+    /// Whether to estimate the friction that explains the trials.
     pub estimate_friction: bool,
     /// Seed of the search for the border.
     pub seed: u64,
@@ -72,16 +72,16 @@ pub const FEWEST: usize = 5;
 /// Chance that is allowed of a wrong verdict.
 pub const LEVEL: f64 = 0.05;
 
-/// The verdict on a prediction.
+/// Verdict on a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The trials do not contradict it.
+    /// The trials do not contradict the prediction.
     Consistent,
-    /// The trials contradict it.
+    /// The trials contradict the prediction.
     Inconsistent,
-    /// The trials do not decide.
+    /// The trials are not sufficient for a verdict.
     Undecided,
 }
 
@@ -96,24 +96,25 @@ impl Verdict {
     }
 }
 
-/// A trial beside the prediction of its pose.
+/// A trial with the prediction of its pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Judged {
     /// The number of the trial.
     pub trial: u64,
-    /// The observed outcome; null where the trial was not made.
+    /// The observed outcome; null if the trial was not made.
     pub observed: Option<Observed>,
-    /// Whether the outcome contradicts the prediction. Never where the prediction is undecided, the trial was not made, or the pose lies within one
-    /// accuracy of the border: there the error of the robot decides.
+    /// Whether the outcome contradicts the prediction. False if the prediction is undecided, the trial was
+    /// not made, or the pose lies within one standard deviation of the border: there the error of the robot
+    /// decides.
     pub disagrees: bool,
     /// Its pose and the prediction.
     #[serde(flatten)]
     pub point: Point,
-    /// Whether it docked, turned by a symmetry of the design or not; none where it was not made.
+    /// Whether the half docked, rotated by a symmetry of the design or not; null if the trial was not made.
     #[serde(skip)]
     pub docked: Option<bool>,
-    /// The prediction that the table has.
+    /// The prediction in the table.
     #[serde(skip)]
     planned: Option<Observed>,
 }
@@ -143,23 +144,23 @@ impl Judged {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Count {
-    /// The predicted outcome; null where that was undecided.
+    /// The predicted outcome; null if it was undecided.
     pub predicted: Option<Observed>,
     /// The observed outcome.
     pub observed: Observed,
-    /// Whether the poses are nearer to the border than the accuracy.
+    /// Whether the poses are closer to the border than one standard deviation of the robot.
     pub either: bool,
-    /// How many trials.
+    /// Number of trials.
     pub trials: usize,
 }
 
-/// How many trials agree with the prediction.
+/// Agreement of the trials with the prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Agreement {
-    /// Trials that were made at least one accuracy from the border.
+    /// Number of trials at least one standard deviation from the border.
     pub trials: usize,
-    /// Of these, those that agree with the prediction.
+    /// Number of these that agree with the prediction.
     pub agreed: usize,
     /// Their share, in [0, 1]; null without trials.
     pub share: Option<f64>,
@@ -171,31 +172,32 @@ pub struct Agreement {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OneSided {
-    /// Trials that disagree.
+    /// Number of trials that disagree.
     pub disagreeing: usize,
-    /// All trials on that side, one accuracy from the border or more.
+    /// Number of trials on that side, at least one standard deviation from the border.
     pub trials: usize,
-    /// The errors of the robot alone make at most so many disagree on average.
+    /// Largest expected number of disagreements that the errors of the robot alone cause.
     pub expected: f64,
-    /// The chance that they make so many or more disagree: one-sided, in [0, 1].
+    /// Probability that these errors cause this many or more disagreements: one-sided, in [0, 1].
     pub p_value: f64,
 }
 
-/// What a verdict rests on.
+/// Evidence for a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Evidence {
-    /// Trials beyond the limit at poses that are predicted to dock.
+    /// Number of trials beyond the limit at poses with a predicted success.
     pub inside: usize,
-    /// Trials beyond the limit at all other poses.
+    /// Number of trials beyond the limit at all other poses.
     pub outside: usize,
-    /// Of both, those that disagree with the prediction.
+    /// Number of both that disagree with the prediction.
     pub beyond: usize,
-    /// The chance that the errors of the robot make so many trials disagree, ones so far from the border, or so many on one side; 1 where none disagrees.
+    /// Probability that the errors of the robot cause this many disagreements, disagreements this far from
+    /// the border, or this many on one side; 1 without disagreements.
     pub p_value: f64,
 }
 
-/// A prediction beside the trials of a robot.
+/// Comparison of a prediction with the trials of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Validation {
@@ -207,32 +209,34 @@ pub struct Validation {
     pub verdict: Verdict,
     /// The verdict as a number for requirements: 1 consistent, 0 undecided, −1 inconsistent.
     pub consistent: i8,
-    /// What the verdict rests on.
+    /// Evidence for the verdict.
     pub evidence: Evidence,
     /// Trials by their predicted and observed outcome.
     pub counts: Vec<Count>,
-    /// How many trials agree with the prediction, without those that are nearer to the border than the accuracy.
+    /// Agreement of the trials with the prediction, without trials closer to the border than one standard
+    /// deviation of the robot.
     pub agreement: Agreement,
-    /// Failures where docking was predicted.
+    /// Failures at poses with a predicted success.
     pub early: OneSided,
-    /// Trials that docked where failure was predicted.
+    /// Successes at poses with a predicted failure.
     pub late: OneSided,
     /// Every trial that disagrees with the prediction, the farthest from the border first.
     pub disagreements: Vec<Judged>,
-    /// Where the border was observed.
+    /// The observed border, line by line.
     pub lines: Vec<Line>,
     /// The coefficients of friction that explain the trials; null unless the settings estimate them.
     pub friction: Option<FrictionInterval>,
     /// Every trial in the order of the table.
     pub trials: Vec<Judged>,
-    /// Trials that were not made.
+    /// Number of trials that were not made.
     pub blank: usize,
-    /// Exact motions that were followed.
+    /// Number of exact motions.
     pub motions: usize,
-    /// Trials of which the table predicts another outcome: it is for another design, or another friction.
+    /// Number of trials for which the table states another prediction: it belongs to another design, or
+    /// another friction.
     #[serde(skip)]
     pub otherwise_planned: usize,
-    /// Trials that docked turned where docking straight was predicted, or the other way about.
+    /// Number of trials that docked rotated although docking unrotated was predicted, or the reverse.
     #[serde(skip)]
     pub turned: usize,
 }
