@@ -17,47 +17,48 @@ use std::borrow::Cow;
 /// What a check has to say, with its head.
 pub type CheckReport = Envelope<CheckBody>;
 
-/// What a check has to say.
+/// Result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CheckBody {
-    /// The file.
+    /// The design file.
     pub file: String,
-    /// Whether nothing is wrong with it.
+    /// Whether the file has no errors.
     pub ok: bool,
-    /// The design, resolved: lengths in D, angles in radians; only where nothing is wrong.
+    /// The design, resolved: lengths in D, angles in radians; null if the file has errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub design: Option<Design>,
-    /// Where the face centre and the centre of rotation are in the coordinates in which each half is drawn; only of own halves in which
-    /// nothing is wrong.
+    /// Positions of the face centre and the centre of rotation in the coordinates in which each half is
+    /// drawn; only for own halves without errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drawing: Option<DrawingReport>,
-    /// Whether both halves have the same shape; only where nothing is wrong.
+    /// Whether both halves have the same shape; null if the file has errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ungendered: Option<bool>,
-    /// What is wrong, in the order of its places.
+    /// The errors, in the order of their places.
     pub problems: Vec<ProblemReport>,
-    /// How many more problems there are.
+    /// Number of further errors that are not listed.
     pub omitted: usize,
 }
 
-/// Where what the answers are about is in the coordinates of the files.
+/// Reference points of the results in the coordinates of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrawingReport {
-    /// In those of the fixed half.
+    /// In the coordinates of the fixed half.
     pub fixed: DrawnReport,
-    /// In those of the moving half.
+    /// In the coordinates of the moving half.
     pub moving: DrawnReport,
-    /// How far apart the halves are drawn along the approach, in D, where they were moved to where they first touch.
+    /// Distance along the approach between the halves as drawn, in D, if they were moved to first contact.
     pub apart: Option<f64>,
-    /// The error at which they came to rest that were let go as drawn, in D and radians, where that is taken as mated.
+    /// Pose error of the rest that the halves reach when released as drawn, in D and radians, if it serves as
+    /// the mated pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settled: Option<PoseError>,
 }
 
-/// Places in the coordinates in which a half is drawn: those of its mesh file; of parts, the unit of the design; of
-/// pieces and of triangles in memory, D.
+/// Reference points in the coordinates in which a half is drawn: those of its mesh file; for parts, the unit
+/// of the design; for pieces and for triangles in memory, D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrawnReport {
@@ -65,9 +66,9 @@ pub struct DrawnReport {
     pub face_center: [f64; 3],
     /// The centre of rotation, in the mated pose.
     pub center_of_rotation: [f64; 3],
-    /// Unit vector along which errors in x are counted.
+    /// Unit vector of positive errors in x.
     pub x: [f64; 3],
-    /// Unit vector along which errors in y are counted.
+    /// Unit vector of positive errors in y.
     pub y: [f64; 3],
 }
 
@@ -96,15 +97,15 @@ impl DrawingReport {
     }
 }
 
-/// Something wrong with a design file.
+/// An error in a design file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProblemReport {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What to do about it.
+    /// Advice for its correction.
     pub help: Option<String>,
-    /// Where, if it has a place in the file.
+    /// Its place, if it has a place in the file.
     pub place: Option<Place>,
 }
 
@@ -116,7 +117,7 @@ pub struct Place {
     pub line: usize,
     /// Its column in characters, from 1.
     pub column: usize,
-    /// From its first byte to behind its last.
+    /// Byte range: first byte, and the byte after the last.
     pub bytes: [usize; 2],
 }
 

@@ -9,20 +9,20 @@ use catchment_core::merit::comparison::{Comparison, Distances};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// One of the two.
+/// One side of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Compared {
-    /// Where it comes from: the path that was given.
+    /// Path that was given for it.
     pub source: String,
-    /// Everything about it, over its own grid.
+    /// Its report, over its own grid.
     pub report: Report,
 }
 
 /// What a comparison has to say, with its head.
 pub type ComparisonReport = Envelope<ComparisonBody>;
 
-/// What a comparison has to say.
+/// Result of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComparisonBody {
@@ -30,9 +30,9 @@ pub struct ComparisonBody {
     pub first: Compared,
     /// The second.
     pub second: Compared,
-    /// The axes of the grid on which they are compared; empty for listed poses.
+    /// The axes of the common grid; empty for listed poses.
     pub axes: Vec<Axis>,
-    /// How they compare.
+    /// The comparison.
     pub comparison: Comparison,
 }
 

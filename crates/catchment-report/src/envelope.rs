@@ -107,13 +107,13 @@ struct Written<'a, T> {
     schema: u32,
     /// Version of the program that wrote it.
     catchment: &'a Version,
-    /// Which report this is.
+    /// Kind of the report.
     kind: &'static str,
     #[serde(flatten)]
     body: &'a T,
     /// Warnings about the numbers: a code and a sentence each.
     warnings: &'a [WarningReport],
-    /// Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    /// Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: &'a Option<Timing>,
 }
 

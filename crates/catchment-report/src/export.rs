@@ -12,7 +12,7 @@ use std::borrow::Cow;
 /// What was exported, with its head.
 pub type ExportReport = Envelope<ExportBody>;
 
-/// What was exported.
+/// Result of an export.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExportBody {
@@ -20,13 +20,13 @@ pub struct ExportBody {
     pub design: Design,
     /// The settings of the drop test.
     pub settings: serde_json::Value,
-    /// The pose error that it starts from, D and rad.
+    /// The pose error at the start, in D and rad.
     pub start: PoseError,
     /// The MJCF file.
     pub mjcf: String,
     /// The SDF file.
     pub sdf: String,
-    /// How many meshes lie beside it.
+    /// Number of mesh files beside it.
     pub meshes: usize,
 }
 

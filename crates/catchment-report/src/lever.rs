@@ -8,7 +8,7 @@ use catchment_core::method::kinematic::{Body, Lever, Settings, Start};
 use catchment_core::pose::PoseError;
 use serde::Serialize;
 
-/// A first contact.
+/// A first contact, as a method of planar faces computes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstContact {
@@ -20,23 +20,23 @@ pub struct FirstContact {
     pub start: PoseError,
     /// Its outcome by this method.
     pub outcome: Outcome,
-    /// How the stepping of an X-Face halts; null for other faces, which are not stepped.
+    /// End of the stepping of an X-Face; null for other faces, which are not stepped.
     pub halt: Option<Halt>,
-    /// The contact; null where nothing touches, or corner meets corner.
+    /// The contact; null if nothing touches, or if a corner meets a corner.
     pub contact: Option<CornerContact>,
 }
 
-/// A contact of a corner with an edge. Places are x and z in the world frame.
+/// A contact of a corner with an edge. Positions are x and z in the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CornerContact {
-    /// Whose corner it is.
+    /// The body of the corner.
     pub corner_of: Body,
     /// Rotation point of the moving half, `P_M`, in D.
     pub moving_pivot_d: [f64; 2],
     /// Rotation point of the base half, `P_B`, in D.
     pub base_pivot_d: [f64; 2],
-    /// Where they touch, `P_C`, in D.
+    /// Contact point, `P_C`, in D.
     pub contact_d: [f64; 2],
     /// Unit normal of the edge, out of its body.
     pub normal: [f64; 2],
@@ -54,7 +54,7 @@ pub struct CornerContact {
     pub theta_1: f64,
     /// θ₂ from the normal to the lever, in radians.
     pub theta_2: f64,
-    /// θ₂ where the halves are aligned, in radians.
+    /// θ₂ of the aligned halves, in radians.
     pub theta_2_aligned: f64,
 }
 

@@ -136,25 +136,26 @@ fn record(cells: &[String]) -> Result<String, csv::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The answer for programs; lengths in D, angles in radians.
+/// The result for programs; lengths in D, angles in radians.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Answer<'a> {
     /// The design, resolved: lengths in D, angles in radians.
     design: &'a Design,
-    /// Name of the method that decided.
+    /// Name of the method that decided the outcomes.
     method: &'static str,
-    /// Where the offsets of errors are measured, if not at the face centre.
+    /// The point at which the offsets of errors are measured; absent for the face centre.
     #[serde(skip_serializing_if = "Option::is_none")]
     offsets_at: Option<OffsetsAt>,
-    /// The method's settings, as they were used.
+    /// The settings of the method.
     settings: &'a serde_json::Value,
-    /// How many poses met each outcome.
+    /// Number of poses with each outcome.
     counts: BTreeMap<&'static str, usize>,
-    /// How many poses were not finished, where it was stopped before all of them were.
+    /// Number of poses that were not finished, if the run was stopped early.
     #[serde(skip_serializing_if = "Option::is_none")]
     missing: Option<usize>,
-    /// Every pose in the order of the table: its error, outcome, where it ends, how high, what touches there.
+    /// Every pose in the order of the table: its error, outcome, final pose and height, and contacts at the
+    /// end.
     poses: Vec<Row>,
 }
 
@@ -162,28 +163,28 @@ impl Body for Answer<'_> {
     const KIND: &'static str = "outcome";
 }
 
-/// One pose.
+/// A pose of the table.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Row {
-    /// Its number in the table, from 0, where others are missing.
+    /// Its number in the table, from 0; present if other poses are missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     number: Option<usize>,
     error: PoseError,
     outcome: Outcome,
-    /// Why it did not dock.
+    /// Reason for the failure to dock.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<Reason>,
     #[serde(rename = "final")]
     last: PoseError,
-    /// z of the COR in that state, in D; null where the moving half missed.
+    /// z of the COR at the end, in D; null if the moving half missed.
     final_height_d: Option<f64>,
-    /// What touches there.
+    /// Contacts at the end.
     contacts: Vec<EndContact>,
-    /// Whether it slipped by a place where Coulomb's law would let it stick as well; with friction.
+    /// With friction: whether it passed a place at which Coulomb's law also permits stiction.
     #[serde(skip_serializing_if = "Option::is_none")]
     may_stick: Option<bool>,
-    /// Columns that were carried through.
+    /// Columns that were copied from the input.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     carried: BTreeMap<String, String>,
 }

@@ -14,12 +14,12 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SlicesFound {
-    /// What else changes the answer.
+    /// Settings that change the result.
     #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
     pub settings: Settings,
-    /// One per pair of errors.
+    /// A slice for each pair of errors.
     pub slices: Vec<SliceReport>,
-    /// Estimated edge of the largest cube of the whole, in [0, 1]; null where slices it needs are missing.
+    /// Estimated edge of the largest full-dimensional cube, in [0, 1]; null if a required slice is missing.
     pub onaa_estimate: Option<Estimate>,
 }
 
@@ -29,13 +29,13 @@ pub struct SlicesFound {
 pub struct SliceReport {
     /// The two errors that vary.
     pub axes: Vec<Axis>,
-    /// Name of the method that decided.
+    /// Name of the method that decided the outcomes.
     pub method: String,
     /// The accepted set.
     pub acceptance: AcceptanceReport,
     /// The largest axis-oriented square.
     pub onaa: OnaaReport,
-    /// Doubts.
+    /// Warnings.
     pub warnings: Vec<WarningReport>,
 }
 

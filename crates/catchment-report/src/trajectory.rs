@@ -24,7 +24,7 @@ const STILL: f64 = 1e-9;
 /// A path, with its head.
 pub type TraceReport = Envelope<TraceBody>;
 
-/// A path.
+/// A trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TraceBody {
@@ -34,31 +34,31 @@ pub struct TraceBody {
     pub method: &'static str,
     /// Its settings.
     pub settings: Value,
-    /// The pose error that the path starts from.
+    /// The pose error at the start.
     pub start: PoseError,
-    /// How it ends.
+    /// Outcome of the motion.
     pub outcome: Outcome,
-    /// Why it does not dock; null where that is not known.
+    /// Reason for the failure to dock; null if it is not known.
     pub reason: Option<Reason>,
     /// The last pose error; null if the halves never meet.
     pub end: Option<PoseError>,
-    /// From first contact on; of a drop test from where it was let go.
+    /// Waypoints from first contact on; for a drop test from the release on.
     pub waypoints: Vec<WaypointReport>,
 }
 
-/// One moment of a motion.
+/// A waypoint of a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WaypointReport {
-    /// Path length since the first of them, in the ρ-metric, in D.
+    /// Path length since the first waypoint, in the ρ-metric, in D.
     pub travelled_d: f64,
-    /// Since it was let go, in s; null of quasi-static motions, which take no time.
+    /// Time since release, in s; null for quasi-static motions, which have no time.
     pub time_s: Option<f64>,
     /// The pose error.
     pub error: PoseError,
     /// z of the COR in the world frame, in D.
     pub height_d: f64,
-    /// Where the halves touch.
+    /// Contacts.
     pub touches: Vec<Touch>,
 }
 

@@ -10,7 +10,7 @@ use std::fmt;
 /// Most bytes of a version.
 const MOST: usize = 64;
 
-/// A version: no other text can be one, so that a report from elsewhere brings none.
+/// A version in the format of this program; reports cannot carry any other text in its place.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Version(String);

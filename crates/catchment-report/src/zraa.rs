@@ -11,8 +11,8 @@ use serde::Serialize;
 /// The zero-rotation area of acceptance of a design.
 pub type ZraaBody = OfDesign<AcceptedOffsets>;
 
-/// Offsets that are corrected without rotation, in D. Bounds of a circle are those of the round design that a polygon approximates, null where nothing is
-/// round.
+/// Offsets that contact corrects without rotation, in D. The bounds of a circle are those of the round design
+/// that a polygon approximates; null without round features.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
@@ -25,13 +25,13 @@ pub enum AcceptedOffsets {
         from_d: f64,
         /// Upper end.
         to_d: f64,
-        /// From one to the other.
+        /// Length of the interval.
         length_d: f64,
         /// Bounds of the length for the circle.
         circle_length_d: Option<[f64; 2]>,
-        /// The ONAA, counted in D: of one translation the length itself.
+        /// The ONAA in D: for a single translation the length itself.
         onaa_d: f64,
-        /// Nilsson's bounds; null where the halves do not meet along one profile.
+        /// Nilsson's bounds; null if the halves do not meet along a single profile.
         nilsson: Option<NilssonReport>,
     },
     /// Both translations.
@@ -40,11 +40,11 @@ pub enum AcceptedOffsets {
         area_d2: f64,
         /// Bounds of the area for the circle.
         circle_area_d2: Option<[f64; 2]>,
-        /// The ONAA, counted in D: edge of the largest axis-parallel square inside.
+        /// The ONAA in D: edge of the largest axis-parallel square inside.
         onaa_d: f64,
-        /// Its middle.
+        /// Centre of that square.
         onaa_center_d: [f64; 2],
-        /// Edge of the largest one around zero.
+        /// Edge of the largest square around zero.
         onaa_centered_d: f64,
         /// Bounds of the edge for the circle.
         circle_onaa_d: Option<[f64; 2]>,
@@ -53,29 +53,30 @@ pub enum AcceptedOffsets {
     },
 }
 
-/// What one profile corrects to both sides, beside what any of its kind can.
+/// Offsets that a profile corrects to both sides, compared with the bound for its kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NilssonReport {
-    /// Whether both halves are alike.
+    /// Whether both halves have the same profile.
     pub ungendered: bool,
     /// Width of the profile.
     pub width_d: f64,
-    /// The most that any profile of this kind and width corrects to both sides.
+    /// Largest offset that any profile of this kind and width corrects to both sides.
     pub bound_d: f64,
-    /// What this one does.
+    /// Offset that this profile corrects to both sides.
     pub both_d: f64,
-    /// What limits offsets to −x; null where nothing is corrected.
+    /// Limit of offsets towards −x; null if nothing is corrected.
     pub from: Option<CatchReport>,
-    /// What limits offsets to +x; null where nothing is corrected.
+    /// Limit of offsets towards +x; null if nothing is corrected.
     pub to: Option<CatchReport>,
 }
 
-/// The moving half's minimum slides home until it stands over the fixed half's maximum.
+/// A limit: the offset at which the moving half's minimum stands over the fixed half's maximum; below it the
+/// minimum slides into the seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CatchReport {
-    /// The offset where it does.
+    /// The offset at the limit.
     pub offset_d: f64,
     /// x of the minimum, mated.
     pub minimum_d: f64,

@@ -27,7 +27,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::ops::{Deref, DerefMut};
 
-/// A result beside the design that it is about. Its fields stand beside `design` in JSON.
+/// A result with its design. In JSON the fields of the result are next to `design`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OfDesign<T> {

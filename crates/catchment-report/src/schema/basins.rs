@@ -10,16 +10,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BasinsReport {
-    /// Basins shallower than `tolerance.depth` were merged, and why at that depth.
+    /// Depth below which basins were merged, and the reason for it.
     pub tolerance: Choice,
     /// Minima before merging.
     pub minima: usize,
     /// Basins after merging.
     pub merged: usize,
-    /// The basins after merging that hold the most cells, the largest first, at most [`LISTED`].
+    /// The basins after merging with the most cells, largest first, at most [`LISTED`].
     pub largest: Vec<BasinReport>,
-    /// What every tolerance accepts: each step holds for tolerances above its own, up to the next one's. Steps that
-    /// change the accepted set by less than [`SMALLEST_STEP`] of the error box are left out.
+    /// The accepted set for every tolerance: each step holds for tolerances above its own, up to that of the
+    /// next step. Steps that change the accepted set by less than [`SMALLEST_STEP`] of the error box are left
+    /// out.
     pub staircase: Vec<StepReport>,
 }
 
@@ -32,16 +33,16 @@ pub const SMALLEST_STEP: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BasinReport {
-    /// What becomes of its poses.
+    /// Outcome of its poses.
     pub outcome: Outcome,
     /// The pose error of its lowest cell.
     pub minimum: PoseError,
-    /// Height there; null where nothing touches.
+    /// Height of its lowest cell; null without contact.
     pub height: Option<f64>,
-    /// How far the water must rise to reach a lower minimum; null if there is none.
+    /// Height that the water must rise to reach a lower minimum; null if no minimum is lower.
     pub depth: Option<f64>,
-    /// How far the water must rise to run over into any other basin; null where nothing touches, or for the only
-    /// basin.
+    /// Height that the water must rise to overflow into any other basin; null without contact, or for a
+    /// single basin.
     pub escape: Option<f64>,
     /// Cells that drain to it.
     pub cells: usize,
@@ -49,11 +50,11 @@ pub struct BasinReport {
     pub fraction: f64,
 }
 
-/// A step of the accepted share over the tolerance.
+/// A step of the accepted share as a function of the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StepReport {
-    /// It holds for tolerances above this.
+    /// The step holds for tolerances above this.
     pub above: f64,
     /// Accepted cells.
     pub cells: usize,

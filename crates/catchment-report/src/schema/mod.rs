@@ -22,15 +22,15 @@ use serde::{Deserialize, Serialize};
 /// Everything one run has to say, with its head.
 pub type Report = Envelope<RunBody>;
 
-/// What one run has to say.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
-    /// Name of the method that decided.
+    /// Name of the method that decided the outcomes.
     pub method: String,
-    /// The method's settings: what else changes the answer.
+    /// The settings of the method.
     pub settings: serde_json::Value,
     /// The axes of the error grid, the first one fastest; empty for listed poses.
     pub axes: Vec<Axis>,
@@ -40,48 +40,49 @@ pub struct RunBody {
     pub onaa: Option<OnaaReport>,
     /// The largest cube around zero; null for listed poses.
     pub centered: Option<CenteredReport>,
-    /// How far each error may go alone; empty for listed poses.
+    /// Single-axis limits of each error; empty for listed poses.
     pub tolerances: Vec<ToleranceReport>,
-    /// The same with roll and pitch locked, where all five errors are free and motions were followed; null otherwise, and in reports of versions that did not
-    /// ask.
+    /// Figures of merit with roll and pitch locked, if all five errors are free and motions were followed;
+    /// null if not, and in reports of older versions.
     #[serde(default)]
     pub upright: Option<UprightReport>,
-    /// Success probability for the errors asked about; null if none were.
+    /// Success probability for the given errors; null if no errors were given.
     pub success: Option<SuccessReport>,
-    /// The basins behind the outcomes; null for methods that know none.
+    /// The basins behind the outcomes; null for methods without basins.
     pub basins: Option<BasinsReport>,
-    /// The watersheds behind the outcomes, before merging and after; null for methods that flood nothing, and in reports of versions
-    /// that did not count them.
+    /// The watersheds behind the outcomes, before and after merging; null for methods without flooding, and
+    /// in reports of older versions.
     #[serde(default)]
     pub watersheds: Option<WatershedsReport>,
     /// The polytopes behind the outcomes; null for all methods but `partition`.
     pub partition: Option<PartitionReport>,
-    /// What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
+    /// Certified shares of the error box and certified retention; null for all methods but `certified`, and
+    /// in reports of older versions.
     #[serde(default)]
     pub certificate: Option<Certificate>,
-    /// How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did
-    /// not know it.
+    /// Number of cells with an inherited label, and how often it was wrong; null for all methods but
+    /// `confluence`, and in reports of older versions.
     #[serde(default)]
     pub joined: Option<Joined>,
-    /// Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
+    /// Rests outside the seat; null if not requested, and in reports of older versions.
     #[serde(default)]
     pub jams: Option<Jams>,
-    /// The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
+    /// The tolerance window; null if not requested, if there is no window, and in reports of older versions.
     #[serde(default)]
     pub window: Option<WindowSection>,
-    /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
+    /// The seat, and the residual misalignment of accepted poses; null in reports of older versions.
     #[serde(default)]
     pub seat: Option<Seating>,
 }
 
-/// A window in the report of a run: its half-widths by name beside everything else that was found.
+/// A window in the report of a run: its half-widths by name, and its details.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowSection {
-    /// ± so much of every free error, by its name, in D and radians.
+    /// Half-width of every free error, by its name, in D and radians.
     #[serde(flatten)]
     pub half_widths: HalfWidths,
-    /// The settings of the search and everything else that it found.
+    /// The settings of the search and all its other results.
     #[serde(flatten)]
     pub found: WindowDetails,
 }
@@ -100,7 +101,7 @@ impl Body for RunBody {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Axis {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
     /// `D` or `rad`.
     pub unit: Unit,
@@ -130,31 +131,32 @@ impl Unit {
     }
 }
 
-/// The accepted set in numbers.
+/// Measures of the accepted set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AcceptanceReport {
-    /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, what certainly docks where there is a `certificate`, else
-    /// `sum_grid`.
+    /// The Sum, in `unit`: the unbiased estimate if there is a `sample`, the certified measure if there is a
+    /// `certificate`, else `sum_grid`.
     pub sum: f64,
     /// Unit of `sum`, like `D²·rad³`.
     pub unit: String,
-    /// 95 % interval of the true measure, from the poses of `sample` or the listed ones, drawn at random. Null if
-    /// nothing was.
+    /// 95 % interval of the true measure, from the poses of `sample` or from listed poses sampled at random.
+    /// Null without samples.
     pub sum_ci95: Option<[f64; 2]>,
-    /// The measure of the accepted cells; of listed poses, their share of the error box.
+    /// Measure of the accepted cells; for listed poses, their share of the error box.
     pub sum_grid: f64,
-    /// Where there is a `certificate`, what certainly docks, and that with what is undecided. Else
-    /// `sum_grid` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
-    /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
+    /// With a `certificate`: the certified measure, and that plus the undecided measure. Without: `sum_grid`
+    /// minus the accepted cells that touch a rejected cell, and plus the rejected cells that touch an
+    /// accepted cell. This is the uncertainty of the resolution, not a confidence interval. Null for listed
+    /// poses.
     pub sum_bracket: Option<[f64; 2]>,
     /// `sum` as a share of the error box, in [0, 1].
     pub fraction: f64,
-    /// Cells or poses tried.
+    /// Number of cells or poses decided.
     pub cells: usize,
-    /// How many met each outcome.
+    /// Number of cells or poses with each outcome.
     pub outcomes: Outcomes,
-    /// Random poses, followed exactly, that correct the Sum; null if none were.
+    /// Sampled poses, followed exactly, that correct the Sum; null without samples.
     pub sample: Option<SampleReport>,
 }
 
@@ -162,13 +164,13 @@ pub struct AcceptanceReport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcomes {
-    /// Contact brings the halves to the mated pose.
+    /// Docked: contact brings the halves to the mated pose.
     pub aligned: usize,
-    /// At rest in contact elsewhere.
+    /// The moving half rests in contact outside the seat.
     pub jammed: usize,
-    /// No contact, or slid off.
+    /// The halves never touch, or the moving half slides off.
     pub missed: usize,
-    /// The budget ran out.
+    /// The step budget ended before the motion did.
     pub undecided: usize,
 }
 
@@ -176,7 +178,7 @@ pub struct Outcomes {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interval {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
     /// Lower end, D or rad.
     pub lo: f64,
@@ -188,11 +190,12 @@ pub struct Interval {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OnaaReport {
-    /// Its edge after each axis is divided by its range: in [0, 1].
+    /// Edge of the cube, with each axis divided by its range: in [0, 1].
     pub edge: f64,
-    /// Where it lies; empty if the edge is 0.
+    /// Bounds of the cube; empty if the edge is 0.
     pub bounds: Vec<Interval>,
-    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    /// Whether exact motions determined the size, independently of the cells; false in reports of older
+    /// versions.
     #[serde(default)]
     pub followed: bool,
 }
@@ -201,50 +204,53 @@ pub struct OnaaReport {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CenteredReport {
-    /// Its edge after each axis is divided by its range: in [0, 1].
+    /// Edge of the cube, with each axis divided by its range: in [0, 1].
     pub edge: f64,
-    /// Where it lies.
+    /// Bounds of the cube.
     pub bounds: Vec<Interval>,
-    /// The border of the error box stopped it: it may be larger.
+    /// Whether the border of the error box limits the cube, so that it may be larger.
     pub reaches_border: bool,
-    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    /// Whether exact motions determined the size, independently of the cells; false in reports of older
+    /// versions.
     #[serde(default)]
     pub followed: bool,
-    /// How many random poses of it were followed last, all of which dock.
+    /// Number of sampled poses of the final cube, all of which dock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampled: Option<usize>,
 }
 
-/// What a connector tolerates whose roll and pitch are locked.
+/// Figures of merit of the connector with roll and pitch locked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UprightReport {
-    /// The largest box around zero all of which docks, in the proportions of the tolerances; its edge is a multiple of these.
+    /// The largest box around zero in which every sampled pose docks, in the proportions of the tolerances;
+    /// its edge is a multiple of these.
     pub window: CenteredReport,
-    /// How far each error may go alone.
+    /// Single-axis limits of each error.
     pub tolerances: Vec<ToleranceReport>,
 }
 
-/// How far one error may go alone.
+/// Single-axis limits of an error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ToleranceReport {
-    /// Which error.
+    /// The error.
     pub axis: Dof,
     /// `D` or `rad`.
     pub unit: Unit,
-    /// Below zero; not negative.
+    /// Limit below zero; not negative.
     pub minus: f64,
-    /// Above zero; not negative.
+    /// Limit above zero; not negative.
     pub plus: f64,
-    /// Uncertainty of both: half a cell, or half the distance between a pose that docks and one that does not.
+    /// Uncertainty of both: half a cell, or half the distance between a success and a failure.
     pub half_cell: f64,
-    /// Whether poses were followed along the axis, so that it does not rest on cells; false in reports of versions that did not.
+    /// Whether exact motions along the axis determined the limits, independently of the cells; false in
+    /// reports of older versions.
     #[serde(default)]
     pub followed: bool,
-    /// The border of the error box stopped `minus`: it may be larger.
+    /// Whether `minus` ends at the border of the error box, so that it may be larger.
     pub minus_reaches_border: bool,
-    /// The border of the error box stopped `plus`: it may be larger.
+    /// Whether `plus` ends at the border of the error box, so that it may be larger.
     pub plus_reaches_border: bool,
 }
 
@@ -252,27 +258,27 @@ pub struct ToleranceReport {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuccessReport {
-    /// How the errors are distributed.
+    /// Distribution of the errors.
     pub distribution: Distribution,
     /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
     pub probability: f64,
-    /// The same with the cells at the border of the accepted set counted as failures, and as successes.
+    /// The probability with border cells of the accepted set counted as failures, and as successes.
     pub bracket: [f64; 2],
-    /// 95 % interval of `probability`; null where it is an exact sum over cells.
+    /// 95 % interval of `probability`; null for an exact sum over cells.
     pub ci95: Option<[f64; 2]>,
     /// Probability of an error outside the error box.
     pub outside: f64,
 }
 
-/// A doubt, for programs and for people. A kind of doubt that this version does not know is read as a
-/// [`Warning::Note`] of its sentence.
+/// A warning, for programs and for people. A kind that this version does not know is read as a
+/// [`Warning::Note`] with its sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(from = "StoredWarning")]
 pub struct WarningReport {
-    /// The doubt itself, with its `kind`.
+    /// The warning, with its `kind`.
     pub warning: Warning,
-    /// The same as a sentence.
+    /// The warning as a sentence.
     pub message: String,
 }
 
@@ -290,7 +296,7 @@ impl From<StoredWarning> for WarningReport {
     }
 }
 
-/// How long it took. The only part of a report that differs between equal runs.
+/// Time of the computation. Only this part of a report differs between equal runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Timing {

@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartitionReport {
-    /// Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
+    /// Numbers of polytopes of the Minkowski sum, cells of the contact space, parts of cells, and rests.
     pub counts: Counts,
-    /// Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
+    /// Measure of the accepted polytopes inside the error box, in the unit of the Sum, independent of any
+    /// grid.
     pub sum: f64,
 }
 

@@ -9,7 +9,7 @@ use catchment_core::method::correction::Stratum;
 use catchment_core::run::Corrected;
 use serde::{Deserialize, Serialize};
 
-/// Random poses, followed exactly, that the Sum and its interval come from.
+/// Sampled poses, followed exactly, behind the Sum and its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SampleReport {
@@ -19,16 +19,16 @@ pub struct SampleReport {
     pub settings: serde_json::Value,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Poses followed.
+    /// Number of poses followed.
     pub descents: usize,
-    /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of versions that did
-    /// not count it.
+    /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of older
+    /// versions.
     #[serde(default = "unknown")]
     pub differing: f64,
     /// Its 95 % interval.
     #[serde(default = "open")]
     pub differing_ci95: [f64; 2],
-    /// Where they lay.
+    /// The strata.
     pub strata: Vec<Stratum>,
 }
 

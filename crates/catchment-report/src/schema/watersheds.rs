@@ -3,7 +3,7 @@
 use catchment_core::method::flood::{Counts, Watersheds};
 use serde::{Deserialize, Serialize};
 
-/// Watersheds of a flooded grid; that of the cells without contact is none of them.
+/// Watersheds of a flooded grid, without the region of cells without contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatershedsReport {

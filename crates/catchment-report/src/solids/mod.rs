@@ -27,33 +27,33 @@ use std::borrow::Cow;
 /// A shape, with its head.
 pub type SolidsReport = Envelope<SolidsBody>;
 
-/// What a shape is made of.
+/// Content of an exported solid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SolidsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
-    /// Which shape.
+    /// The exported solid.
     pub shape: Subject,
-    /// What the three axes of a file show: `x`, `y` and `z` are lengths in D, the others angles in radians.
+    /// Meaning of the three axes of a file: `x`, `y` and `z` are lengths in D, the others angles in radians.
     pub axes: [&'static str; 3],
-    /// 3, or 2 where the bodies are flat.
+    /// 3, or 2 for flat bodies.
     pub dimension: usize,
-    /// Slices and strips; null for the halves, which have none.
+    /// Slices and strips; null for the halves.
     pub settings: Option<Settings>,
-    /// Convex pieces of the fixed half.
+    /// Number of convex pieces of the fixed half.
     pub fixed_pieces: usize,
-    /// Convex pieces of the moving half.
+    /// Number of convex pieces of the moving half.
     pub moving_pieces: usize,
-    /// Convex bodies of the shape, which may overlap.
+    /// Number of convex bodies of the solid, which may overlap.
     pub bodies: usize,
-    /// Their corners.
+    /// Number of their corners.
     pub corners: usize,
-    /// Their faces.
+    /// Number of their faces.
     pub faces: usize,
-    /// The least coordinates, on the axes of a file.
+    /// Smallest coordinates, on the axes of a file.
     pub low: [f64; 3],
-    /// The greatest.
+    /// Largest coordinates.
     pub high: [f64; 3],
 }
 

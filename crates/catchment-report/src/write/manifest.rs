@@ -22,13 +22,13 @@ pub const MANIFEST: &str = ".catchment.json";
 /// A larger manifest is not read: at some hundred bytes per file this is more than a hundred thousand files.
 const LARGEST: u64 = 32 << 20;
 
-/// What a folder holds.
+/// Content of a folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Manifest {
     /// Version of the program that wrote it.
     catchment: String,
-    /// What was written, such as `run`.
+    /// Kind of the content, such as `run`.
     pub kind: String,
     /// SHA-256 by path below the folder, with `/` between names.
     files: BTreeMap<String, String>,
