@@ -9,23 +9,23 @@ use serde::Serialize;
 pub enum Attribute {
     /// Month of its publication.
     Introduced,
-    /// How far contact or magnets align it, without any action.
+    /// Degree of passive alignment by contact or magnets.
     SelfAligningDegree,
-    /// Whether a half pairs with any other, or with those of the other kind only.
+    /// Whether a half pairs with any other half, or only with the other kind.
     Gendering,
     /// Whether connecting needs an action by a module.
     ConnectionActivity,
-    /// Whether disconnecting does.
+    /// Whether disconnecting needs an action by a module.
     DisconnectionActivity,
-    /// Which modules must act to connect.
+    /// Modules that must act to connect.
     ConnectionAgency,
-    /// Which must act to disconnect.
+    /// Modules that must act to disconnect.
     DisconnectionAgency,
-    /// What holds the halves together.
+    /// Mechanism that holds the halves together.
     ConnectionType,
-    /// The power that staying connected takes.
+    /// Power needed to stay connected.
     ConnectionMaintenance,
-    /// Whether the connection gives way.
+    /// Whether the connection is compliant.
     Compliance,
     /// The usual direction of approach to the face.
     ApproachAngle,
@@ -96,17 +96,17 @@ impl Attribute {
     }
 }
 
-/// A printed value that the text does not define or that is spelt in two ways, and how we read it.
+/// A printed value that the text does not define or that is spelt in two ways, with our reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Oddity {
-    /// Where it stands.
+    /// Attribute in which it occurs.
     pub attribute: Attribute,
-    /// What is printed.
+    /// Printed value.
     pub printed: &'static str,
     /// Our reading.
     pub normal: &'static str,
-    /// Why.
+    /// Reason for our reading.
     pub reason: &'static str,
 }
 

@@ -29,7 +29,7 @@ pub struct Classified {
     pub ungendered: bool,
 }
 
-/// A design beside a published system.
+/// Comparison of a design with a published system.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Ratio {
@@ -37,13 +37,13 @@ pub struct Ratio {
     pub system: String,
     /// Its stated area, in D².
     pub area_d2: f64,
-    /// Whether that is an estimate.
+    /// Whether that area is an estimate.
     pub estimated: bool,
-    /// The design's area over it; null where the design's is a length.
+    /// Area of the design divided by that of the system; null if the design has a length instead of an area.
     pub area_ratio: Option<f64>,
-    /// Its stated ONAA, in D; null where none is stated.
+    /// Its stated ONAA, in D; null if the source states none.
     pub onaa_d: Option<f64>,
-    /// The design's ONAA over it.
+    /// ONAA of the design divided by that of the system.
     pub onaa_ratio: Option<f64>,
 }
 

@@ -56,14 +56,14 @@ impl Table {
     }
 }
 
-/// Where a row comes from.
+/// Source of a row.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case", tag = "kind", content = "name")]
 pub enum Source {
-    /// Table 1.1, and table 2.1 under the given name where there is one.
+    /// Table 1.1, and table 2.1 under the given name if it lists the system.
     Connectors(Option<String>),
-    /// Table 2.1 alone.
+    /// Only table 2.1.
     ZraaAlone,
     /// Section 4.1.2.
     Section412,

@@ -25,15 +25,15 @@ pub const HIGH: f64 = 0.20;
 /// Gaps of a tiling narrower than this, in D, are seams.
 const SEAM: f64 = 1e-9;
 
-/// What contact alone corrects.
+/// Degree of self-alignment by contact alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Degree {
-    /// More than a fifth of the face.
+    /// Contact corrects more than a fifth of the face.
     High,
-    /// Something.
+    /// Contact corrects less.
     Low,
-    /// Nothing.
+    /// Contact corrects nothing.
     None,
 }
 
@@ -59,7 +59,7 @@ impl Degree {
     }
 }
 
-/// How far a region reaches through zero, in D: lower and upper end. `None` along an axis that is locked.
+/// Extent of a region on the axes through zero, in D: lower and upper end. `None` for a locked axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Extents {

@@ -62,7 +62,7 @@ pub fn docks(
     Ok(ends.iter().map(|end| end.outcome == Outcome::Aligned).collect())
 }
 
-/// A probability that was sampled.
+/// A sampled probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Probability {

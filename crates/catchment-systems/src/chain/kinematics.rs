@@ -15,11 +15,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Body {
-    /// From a rotor to the next, in mm.
+    /// Distance from a rotor to the next, in mm.
     pub pitch: f64,
     /// Width of a face and of the module: D, in mm.
     pub face: f64,
-    /// From a rotor to the face centre, in mm.
+    /// Distance from a rotor to the face centre, in mm.
     pub overhang: f64,
     /// Length of the module along the chain, in mm.
     pub length: f64,
@@ -39,7 +39,7 @@ impl Body {
     }
 }
 
-/// A place in the plane with a heading.
+/// A position in the plane with a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Frame {

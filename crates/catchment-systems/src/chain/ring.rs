@@ -15,11 +15,11 @@ use super::kinematics::Body;
 use super::shape::{FIRST_CORNERS, Shape, latches};
 use serde::{Deserialize, Serialize};
 
-/// What a choice of corners does at the closing link.
+/// Effect of a choice of corners on the closing link.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Corners {
-    /// Joints that turn.
+    /// Joints that rotate.
     pub corners: Vec<usize>,
     /// Standard deviation across the face, in mm.
     pub lateral_sigma_mm: f64,
@@ -29,13 +29,13 @@ pub struct Corners {
     pub angle_sigma_rad: f64,
     /// Correlation of lateral offset and angle.
     pub correlation: f64,
-    /// Torque over the distance of the nearest corner from the face, in N.
+    /// Pushing force: torque divided by the distance of the nearest corner from the face, in N.
     pub push_n: f64,
     /// Pressing force along the normal that all joints can hold, in N.
     pub press_n: f64,
-    /// Place among the choices by lateral error; equals share a place.
+    /// Rank among the choices by lateral error; equal choices share a rank.
     pub rank_by_error: usize,
-    /// Place among the choices by pushing force; equals share a place.
+    /// Rank among the choices by pushing force; equal choices share a rank.
     pub rank_by_force: usize,
 }
 

@@ -21,7 +21,7 @@ use catchment::suggest::number_help;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// What a joint is told.
+/// Command to a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -42,11 +42,11 @@ impl Command {
     }
 }
 
-/// One moment at which joints are told something.
+/// Commands to joints at one time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Step {
-    /// When, in seconds.
+    /// Time, in seconds.
     pub time_s: f64,
     /// Joints, numbered from 1, and their commands.
     pub commands: Vec<(usize, Command)>,

@@ -26,13 +26,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
-    /// Ahead, behind the joint.
+    /// Front face, behind the joint.
     Front,
-    /// To the left, behind the joint.
+    /// Left face, behind the joint.
     Left,
-    /// To the right, behind the joint.
+    /// Right face, behind the joint.
     Right,
-    /// Against the heading, before the joint: the first module's alone.
+    /// Rear face, before the joint: only the first module's.
     Back,
 }
 
@@ -74,9 +74,9 @@ pub struct Latch {
     pub from: usize,
     /// Module farther along the chain.
     pub to: usize,
-    /// Which face of `from`.
+    /// Face of `from`.
     pub from_side: Side,
-    /// Which face of `to`.
+    /// Face of `to`.
     pub to_side: Side,
 }
 
@@ -100,7 +100,7 @@ impl Latch {
     }
 }
 
-/// Which cluster the Block is.
+/// Reading of the source for the Block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -120,7 +120,7 @@ pub enum Shape {
     P,
     /// Six modules, a cluster of 3 × 2.
     Block {
-        /// How it is folded.
+        /// Way of folding.
         reading: Reading,
     },
     /// Twelve modules, a square of four modules a side.

@@ -39,17 +39,17 @@ impl Default for Settings {
     }
 }
 
-/// Errors of a face where it arrives.
+/// Errors of a face at its arrival.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Arrival {
     /// The latch; null for the last face of a straight chain.
     pub latch: Option<Latch>,
-    /// Joints that may be wrong.
+    /// Joints that contribute errors.
     pub joints: Vec<usize>,
     /// Standard deviation across the face, to first order, in mm.
     pub lateral_sigma_mm: f64,
-    /// The same in D.
+    /// Standard deviation across the face, to first order, in D.
     pub lateral_sigma_d: f64,
     /// Standard deviation of the gap, which is not in the area of acceptance, in mm.
     pub normal_sigma_mm: f64,
@@ -59,18 +59,18 @@ pub struct Arrival {
     pub correlation: f64,
     /// Mean and covariance to first order: lateral mm, normal mm, angle rad.
     pub first_order: Covariance,
-    /// The same of the random chains, by exact kinematics.
+    /// Mean and covariance over the sampled chains, by exact kinematics.
     pub exact: Covariance,
     /// Share of the chains that dock here.
     pub docking: Option<Probability>,
-    /// The probability that the lateral offset alone is corrected without rotation, to first order.
+    /// Probability, to first order, that the lateral offset alone is corrected without rotation.
     pub offset_probability: Option<f64>,
     /// Pressing force along the normal that the joints can hold, in N.
     pub press_n: f64,
-    /// Lateral mm, normal mm and angle rad of every random chain.
+    /// Lateral mm, normal mm and angle rad of every sampled chain.
     #[serde(skip)]
     pub cloud: Vec<[f64; 3]>,
-    /// Which of them dock.
+    /// Whether each of them docks.
     #[serde(skip)]
     pub docked: Option<Vec<bool>>,
 }
@@ -81,7 +81,7 @@ pub struct Arrival {
 pub struct Length {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma_rad: f64,
-    /// Modules of the straight chain.
+    /// Number of modules of the straight chain.
     pub modules: usize,
     /// Standard deviation of the last face across, to first order, in D.
     pub lateral_sigma_d: f64,
@@ -89,7 +89,7 @@ pub struct Length {
     pub heading_sigma_rad: f64,
     /// Share of the chains that dock.
     pub docking: Option<Probability>,
-    /// The probability that the lateral offset alone is corrected without rotation, to first order.
+    /// Probability, to first order, that the lateral offset alone is corrected without rotation.
     pub offset_probability: Option<f64>,
 }
 

@@ -25,7 +25,7 @@ pub struct Square {
     pub center: DVec2,
     /// Its side.
     pub side: f64,
-    /// No square in the region has a longer side than this.
+    /// Upper bound on the side of any square in the region.
     #[serde(rename = "side_at_most")]
     pub at_most: f64,
 }

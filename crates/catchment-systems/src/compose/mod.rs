@@ -71,19 +71,19 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use sweep::Bracket;
 
-/// In which frames the two regions are drawn.
+/// Frames in which the two regions are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Frames {
-    /// Each in the frame of its own robot, facing +y; the second is mounted by a half turn.
+    /// Each region in the frame of its own robot, facing +y; a half turn mounts the second.
     #[default]
     Own,
-    /// The second as it stands before the first.
+    /// The second region in its position before the first.
     World,
 }
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {

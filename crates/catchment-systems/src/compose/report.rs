@@ -15,17 +15,18 @@ use std::fmt::Write;
 /// A composition with its head.
 pub type ComposeReport = Envelope<ComposeBody>;
 
-/// Where two halves meet. Lengths in `unit`, angles in radians; areas as [inner, outer], between which the true one lies.
+/// Approach region of two halves. Lengths in `unit`, angles in radians; areas as [inner, outer], between
+/// which the true area lies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComposeBody {
     /// mm or D.
     pub unit: &'static str,
-    /// What was asked.
+    /// The settings.
     pub settings: Settings,
     /// The two halves.
     pub halves: [HalfReport; 2],
-    /// The two bodies that are kept apart.
+    /// The two bodies that must not overlap.
     pub keep_out: Option<[HalfReport; 2]>,
     /// The heading that is described.
     pub heading_rad: f64,
@@ -33,77 +34,78 @@ pub struct ComposeBody {
     pub acceptance: RegionReport,
     /// The largest axis-parallel square in it.
     pub largest_square: Option<Square>,
-    /// How far −x, +x, −y, +y may be off from the centre of that square.
+    /// Tolerance towards −x, +x, −y, +y from the centre of that square.
     pub tolerance: Option<[f64; 4]>,
-    /// Side of the largest square about d = 0; null where the halves do not meet there.
+    /// Side of the largest square about d = 0; null if the halves do not meet there.
     pub square_about_zero: Option<f64>,
     /// Area of every slice.
     pub slices: Vec<SliceReport>,
     /// ∫ area dψ by the trapezoidal rule.
     pub volume: Option<[f64; 2]>,
-    /// The overlap of the two regions over the second robot's place.
+    /// Overlap of the two regions as a function of the second robot's position.
     pub overlap: OverlapReport,
     /// Outlines of the inner region: outer ones counter-clockwise, holes clockwise.
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
-/// A region that went in.
+/// An input region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HalfReport {
-    /// What it is called.
+    /// Name of the region.
     pub name: String,
-    /// What it measures.
+    /// Measures of the region.
     #[serde(flatten)]
     pub region: RegionReport,
-    /// What should be known about it.
+    /// Notes about the region.
     pub notes: Vec<String>,
 }
 
-/// What a region measures.
+/// Measures of a region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RegionReport {
-    /// Area, within and around.
+    /// Area of the inner and of the outer region.
     pub area: [f64; 2],
-    /// Lowest and highest corner of the inner region: the region reaches at least so far.
+    /// Lower and upper corner of the inner region's bounding box: the true region reaches at least as far.
     pub bounds: Option<[[f64; 2]; 2]>,
-    /// Lowest and highest corner of the outer region: nothing of the region lies beyond.
+    /// Lower and upper corner of the outer region's bounding box: the true region lies inside.
     pub bounds_outer: Option<[[f64; 2]; 2]>,
-    /// Connected polygons of the inner region.
+    /// Number of connected polygons of the inner region.
     pub parts: usize,
-    /// Holes of the inner region.
+    /// Number of holes of the inner region.
     pub holes: usize,
 }
 
-/// One heading.
+/// The region at one heading.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceReport {
     /// Heading.
     pub heading_rad: f64,
-    /// Area, within and around.
+    /// Area of the inner and of the outer region.
     pub area: [f64; 2],
     /// Outlines of its inner region.
     #[serde(skip)]
     outlines: Vec<Vec<[f64; 2]>>,
 }
 
-/// The overlap: its largest value, and a grid of it. Bodies that are kept apart take nothing from it.
+/// The overlap: its largest value, and its values on a grid. The bodies that must not overlap do not reduce
+/// it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlapReport {
-    /// Largest value that was found, of the inner regions.
+    /// Largest value that was found, for the inner regions.
     pub largest: f64,
-    /// No place has a larger overlap.
+    /// Upper bound on the overlap at any position.
     pub at_most: f64,
-    /// Where the largest was found.
+    /// Position of the largest value.
     pub at: [f64; 2],
     /// Lower left corner of the grid.
     pub low: [f64; 2],
     /// Side of a cell.
     pub cell: f64,
-    /// Values at the centres of the cells, rows from below.
+    /// Values at the centres of the cells, rows from bottom to top.
     pub rows: Vec<Vec<f64>>,
 }
 

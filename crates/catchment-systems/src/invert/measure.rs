@@ -8,17 +8,17 @@ use catchment::method::zraa::area;
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-/// Where heights are wanted that no moving half reaches.
+/// A place with unattainable heights: wanted heights that no moving half reaches.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Shortfall {
-    /// Corners of the offsets, a convex polygon, in D.
+    /// Corners of the region of such offsets, a convex polygon, in D.
     #[serde(serialize_with = "crate::points::points")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<[f64; 2]>"))]
     pub polygon: Vec<DVec2>,
-    /// Largest h* − h over it, in D.
+    /// Largest h* − h over the region, in D.
     pub most: f64,
-    /// The offset of that, in D.
+    /// The offset of the largest difference, in D.
     #[serde(serialize_with = "crate::points::point")]
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub at: DVec2,

@@ -80,17 +80,18 @@ pub const NARROW: f64 = 5e-6;
 /// Places and planes nearer than this, in D, differ by rounding.
 const ROUNDED: f64 = 1e-10;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
-    /// Rolls at which the heights are wanted beside 0, in radians. Rotations are all combinations with the pitches and yaws.
+    /// Rolls besides 0 at which heights are wanted, in radians. Rotations are all combinations with the
+    /// pitches and yaws.
     pub roll: Vec<f64>,
     /// Pitches, in radians. Planar designs have no other rotation.
     pub pitch: Vec<f64>,
     /// Yaws, in radians.
     pub yaw: Vec<f64>,
-    /// Material behind the deepest point of the moving half, in D.
+    /// Thickness of the material behind the deepest point of the moving half, in D.
     pub backing: f64,
 }
 

@@ -19,47 +19,47 @@ const SHOWN: usize = 3;
 /// An inverse with its head.
 pub type InvertReport = ReportOf<InvertBody>;
 
-/// What a part must have to be made.
+/// Manufacturing limits of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Limits {
-    /// Least width of a facet, in D.
+    /// Smallest width of a facet, in D.
     pub feature_d: f64,
-    /// Least angle between the surface and the direction of pull (z), in radians.
+    /// Smallest angle between the surface and the direction of pull (z), in radians.
     pub draft_rad: f64,
 }
 
-/// The moving half that wanted heights ask for, for the fixed half of a design. Lengths in D.
+/// The moving half that realises wanted heights on the fixed half of a design. Lengths in D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InvertBody {
     /// The settings.
     pub settings: Settings,
-    /// What the part must have.
+    /// Manufacturing limits of the part.
     pub limits: Limits,
     /// Convex pieces of the moving half, as drawn (facing +z, face centre at z = 0): their corners.
     pub pieces_d: Vec<Vec<[f64; 3]>>,
-    /// Whether the wanted heights are reached wherever they are wanted.
+    /// Whether every wanted height is reached.
     pub attained: bool,
     /// Largest h* − h.
     pub most_unattained_d: f64,
     /// Area of the offsets at which h* is not reached, in D².
     pub unattained_area_d2: f64,
-    /// The deepest shortfalls, one of every place.
+    /// The largest shortfall of every place, deepest first.
     pub unattained: Vec<Shortfall>,
-    /// Rotations beside none at which the heights were wanted.
+    /// Number of rotations besides 0 at which heights were wanted.
     pub turns: usize,
-    /// What holds between them.
+    /// Bounds between these rotations.
     pub between: Option<Between>,
-    /// Wanted and reached height without error.
+    /// Wanted and reached height at zero error.
     pub mated_height_d: [Option<f64>; 2],
-    /// Area on which the halves touch without error, in D².
+    /// Area of contact between the halves at zero error, in D².
     pub contact_patch_d2: f64,
     /// Area of the plan of the moving half, in D².
     pub plan_d2: f64,
-    /// Least angle between the new surface and the direction of pull, in radians.
+    /// Smallest angle between the new surface and the direction of pull, in radians.
     pub draft_rad: f64,
-    /// Least width of a facet of the new surface.
+    /// Smallest width of a facet of the new surface.
     pub narrowest_d: f64,
 }
 

@@ -15,7 +15,7 @@
 use super::measured::{Measured, Mode};
 use serde::Serialize;
 
-/// The shape of a law of o and t.
+/// Form of a law in o and t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -78,21 +78,21 @@ pub struct Point {
     pub force: f64,
 }
 
-/// A law with its parameters, and how far it is off.
+/// A law with its parameters and residuals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fit {
-    /// Which one.
+    /// The form of the law.
     pub law: Law,
-    /// As it is written.
+    /// The formula as text.
     pub formula: &'static str,
     /// In the order of the formula; mm and N.
     pub parameters: Vec<f64>,
     /// Root mean square of the residuals.
     pub rms: f64,
-    /// The same where each design is predicted from the others.
+    /// Root mean square of the residuals if each design is predicted from the others.
     pub left_out_rms: f64,
-    /// The largest of those, without its sign.
+    /// Largest absolute value of these residuals.
     pub left_out_max: f64,
 }
 

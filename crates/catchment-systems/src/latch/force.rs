@@ -37,35 +37,35 @@ pub struct Forces {
     pub neck_line: f64,
 }
 
-/// A force with where it comes from.
+/// A latching force with its derivation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Latching {
-    /// What the fit says, in N, for a pair of both layers.
+    /// Force by the fit, in N, for a pair of both layers.
     pub force_n: f64,
-    /// One standard error of a new design to either side, by leave-one-out, in N.
+    /// The force plus and minus one standard error of a new design, by leave-one-out, in N.
     pub interval_n: [f64; 2],
-    /// The spring alone, per layer: a lower end without the constant.
+    /// Force of the spring alone, per layer: a lower bound without the constant.
     pub spring_n: f64,
     /// The normal force at the hook, per layer.
     pub normal_n: f64,
     /// Swing of each arm, in degrees.
     pub swing_deg: f64,
-    /// Why it is an extrapolation, if it is one.
+    /// Reasons why it is an extrapolation, if it is.
     pub doubts: Vec<String>,
 }
 
-/// A force to break with its mode.
+/// A force to break with its failure mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failure {
-    /// In N; an upper bound where the tip may come first.
+    /// Force in N; an upper bound if the tip may fail first.
     pub force_n: f64,
-    /// What breaks.
+    /// Failure mode.
     pub mode: Mode,
-    /// Whether it is an upper bound only.
+    /// Whether the force is only an upper bound.
     pub upper_bound: bool,
-    /// Why it is an extrapolation, if it is one.
+    /// Reasons why it is an extrapolation, if it is.
     pub doubts: Vec<String>,
 }
 

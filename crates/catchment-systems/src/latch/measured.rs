@@ -14,16 +14,16 @@ pub const READING: f64 = 1.0;
 /// The overhang that was made and given up, in mm: halves overlapped by less than a millimetre.
 pub const REJECTED_OVERHANG: f64 = 1.27;
 
-/// How a prototype broke.
+/// Failure mode of a prototype.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// The compliance neck tore.
     Neck,
-    /// The tip of the overhang gave way until the halves slipped apart.
+    /// The tip of the overhang yielded until the halves slipped apart.
     Tip,
-    /// Either may come first.
+    /// Either may fail first.
     Undecided,
 }
 

@@ -53,12 +53,12 @@ pub use table::{TableBody, TableReport};
 
 use serde::{Deserialize, Serialize};
 
-/// Where a statement comes from.
+/// Basis of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
-    /// The dissertation says so.
+    /// The dissertation states it.
     Stated,
     /// Computed again from its numbers.
     Recomputed,

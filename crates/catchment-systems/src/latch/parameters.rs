@@ -15,7 +15,7 @@ const BASE_ONE_SIDED: f64 = 60.0;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Latch {
-    /// What the design is called.
+    /// Name of the design.
     pub name: String,
     /// Width of the face, L.
     pub width: f64,
@@ -25,7 +25,7 @@ pub struct Latch {
     pub neck: f64,
     /// Height of the hook's tip, h.
     pub hook: f64,
-    /// Width of the cut that the laser burns away.
+    /// Width of the kerf that the laser burns away.
     pub kerf: f64,
     /// Thickness of a layer, w.
     pub sheet: f64,
@@ -37,7 +37,7 @@ pub struct Latch {
     pub modulus: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// From the middle of the overhang to the near side of the stop slit.
+    /// Distance from the middle of the overhang to the near side of the stop slit.
     pub slit_distance: f64,
     /// Depth of the slit below the face.
     pub slit_depth: f64,
@@ -51,31 +51,31 @@ pub struct Latch {
     pub l_eq: f64,
     /// Angle of the profile at the outer edge, below the x axis.
     pub spline_start: f64,
-    /// Angle at the hook, if it is not to follow from P.
+    /// Angle at the hook, if it does not follow from P.
     pub spline_end: Option<f64>,
-    /// How late the profile bends from one to the other.
+    /// Exponent n of the profile: the larger, the later it bends from the first angle to the second.
     pub bend: f64,
     /// Faces of the part: 1, or 3.
     pub sides: u32,
-    /// From the plane of the overhang down to the lower edge.
+    /// Distance from the plane of the overhang down to the lower edge.
     pub base: f64,
-    /// Diameter of two dowel holes below the slit, if there are any.
+    /// Diameter of two dowel holes below the slit, if the part has them.
     pub dowel: Option<f64>,
     /// Width of the module that carries it.
     pub module_width: f64,
-    /// From the plane of the overhang to the rotor's centre.
+    /// Distance from the plane of the overhang to the rotor's centre.
     pub rotor_distance: f64,
-    /// How two of them are pressed together.
+    /// Pressing of two halves.
     pub press: Press,
 }
 
-/// How two halves are pressed together.
+/// Conditions under which two halves are pressed together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Press {
-    /// Coulomb's coefficient of friction.
+    /// Coulomb friction coefficient.
     pub friction: f64,
-    /// How far the halves are off sideways when their hooks meet, in mm.
+    /// Lateral offset of the halves at first contact of their hooks, in mm.
     pub offset: f64,
     /// Tilt out of the plane of the layers, in rad: one layer meets its partner before the other.
     pub tilt: f64,

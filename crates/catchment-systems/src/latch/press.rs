@@ -35,18 +35,18 @@ const TRIES: usize = 60;
 /// A swing that moves by less is found, in rad.
 const SETTLED: f64 = 1e-13;
 
-/// How a layer touches its partner.
+/// Contact state of a layer and its partner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Contact {
-    /// Not yet.
+    /// No contact yet.
     Apart,
     /// The profiles slide on each other.
     Profile,
-    /// The walls of the hooks do.
+    /// The walls of the hooks slide on each other.
     Wall,
-    /// The hooks have passed, the arms are back.
+    /// The hooks have passed and the arms are back.
     Latched,
 }
 
@@ -66,11 +66,11 @@ impl Contact {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hold {
-    /// How it touches.
+    /// Contact state.
     pub contact: Contact,
     /// Swing of each arm, in rad.
     pub swing: f64,
-    /// What the layer takes, in N.
+    /// Force on the layer, in N.
     pub force: f64,
 }
 
@@ -78,41 +78,41 @@ pub struct Hold {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Position {
-    /// How far one half is above its seat, in mm; negative beyond it.
+    /// Height of one half above its seat, in mm; negative beyond it.
     pub above: f64,
     /// Each layer.
     pub layers: Vec<Hold>,
-    /// All of them together, in N.
+    /// Force on all layers, in N.
     pub force: f64,
 }
 
-/// A hook that passes.
+/// The force drop as a hook passes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Dip {
     /// The layer, from 1.
     pub layer: usize,
-    /// Where, in mm above the seat.
+    /// Height above the seat, in mm.
     pub above: f64,
-    /// The force just before, in N, and just after.
+    /// Force just before the drop, in N.
     pub from: f64,
-    /// See above.
+    /// Force just after the drop, in N.
     pub to: f64,
 }
 
-/// The way of a pair from approach to seat.
+/// The motion of a pair from approach to seat.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Record {
-    /// Position by position, the last is the deepest.
+    /// Positions in order; the last is the deepest.
     pub positions: Vec<Position>,
-    /// Where something touches first, in mm above the seat.
+    /// Height of first contact above the seat, in mm.
     pub first_contact: f64,
-    /// The largest force, in N, and where it is.
+    /// Largest force, in N.
     pub peak: f64,
-    /// See above.
+    /// Height of the largest force above the seat, in mm.
     pub peak_above: f64,
-    /// Where layers snap; two that do so at one place are one dip.
+    /// Drops as layers snap; two layers at one height count as one drop.
     pub dips: Vec<Dip>,
 }
 

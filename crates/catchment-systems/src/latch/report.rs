@@ -18,23 +18,23 @@ pub type LatchReport = Envelope<LatchBody>;
 /// N·mm in a N·m.
 const MILLI: f64 = 1e-3;
 
-/// A latch and what is found of it; mm, rad, N, `MPa` where no unit is named.
+/// Results for a latch; mm, rad, N, `MPa` unless a unit is named.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LatchBody {
-    /// What the file says, with defaults.
+    /// The design as in the file, with defaults.
     pub design: Latch,
     /// The outline in numbers.
     pub outline: OutlineReport,
-    /// What it must meet, and whether it does.
+    /// The rules for the design, and whether it fulfils them.
     pub rules: Vec<Rule>,
     /// Stiffness of a layer's neck, in N·m/rad.
     pub stiffness_nm_per_rad: f64,
-    /// The same for a neck that cannot narrow sideways: an upper bound.
+    /// Stiffness of a neck that cannot narrow sideways: an upper bound.
     pub stiffness_plane_strain_nm_per_rad: f64,
     /// Largest strain in the neck as the hooks pass.
     pub neck_strain: f64,
-    /// Free play in tension before the slit closes, in degrees.
+    /// Free play in tension until the slit closes, in degrees.
     pub play_deg: f64,
     /// Force to latch.
     pub latching: Latching,
@@ -42,13 +42,13 @@ pub struct LatchBody {
     pub failure: Failure,
     /// Mean stress in the necks at which they break, in `MPa`.
     pub neck_strength_mpa: f64,
-    /// Break over latch.
+    /// Force to break divided by force to latch.
     pub bonding_ratio: f64,
-    /// The same with one standard error of the force to latch.
+    /// Bonding ratio with the force to latch plus and minus one standard error.
     pub bonding_ratio_interval: [f64; 2],
-    /// Two of them pressed together, as springs with friction.
+    /// Two halves pressed together, modelled as springs with friction.
     pub press: PressReport,
-    /// Files that were written, by name.
+    /// Names of the files that were written.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
 }
@@ -65,7 +65,7 @@ pub struct OutlineReport {
     pub end_deg: f64,
     /// The pivot.
     pub pivot_mm: [f64; 2],
-    /// From the pivot to the hook's corner, across and up.
+    /// Vector from the pivot to the hook's corner, across and up.
     pub lever_mm: [f64; 2],
     /// Lower end of the slit.
     pub slit_end_mm: f64,
@@ -73,23 +73,23 @@ pub struct OutlineReport {
     pub cutout_mm: [f64; 2],
 }
 
-/// A press in numbers: springs and friction alone, which give less than measurements do.
+/// A press in numbers: springs and friction alone, which give less than measurements show.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PressReport {
     /// Largest force, in N.
     pub peak_n: f64,
-    /// The same as a share of the force to latch, which is fitted to measurements.
+    /// Largest force as a share of the force to latch, which is fitted to measurements.
     pub peak_share_of_latching: f64,
-    /// Force to latch that was measured on a prototype of this overhang and neck, in N; null where none was made.
+    /// Measured force to latch of a prototype with this overhang and neck, in N; null without a prototype.
     pub measured_latching_n: Option<f64>,
-    /// Where, in mm above the seat.
+    /// Height of the largest force above the seat, in mm.
     pub peak_above_mm: f64,
-    /// Where the halves touch first.
+    /// Height of first contact.
     pub first_contact_mm: f64,
-    /// Where hooks pass.
+    /// Drops of the force as hooks pass.
     pub dips: Vec<Dip>,
-    /// Position by position, the last is the deepest.
+    /// Positions in order; the last is the deepest.
     #[serde(skip)]
     positions: Vec<Position>,
 }

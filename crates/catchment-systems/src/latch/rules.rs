@@ -6,34 +6,34 @@ use super::outline::is_simple;
 use super::{Basis, Geometry, Latch};
 use serde::Serialize;
 
-/// What became of a rule.
+/// Verdict on a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// It holds.
+    /// The rule holds.
     Holds,
-    /// It does not, and the part may work all the same: the report warns.
+    /// The rule does not hold, but the part may still work: the report warns.
     Doubt,
-    /// It does not, and there is no such latch: the design is refused.
+    /// The rule does not hold, and such a latch cannot exist: the design is rejected.
     Broken,
 }
 
-/// A rule, what was found, and why it is one.
+/// A rule, the finding, and the reason for the rule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rule {
-    /// What must hold.
+    /// The rule.
     pub rule: &'static str,
-    /// What was found.
+    /// The finding.
     pub found: String,
     /// Whether it holds.
     pub verdict: Verdict,
-    /// Why it must.
+    /// Reason for the rule.
     pub reason: String,
-    /// Where it comes from.
+    /// Basis of the rule.
     pub basis: Basis,
-    /// The key of the design file that decides it.
+    /// The key of the design file that determines it.
     #[serde(skip)]
     pub key: &'static str,
 }

@@ -12,13 +12,13 @@ use std::borrow::Cow;
 /// Table 6.1 beside the model, with its head.
 pub type TableReport = Envelope<TableBody>;
 
-/// Table 6.1 beside the model.
+/// Table 6.1 compared with the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TableBody {
     /// The nine designs.
     pub rows: Vec<TableRow>,
-    /// Laws of the force to latch, the one in use first.
+    /// Laws of the force to latch; the first is in use.
     pub fits: Vec<Fit>,
     /// Force per thickness of a neck that breaks, in N/mm, over both layers.
     pub neck_line_n_per_mm: f64,
@@ -26,9 +26,9 @@ pub struct TableBody {
     pub neck_strength_mpa: f64,
     /// Law of the spring constant in tension, C·oᵖ·t^q.
     pub k_extension: Fit,
-    /// Law of the spring constant in compression: it scatters too much to be used.
+    /// Law of the spring constant in compression; its scatter is too large for use.
     pub k_compression: Fit,
-    /// Where the dissertation contradicts itself or its numbers.
+    /// Contradictions in the dissertation or its numbers.
     pub contradictions: Vec<&'static str>,
 }
 
@@ -39,17 +39,17 @@ pub struct TableRow {
     /// As printed.
     #[serde(flatten)]
     pub measured: Measured,
-    /// How it broke.
+    /// How it broke: failure mode.
     pub mode: Mode,
-    /// Failure over latching, computed again.
+    /// Force to break divided by force to latch, recomputed.
     pub ratio: f64,
-    /// The force to latch by the law in use, in N.
+    /// Force to latch by the law in use, in N.
     pub latching_model_n: f64,
-    /// The same by a fit to the other eight designs, in N.
+    /// Force to latch by a fit to the other eight designs, in N.
     pub latching_left_out_n: f64,
-    /// The force to break by the model, in N.
+    /// Force to break by the model, in N.
     pub failure_model_n: f64,
-    /// The one over the other.
+    /// Ratio of the two model forces.
     pub ratio_model: f64,
 }
 

@@ -4,17 +4,17 @@ use super::data::{Source, System};
 use serde::Serialize;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
-/// Where a number comes from.
+/// Provenance of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Provenance {
     /// The dissertation states it.
     #[serde(rename = "D")]
     Stated,
-    /// Computed here from what it states.
+    /// Computed here from stated numbers.
     #[serde(rename = "R")]
     Recomputed,
-    /// Our reading: nothing that is stated says so.
+    /// Our reading; not stated in the source.
     #[serde(rename = "I")]
     Inferred,
 }
@@ -34,15 +34,15 @@ impl Provenance {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Number {
-    /// What it measures.
+    /// Name of the quantity.
     pub name: &'static str,
     /// Its value.
     pub value: f64,
     /// `D²`, `D` or `%`.
     pub unit: &'static str,
-    /// Where it comes from.
+    /// Provenance of the number.
     pub provenance: Provenance,
-    /// What it rests on.
+    /// Basis of the number.
     pub basis: String,
 }
 

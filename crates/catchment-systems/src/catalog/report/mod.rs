@@ -46,17 +46,17 @@ pub struct CatalogBody {
 pub struct SystemBody {
     /// Its name.
     pub system: String,
-    /// Where the row comes from.
+    /// Source of the row.
     pub source: Source,
-    /// Values of table 1.1 by attribute; null where it does not have the system.
+    /// Values of table 1.1 by attribute; null if the table does not list the system.
     pub attributes: Option<BTreeMap<&'static str, ValueReport>>,
-    /// Stated area in D², or the area computed of an appended design; null where there is none.
+    /// Stated area in D², or the computed area of an appended design; null without an area.
     pub zraa_d2: Option<f64>,
     /// Whether the stated area is marked as estimated.
     pub estimated: bool,
-    /// Every number that is known of the area, with its provenance: D stated, R computed here, I our reading.
+    /// Every known number of the area, with its provenance: D stated, R computed here, I our reading.
     pub numbers: Vec<Number>,
-    /// What contradicts the numbers, or is open.
+    /// Contradictions among the numbers, or open questions.
     pub doubt: Option<&'static str>,
 }
 
@@ -66,31 +66,32 @@ pub struct SystemBody {
 pub struct ValueReport {
     /// As printed.
     pub printed: String,
-    /// In the terms of the text; our reading where it differs.
+    /// In the terms of the text; our reading if the two differ.
     pub normal: String,
-    /// Why it differs.
+    /// Reason for the difference.
     pub reason: Option<&'static str>,
 }
 
-/// A design among the published systems.
+/// A design compared with the published systems.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ClassifyBody {
-    /// The degree by the rule.
+    /// Degree of self-alignment by the rule.
     pub degree: &'static str,
-    /// How far the accepted offsets reach through zero, in D.
+    /// Extent of the accepted offsets on the axes through zero, in D.
     pub extents_d: Extents,
-    /// The longer of the two, from side to side, in D.
+    /// The larger total extent, in D.
     pub longest_d: f64,
-    /// Above this it is High, in D.
+    /// Extent above which the degree is High, in D.
     pub high_above_d: f64,
-    /// Whether the halves are the same solid.
+    /// Gendering: whether the halves are the same solid.
     pub gendering: &'static str,
-    /// Zero-rotation area of acceptance, in D²; null where one translation is locked.
+    /// Zero-rotation area of acceptance, in D²; null if one translation is locked.
     pub zraa_d2: Option<f64>,
-    /// Edge of the largest axis-parallel square inside, in D; the length of the corrected interval where one translation is locked.
+    /// Edge of the largest axis-parallel square inside, in D; the length of the corrected interval if one
+    /// translation is locked.
     pub onaa_d: f64,
-    /// The design beside published areas.
+    /// Comparison of the design with published areas.
     pub ratios: Vec<Ratio>,
 }
 

@@ -27,13 +27,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// How large the errors of a chain are; the joint's own first, all others optional.
+/// Sizes of the errors of a chain: the joint's own first, all others optional.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma: f64,
-    /// Step of the encoders, in radians: an angle is off by up to half of it, uniformly.
+    /// Step of the encoders, in radians: a uniform angle error of up to half a step.
     pub encoder_step: f64,
     /// Standard deviation of the length of a link, in mm.
     pub link_sigma: f64,
@@ -41,7 +41,7 @@ pub struct Errors {
     pub base_sigma: f64,
     /// Standard deviation of the base's x, and of its y, in mm.
     pub base_offset_sigma: f64,
-    /// How far a joint yields, in radians per newton metre.
+    /// Compliance of a joint, in radians per newton metre.
     pub compliance: f64,
     /// Force along e on the arriving face, in newtons.
     pub side_force: f64,

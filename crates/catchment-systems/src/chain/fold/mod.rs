@@ -38,13 +38,13 @@ use pair::Pair;
 use serde::{Deserialize, Serialize};
 use solve::Chain;
 
-/// What a servo can do.
+/// Properties of a servo.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Servo {
     /// Stall torque, in N·m.
     pub torque: f64,
-    /// Torque per radian off the command, in N·m/rad.
+    /// Torque per radian of deviation from the command, in N·m/rad.
     pub stiffness: f64,
 }
 
@@ -55,7 +55,7 @@ impl Default for Servo {
     }
 }
 
-/// What a pair of latching faces does.
+/// Properties of a pair of latching faces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hooks {
@@ -65,7 +65,7 @@ pub struct Hooks {
     pub overhang: f64,
     /// Stiffness of the latched pair, in N/mm.
     pub extension: f64,
-    /// Stiffness of faces that press, in N/mm.
+    /// Stiffness of faces in compression, in N/mm.
     pub compression: f64,
 }
 
@@ -76,7 +76,7 @@ impl Default for Hooks {
     }
 }
 
-/// What changes how a chain folds.
+/// Settings that change the folding of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
@@ -95,7 +95,7 @@ impl Default for Settings {
     }
 }
 
-/// What a joint is doing.
+/// State of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -108,17 +108,17 @@ pub enum State {
     Slack,
 }
 
-/// A layer, or both, has latched.
+/// A latching event of one layer or of both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Event {
-    /// When: commands ramp within a second.
+    /// Time of the event; commands ramp within a second.
     pub time_s: f64,
-    /// Module nearer to the base.
+    /// The module nearer to the base.
     pub from: usize,
-    /// The other.
+    /// The module farther from the base.
     pub to: usize,
-    /// Layers that hold from now on.
+    /// Number of layers that hold from now on.
     pub layers: usize,
     /// Pressing force at that moment, in N.
     pub force_n: f64,

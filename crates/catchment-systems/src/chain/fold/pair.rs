@@ -6,15 +6,16 @@ use super::Hooks;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// What holds a pair.
+/// Latched layers of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Layers {
-    /// Nothing.
+    /// No layer.
     None,
-    /// One layer; the pair rests `offset` mm across the face from its aligned pose while the other layer rides beside its trench.
+    /// One layer; the pair rests `offset` mm across the face from its aligned pose while the other layer
+    /// rides beside its trench.
     One {
-        /// Where it rests.
+        /// Offset of the rest.
         offset: f64,
     },
     /// Both.

@@ -18,41 +18,41 @@ mod document;
 /// A chain's report, with its head.
 pub type ChainReport = Envelope<ChainBody>;
 
-/// What was found about a chain. Millimetres, radians, newtons, seconds; `_d` is in D, the width of a face.
+/// Results for a chain. Millimetres, radians, newtons, seconds; `_d` is in D, the width of a face.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ChainBody {
     /// Its name.
     pub name: String,
-    /// Modules.
+    /// Number of modules.
     pub modules: usize,
     /// Dimensions of a module.
     pub body: Body,
-    /// How large the errors are.
+    /// Sizes of the errors.
     pub errors: Errors,
-    /// What a servo can do.
+    /// Properties of a servo.
     pub servo: Servo,
-    /// What a pair of latching faces does.
+    /// Properties of a pair of latching faces.
     pub hooks: Hooks,
-    /// Random chains.
+    /// Number of sampled chains.
     pub chains: u64,
-    /// Their seed.
+    /// Seed of the samples.
     pub seed: u64,
-    /// The connector, if one is named.
+    /// The connector, if the file names a connector.
     pub connector: Option<ConnectorReport>,
-    /// Share of the chains that dock everywhere they have to; null without a connector.
+    /// Share of the chains that dock at every latch; null without a connector.
     pub probability: Option<f64>,
     /// Its 95 % interval.
     pub ci95: Option<[f64; 2]>,
     /// The last face of the straight chain.
     pub straight: Arrival,
-    /// What the chain folds into, if it folds.
+    /// Folding of the chain, if it folds.
     pub folding: Option<FoldingReport>,
     /// Choices of corners, for an O.
     pub corners: Vec<Corners>,
     /// The table over numbers of modules.
     pub lengths: Vec<Length>,
-    /// How many modules still meet what is required, for each joint error of the table.
+    /// Number of modules up to which a requirement is met, for each joint error of the table.
     pub reach: Vec<Reach>,
 }
 
@@ -60,29 +60,29 @@ pub struct ChainBody {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ConnectorReport {
-    /// Its name.
+    /// Name of the connector.
     pub name: String,
-    /// The centre of rotation in front of the face, from the chain: the last rotor, in D.
+    /// Distance from the face to the centre of rotation, derived from the chain: the last rotor, in D.
     pub center_of_rotation_d: f64,
-    /// What its design says, which does not count here.
+    /// Centre of rotation in the design of the connector, which is not used here.
     pub design_center_of_rotation_d: f64,
-    /// ρ, in D.
+    /// Characteristic length ρ, in D.
     pub rotation_length_d: f64,
-    /// Offsets that are corrected without any rotation, in D.
+    /// Range of offsets that are corrected without rotation, in D.
     pub offsets_d: Option<[f64; 2]>,
 }
 
-/// A sequence, and how the chain folds by it.
+/// A sequence of commands, and the folding of the chain by it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FoldingReport {
-    /// The shape, where one is named.
+    /// The shape, if the file names a shape.
     pub shape: Option<Shape>,
-    /// What of it is ours.
+    /// Our reading of the source in it.
     pub reading: String,
-    /// Where the commands come from.
+    /// Source of the commands.
     pub commands_from: String,
-    /// Joints that turn on the lattice.
+    /// Joints that rotate on the lattice.
     pub turned: Vec<usize>,
     /// Cells of the rotors.
     pub cells: Vec<[i64; 2]>,
@@ -90,15 +90,15 @@ pub struct FoldingReport {
     pub latches: Vec<Arrival>,
     /// The chain after every step.
     pub steps: Vec<StepReport>,
-    /// What latched.
+    /// Latching events.
     pub events: Vec<Event>,
-    /// Largest pressing force that each pair has seen, in N.
+    /// Largest pressing force on each pair, in N.
     pub pressed_n: Vec<f64>,
-    /// Whether every pair holds with both layers in the end.
+    /// Whether every pair holds with both layers at the end.
     pub latched: bool,
-    /// Farthest rotor from its place on the lattice in the end, in mm.
+    /// Largest distance of a rotor from its lattice position at the end, in mm.
     pub off_lattice_mm: f64,
-    /// Largest heading error in the end, in radians.
+    /// Largest heading error at the end, in radians.
     pub off_lattice_rad: f64,
 }
 
@@ -108,9 +108,9 @@ pub struct FoldingReport {
 pub struct StepReport {
     /// Time of the step, in seconds.
     pub time_s: f64,
-    /// Layers that hold, for each latch.
+    /// Number of layers that hold, for each latch.
     pub layers: Vec<usize>,
-    /// Every module.
+    /// State of every module.
     pub modules: Vec<ModuleReport>,
 }
 
@@ -118,35 +118,35 @@ pub struct StepReport {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ModuleReport {
-    /// Its number.
+    /// Number of the module.
     pub module: usize,
-    /// Rotor across, in mm.
+    /// x of its rotor, in mm.
     pub x_mm: f64,
-    /// Rotor up, in mm.
+    /// y of its rotor, in mm.
     pub y_mm: f64,
     /// Heading behind its joint, in radians.
     pub heading_rad: f64,
     /// Angle of its joint, in radians.
     pub angle_rad: f64,
-    /// The commanded angle; null where it is slack.
+    /// The commanded angle; null for a slack joint.
     pub command_rad: Option<f64>,
-    /// What its joint does.
+    /// State of its joint.
     pub state: State,
-    /// Where the commands alone would put its rotor; a slack joint counts as at its nearest quarter turn.
+    /// Position of its rotor by the commands alone; a slack joint counts as if at its nearest quarter turn.
     pub commanded_mm: [f64; 2],
 }
 
-/// How many modules still meet a requirement.
+/// Number of modules up to which a requirement is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Reach {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma_rad: f64,
-    /// What is required.
+    /// The requirement.
     pub requirement: Requirement,
-    /// The most modules of the table up to which every row meets it; null where the first row does not.
+    /// Largest number of modules of the table up to which every row meets it; null if the first row fails.
     pub modules: Option<usize>,
-    /// The same with both ends of every interval meeting it.
+    /// The same, with both ends of every interval meeting it.
     pub surely: Option<usize>,
 }
 

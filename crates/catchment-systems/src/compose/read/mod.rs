@@ -27,7 +27,7 @@ use catchment::terminal::shown;
 use glam::DVec2;
 use serde::Serialize;
 
-/// What lengths are measured in.
+/// Unit of lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Measure {

@@ -54,17 +54,18 @@ const LEAST_UPRIGHT: f64 = 0.17;
 /// What walls reach below the deepest place of the new half, in D.
 const BELOW: f64 = 1.0;
 
-/// How much higher the new half stops between the rotations.
+/// Excess height of the new half between the given rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Between {
-    /// Largest angle of a rotation within the range to the nearest asked for, in radians.
+    /// Largest angle from a rotation within the range to the nearest given rotation, in radians.
     pub turn_rad: f64,
-    /// Proven: within this of a lateral place there is one where the half stops at most this much higher than wanted, in D.
+    /// Proven bound, in D: within this lateral distance of any position, a position exists at which the half
+    /// stops at most this much higher than wanted.
     pub bound_d: f64,
-    /// Rotations midway between those asked for at which both were computed.
+    /// Number of rotations midway between the given ones at which both heights were computed.
     pub midway: usize,
-    /// Largest h − h* at them, in D; none where there is nothing midway.
+    /// Largest h − h* at them, in D; null without midway rotations.
     pub most_d: Option<f64>,
     /// Roll, pitch and yaw there, in radians.
     pub angles_rad: [f64; 3],
