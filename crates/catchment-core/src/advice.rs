@@ -1,5 +1,5 @@
-//! What helps against a refusal or a doubt: data, so that whoever shows it can say it in the words of its own
-//! controls. A command line names its options, a page its fields.
+//! Advice for an error or a warning, as data, so that each front end can phrase it with its own controls: a
+//! command line with its options, a page with its fields.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! What reading one input may spend. Bytes, elements, corners and steps of work are charged to a budget before they are spent, so that a small file
-//! cannot ask for gigabytes or hours.
+//! Limits on the resources that an input may use. Bytes, elements, corners and steps of work are charged to a
+//! budget before they are used, so that a small file cannot request gigabytes or hours.
 //!
 //! ```text
 //! CORNERS = Limit { most: 2000, of: "corners", remedy: "simplify the drawing" }
@@ -7,8 +7,9 @@
 //!                              └───▶ Overspent: "more than 2000 corners: simplify the drawing"
 //! ```
 //!
-//! Every reader uses this one type, keeps its limits as constants beside it, and adds the place to the message: a line, a byte, or a part of an
-//! archive. Steps are counted, not measured: the same input is accepted or refused on every machine.
+//! Every reader uses this type, keeps its limits as constants beside it, and adds the place to the message: a
+//! line, a byte, or a part of an archive. Steps are counted, not measured: the same input is accepted or
+//! rejected on every machine.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The one result type: what becomes of every pose error.
+//! The common result type of all methods: the outcome of every pose error.
 //!
 //! ```text
 //!   aligned     contact brings the halves to the mated pose

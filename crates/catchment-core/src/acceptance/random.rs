@@ -1,8 +1,8 @@
-//! Random numbers that can be looked up: number k of a sequence depends on its seed and k alone, so the order in
-//! which threads ask for them changes nothing.
+//! Random numbers with direct access: number k of a sequence depends only on its seed and k, so the order in
+//! which threads draw them does not matter.
 //!
-//! `SplitMix64` (Steele, Lea, Flood, OOPSLA 2014), whose state after any number of steps is known without taking
-//! them. Made for sampling, not for secrets.
+//! `SplitMix64` (Steele, Lea, Flood, OOPSLA 2014): its state after any number of steps has a closed form.
+//! Suitable for sampling, not for cryptography.
 
 /// A sequence of independent numbers, uniform in [0, 1).
 #[derive(Debug, Clone, Copy)]

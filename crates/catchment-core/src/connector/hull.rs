@@ -1,8 +1,8 @@
-//! Convex hull of a few points, by definition: every plane through three points that has all others behind
-//! it carries a facet; coplanar facets are one polygon.
+//! Convex hull of a few points, by definition: every plane through three points with all others behind it
+//! carries a facet; coplanar facets form a single polygon.
 //!
-//! O(n⁴) on purpose. Faster hulls are known to return wrong facets on coplanar points, which is what designed
-//! pieces are made of; here every facet is checked against every point, and the facets must close.
+//! O(n⁴) on purpose. Faster algorithms are known to return wrong facets for coplanar points, and designed
+//! pieces consist of such points. Here every facet is checked against every point, and the facets must close.
 
 use super::{Surface, SurfaceError};
 use glam::DVec3;

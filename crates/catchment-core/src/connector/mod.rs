@@ -1,4 +1,4 @@
-//! The two halves as solids: closed surfaces, ready to touch.
+//! The two halves as solids: closed surfaces, prepared for contact.
 //!
 //! ```text
 //! Design ──▶ Connector { fixed: Half, moving: Half }      lengths in D
@@ -6,8 +6,9 @@
 //!                        └ the world frame: origin at its face centre, facing +z
 //! ```
 //!
-//! A [`Half`] is its closed surface, whatever it was written as: convex pieces, parts, and bodies that touch or overlap are united
-//! (`mesh::union`) before anything is computed with them. The solids it was written as stay beside it for methods that need convexity.
+//! A [`Half`] is its closed surface, independent of its description: convex pieces, parts, and bodies that
+//! touch or overlap are united (`mesh::union`) before any computation. The original solids are kept beside it
+//! for methods that need convexity.
 
 mod family;
 mod hull;

@@ -1,12 +1,13 @@
-//! Wavefront OBJ files: the faces of all objects of a file together, colours and textures left out.
+//! Wavefront OBJ files: the faces of all objects of a file together, without colours and textures.
 //!
 //! ```text
 //! v 0 0 1          a corner
 //! f 1 2/5 -1//3    a face: numbers of corners from 1, or back from the last; textures and normals behind slashes
 //! ```
 //!
-//! Faces of more than three corners are cut into triangles, which keep every corner; points and lines bound nothing. The unit stands beside the file, as for
-//! STL. The reader is our own because it says in which line a file is broken and keeps nothing but corners and triangles.
+//! Faces of more than three corners are triangulated, which keeps every corner; points and lines bound
+//! nothing. The design states the unit, as for STL. The reader is our own because it reports the line of
+//! every defect and stores only corners and triangles.
 
 use super::mesh::{self, MeshProblem, Triangle, cut};
 use super::source::{FileBytes, Held};

@@ -1,4 +1,4 @@
-//! A half as bytes, and back, to the bit: for a page or a process that computes with halves it did not build.
+//! Binary form of a half, exact to the bit: for a page or process that computes with halves built elsewhere.
 //!
 //! ```text
 //!   u32 surfaces, then of each:
@@ -7,7 +7,8 @@
 //!     u32 of each facet: its corners · u32 of each corner: its vertex · u32 × 4 of each edge: its ends, its facets
 //! ```
 //!
-//! All little-endian, nothing between. What is read back is checked to be in range, not to bound a solid.
+//! All values are little-endian, without padding. Reading checks that all values are in range, not that they
+//! bound a solid.
 
 use super::{Edge, Facet, Half, Surface};
 use glam::DVec3;

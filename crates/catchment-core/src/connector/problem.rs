@@ -1,4 +1,4 @@
-//! What can be wrong with a geometry, where, and what to do about it.
+//! Defects of a geometry, with their places and advice.
 
 use super::mesh::MeshProblem;
 use super::{HullError, PartError, SurfaceError, UnionProblem};

@@ -1,4 +1,4 @@
-//! Whether a half is round about the approach axis, as far as a tessellation can be.
+//! Test whether a half is round about the approach axis, within its tessellation.
 //!
 //! ```text
 //!       ●────●         corners in rings: equal height and radius, evenly spread;
@@ -6,8 +6,8 @@
 //!    ●    axis   ●
 //! ```
 //!
-//! A body with flanks (a spline, a key, a hole beside the axis) has facets that face across the radius, and is not round; a polygon of
-//! fewer than 16 sides is taken for the polygon that it is.
+//! A body with flanks (a spline, a key, a hole beside the axis) has facets that face across the radius, and
+//! is not round; a polygon of fewer than 16 sides counts as a polygon.
 
 use super::Half;
 use glam::{DVec2, DVec3};

@@ -1,7 +1,7 @@
-//! A closed polygonal surface with outward normals: the one geometry type of the program.
+//! A closed polygonal surface with outward normals: the only geometry type of the program.
 //!
-//! Facets are convex planar polygons; every edge knows its two facets and whether the solid is convex there.
-//! Only convex edges and the corners they meet at can touch another solid first, so the contact room looks at
+//! Facets are convex planar polygons; every edge stores its two facets and whether the solid is convex there.
+//! Only convex edges and their corners can be first contacts with another solid, so the contact module uses
 //! nothing else.
 
 use crate::tolerance;

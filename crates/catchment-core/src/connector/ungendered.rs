@@ -1,4 +1,4 @@
-//! Whether a half mates with a copy of itself: the solids of both halves, as drawn, are equal up to a
+//! Test whether a half mates with a copy of itself: the solids of both halves, as drawn, are equal up to a
 //! translation.
 
 use super::{Connector, Half};

@@ -1,4 +1,4 @@
-//! Families whose face is a fan of triangles from one point of the axis to a rim: pyramid, cone, saddle.
+//! Families whose face is a fan of triangles from a point of the axis to a rim: pyramid, cone, saddle.
 
 use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};

@@ -9,11 +9,12 @@
 //! ```
 //!
 //! δ is the draft angle of the mating faces from the vertical. z is odd in x and in y like the plain saddle,
-//! so the half mates with a copy of itself under either mount. The whole face is H + ℓ high, its lowest
+//! so the half mates with a copy of itself under either mount. The whole face is H + ℓ high, with its lowest
 //! corners at z = 0.
 //!
-//! With δ = 0 the lip is a vertical step, which needs play to go in: its faces stand back from the centre
-//! lines into the raised quadrants, so that `clearance` is the distance between the two halves' faces.
+//! With δ = 0 the lip is a vertical step, which needs play for insertion: its faces are set back from the
+//! centre lines into the raised quadrants, so that `clearance` is the distance between the faces of the two
+//! halves.
 
 use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};

@@ -7,10 +7,10 @@
 //!    ╲╱         ╲╱
 //! ```
 //!
-//! What lies behind the mating surface counts once a half tilts, so it belongs to the family:
-//! `base_thickness` backs it down to z = −`base_thickness`. Where a design names a thickness, both halves have
-//! it; where it does not, the socket halves of `pyramid` and `cone` and both halves of the saddles and of
-//! `pin-hole` have 0.25, and everything else ends at z = 0.
+//! The material behind the mating surface can touch once a half tilts, so it belongs to the family:
+//! `base_thickness` extends it down to z = −`base_thickness`. A thickness that the design states applies to
+//! both halves. By default the socket halves of `pyramid` and `cone` and both halves of the saddles and of
+//! `pin-hole` have 0.25; all other halves end at z = 0.
 
 mod fan;
 mod locking;

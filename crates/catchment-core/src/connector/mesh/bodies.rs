@@ -1,10 +1,11 @@
-//! The separate bodies of a file: which triangles hang together.
+//! The separate bodies of a file: sets of connected triangles.
 //!
 //! ```text
 //!   corners that a triangle joins ──▶ pieces ──▶ a piece whose box lies in another's is of that body ──▶ bodies, the largest box first
 //! ```
 //!
-//! Not guaranteed: that pieces which touch at a corner are told apart, or a body that lies in the box of another.
+//! Not guaranteed: pieces that touch at a corner are not separated, nor is a body inside the bounding box of
+//! another.
 
 use super::indexed::weld;
 use super::{MeshProblem, Triangle, WELD, overspent};

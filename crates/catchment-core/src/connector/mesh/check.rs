@@ -1,4 +1,4 @@
-//! What of a mesh bounds no solid, and the surface of one that does.
+//! The defects that keep a mesh from bounding a solid, and the surface of a mesh without defects.
 
 use super::crossing::crossings;
 use super::indexed::Indexed;

@@ -1,9 +1,11 @@
-//! Pairs of triangles that cross: an edge of the one pierces the other, or the one is folded flat on its neighbour.
+//! Pairs of triangles that cross: an edge of the first pierces the second, or the first is folded flat onto
+//! its neighbour.
 //!
-//! Every pair whose boxes overlap is looked at, in the order of their lowest x; the search ends with the first few, because a mesh in
-//! which everything crosses has as many pairs as the square of its triangles.
+//! The search tests every pair whose boxes overlap, in the order of their lowest x, and ends after the first
+//! few crossings: in a mesh with crossings everywhere the number of pairs grows with the square of the number
+//! of triangles.
 //!
-//! Not promised: triangles that lie in one plane and overlap are not found.
+//! Not promised: overlapping coplanar triangles are not found.
 
 use super::check::NO_AREA;
 use super::indexed::Indexed;

@@ -1,4 +1,4 @@
-//! A face of many corners, cut into triangles by clipping ears.
+//! Triangulation of a face with many corners by ear clipping.
 //!
 //! ```text
 //!      c ────── b            an ear at b: left of its way from a to c, and no other corner in it.
@@ -8,11 +8,12 @@
 //!      a
 //! ```
 //!
-//! Corners may lie on a line, may be visited twice (a ring that is cut open to be one border) and may lead inwards; what is refused is a border that
-//! crosses itself. Every corner stays: libraries for this drop those on straight edges, after which the neighbouring faces no longer meet there.
+//! Corners may lie on a line, may be visited twice (a ring that is cut open to form a single border) and may
+//! be concave; a border that crosses itself is rejected. Every corner is kept: existing libraries drop the
+//! corners on straight edges, after which the neighbouring faces no longer meet there.
 //!
-//! Whether an ear is free is asked of all corners that are left, once, and again where the corner that was in it went or one of its own did: about n²
-//! steps for n corners, which are charged to a budget before they are taken.
+//! The test for a free ear runs over all remaining corners once, and again when the corner inside the ear or
+//! a corner of the ear is removed: about n² steps for n corners, charged to a budget in advance.
 
 use crate::budget::{Budget, Limit, Overspent};
 use glam::{DVec2, DVec3};

@@ -1,12 +1,13 @@
-//! How far two surfaces are from each other.
+//! Distance between two surfaces.
 //!
 //! ```text
 //! max( max over points p of A of d(p, B),  max over points q of B of d(q, A) )
 //! ```
 //!
-//! The points are the corners, the middles of the edges and the middles of the triangles of both, each against the whole of the other surface: exact
-//! at these points. Not promised: anything between them; a surface between two points is farther by no more than half of their distance, and as a rule
-//! not at all, because what was simplified is nearly plane there.
+//! The points are the corners, the edge midpoints and the triangle centres of both surfaces, each measured
+//! against the whole other surface: exact at these points. Not promised: the distance between them. A surface
+//! between two points can be farther by at most half of their distance; for simplified meshes, which are
+//! nearly plane there, it usually is not.
 
 use super::indexed::Indexed;
 use super::tree::{Tree, around};

@@ -1,4 +1,4 @@
-//! Edges that one neighbour divides and the other does not.
+//! Edges that are divided in one neighbouring triangle but not in the other.
 //!
 //! ```text
 //!        c                    c
@@ -8,9 +8,10 @@
 //!      ╲ │ ╱                ╲ │ ╱
 //! ```
 //!
-//! Subdivision of single faces leaves such edges. Nothing moves: p counts as on the edge where welding would have joined it with a corner there.
+//! Subdivision of single faces leaves such edges. No corner moves: p counts as on the edge if welding would
+//! have merged it with a corner there.
 //!
-//! Not promised: anything for meshes with more open edges than [`MOST`], which are no solids.
+//! Not promised: meshes with more than [`MOST`] open edges are not repaired; they are not solids.
 
 use super::indexed::Indexed;
 use super::sides::Sides;

@@ -1,7 +1,8 @@
-//! Triangles by the numbers of their corners: corners that fall together are one.
+//! Triangles by the indices of their corners; coinciding corners share an index.
 //!
-//! Corners closer than [`WELD`] of the largest coordinate are joined; the first one met gives the coordinates. Nothing is promised of corners
-//! that lie in a chain of such distances: which of them are joined depends on their order in the file, and on nothing else.
+//! Corners closer than [`WELD`] of the largest coordinate are merged; the first of them gives the
+//! coordinates. Not promised: a result for corners in a chain of such distances; their merging depends on
+//! their order in the file, and on nothing else.
 
 use super::divide::divide;
 use super::sides::Sides;

@@ -1,17 +1,19 @@
-//! A closed triangle mesh as half of a connector: from loose triangles to a [`Surface`], or to every reason why they are none.
+//! A closed triangle mesh as half of a connector: from loose triangles to a [`Surface`], or to the list of
+//! all reasons against it.
 //!
 //! ```text
 //! triangles, each with its place ──weld──▶ corners shared ──check──▶ [repair] ──▶ [simplify] ──▶ polygons ──▶ Surface, in D
 //! ```
 //!
-//! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
-//! than [`WELD`] of the model's size are one, and an edge is divided where a corner of its neighbours lies on it as nearly. The winding counts,
-//! counter-clockwise seen from outside. A mesh that is then closed, wound outward and free of self-intersections is taken as it is. Another one is
-//! repaired where the [`Treatment`] allows it, and what was done is told; if that leaves anything, every reason
-//! against it is reported with its place. Coordinates in messages are those of the source. Triangles in memory are never repaired.
-//! Triangles that lie in one plane become polygons.
+//! Every source of triangles uses this module, from files to triangles in memory. Corners closer than
+//! [`WELD`] of the model's size are merged, and an edge is divided if a corner of its neighbours lies on it
+//! within the same distance. The winding matters: counter-clockwise seen from outside. A mesh that is then
+//! closed, wound outward and free of self-intersections is used unchanged. Any other mesh is repaired if the
+//! [`Treatment`] allows it, and the report lists the repairs. If defects remain, each of them is reported
+//! with its place. Messages give coordinates in those of the source. Triangles in memory are never repaired.
+//! Coplanar triangles become polygons.
 //!
-//! Not promised: holes are not closed, and coplanar overlaps of separate shells are not looked for.
+//! Not promised: holes are not closed, and coplanar overlaps of separate shells are not searched for.
 
 mod bodies;
 mod check;

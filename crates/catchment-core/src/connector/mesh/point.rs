@@ -1,4 +1,4 @@
-//! A point in the coordinates of a file, with their unit where it is known.
+//! A point in the coordinates of a file, with their unit if it is known.
 
 use crate::design::LengthUnit;
 use glam::DVec3;

@@ -1,4 +1,5 @@
-//! Coplanar triangles joined to convex polygons: the same solid with fewer facets, and none of its edges where it has none.
+//! Coplanar triangles merged into convex polygons: the same solid with fewer facets, and without edges inside
+//! its faces.
 //!
 //! ```text
 //!   ┌────┬───┐        ┌────────┐
@@ -8,10 +9,10 @@
 //!   └────┴───┘        └────────┘
 //! ```
 //!
-//! So is a convex partition by leaving out diagonals (Hertel and Mehlhorn, 1983), which has at most four times the fewest polygons there are; here of
-//! up to [`MOST_CORNERS`] corners each. Corners inside a
-//! face stay where more than two polygons meet at them. A mesh whose triangles are not mirror images of each other, as the halves of a
-//! square are not, becomes symmetric where its polygons are.
+//! This is a convex partition by removal of diagonals (Hertel and Mehlhorn, 1983), which has at most four
+//! times the minimum number of polygons; here with at most [`MOST_CORNERS`] corners each. Corners inside a
+//! face remain if more than two polygons meet at them. A mesh whose triangles are not mirror images of each
+//! other, such as the two halves of a square, becomes symmetric if its polygons are symmetric.
 
 use super::indexed::Indexed;
 use super::sides::{Side, Sides};

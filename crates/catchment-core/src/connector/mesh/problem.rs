@@ -1,4 +1,5 @@
-//! Why a mesh is no half of a connector, and where: the triangle and its line or byte in the file, and a point in the file's own coordinates.
+//! Defects that exclude a mesh as half of a connector, with their places: the triangle, its line or byte in
+//! the file, and a point in the file's own coordinates.
 
 use super::{MAX_TRIANGLES, MOST_READ, Point};
 use crate::budget::Overspent;

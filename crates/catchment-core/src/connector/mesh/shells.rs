@@ -1,11 +1,12 @@
-//! The connected parts of a mesh, their volumes, and which lies in which.
+//! The connected parts of a mesh, their volumes, and their nesting.
 //!
 //! ```text
 //! V = Σ a·(b × c)/6        w(p) = Σ Ω(a − p, b − p, c − p)/4π        over the triangles of a shell
 //! ```
 //!
-//! A shell lies in another where that winds around one of its corners, |w| > ½, by the solid angles of van Oosterom and Strackee (1983).
-//! Not promised: an answer for shells that cross, of which one is neither in nor outside of the other.
+//! A shell lies in another if the other winds around one of its corners, |w| > ½, by the solid angles of van
+//! Oosterom and Strackee (1983). Not promised: a result for crossing shells, which are neither inside nor
+//! outside of each other.
 
 use super::indexed::Indexed;
 use super::sides::Sides;

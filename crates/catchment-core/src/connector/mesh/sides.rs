@@ -1,4 +1,4 @@
-//! Which triangles meet along which edge.
+//! The triangles at each edge.
 
 /// A side of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

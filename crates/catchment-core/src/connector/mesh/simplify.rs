@@ -1,16 +1,18 @@
-//! A closed mesh described with fewer triangles.
+//! Simplification of a closed mesh to fewer triangles.
 //!
 //! ```text
 //!   mesh ──2ᵏ──▶ ──2ᵏ⁺¹──▶ ──2ᵏ⁺²──▶ … ──▶ 2ⁿ ≤ what was asked     each from the one before: the whole is looked at once or twice
 //!                                 └── the last that lies near enough to the mesh, both ways ──2ᵏ⁺²·√2──▶ if that does, too
 //! ```
 //!
-//! `manifold-rust` collapses edges whose removal moves the surface by less than a tolerance. What comes out is not believed: its distance from the surface
-//! before is measured both ways ([`deviation`](super::deviation)) and has to keep to what was asked for, and it passes every check of a mesh; if it
-//! does not, the one before it is asked. Nothing of the surface is left out. The tolerances are powers of two whatever was asked for, so that who lets
-//! the surface move farther gets no more triangles.
+//! `manifold-rust` collapses edges whose removal moves the surface by less than a tolerance. Its result is
+//! verified: its distance from the original surface is measured in both directions
+//! ([`deviation`](super::deviation)) and must not exceed the requested deviation, and it must pass every
+//! check of a mesh; if it fails, the previous result is tried. Every part of the surface is kept. The
+//! tolerances are powers of two, independent of the request, so that a larger permitted deviation never
+//! yields more triangles.
 //!
-//! Not promised: the fewest triangles possible.
+//! Not promised: the minimum number of triangles.
 
 use super::MeshProblem;
 use super::check;

@@ -1,4 +1,4 @@
-//! What is repaired bounds the solid that the sound mesh bounds; what is sound stays as it is, to the bit.
+//! A repaired mesh bounds the same solid as the sound mesh; a sound mesh is not changed by a bit.
 
 use super::*;
 use crate::connector::convex_hull;

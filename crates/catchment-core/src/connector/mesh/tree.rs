@@ -1,7 +1,7 @@
-//! Boxes in a tree: which of them overlap, and which of what they hold is nearest to a point.
+//! A tree of boxes: finds overlapping boxes, and the item nearest to a point.
 //!
-//! Built by halving at the median along the longest extent of the middles. The answers do not depend on the tree, but for which
-//! of equally near things is nearest.
+//! Built by halving at the median along the longest extent of the centres. The results do not depend on the
+//! tree, except for the choice among equally near items.
 
 use glam::DVec3;
 

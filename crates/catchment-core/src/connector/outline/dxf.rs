@@ -1,4 +1,4 @@
-//! The closed outlines of a DXF drawing: lines, arcs, circles and polylines of its entities, as far as they are shown.
+//! The closed outlines of a DXF drawing: its visible lines, arcs, circles and polylines.
 //!
 //! ```text
 //!   0            a group code and a value, a line each
@@ -7,10 +7,11 @@
 //! 0.0
 //! ```
 //!
-//! Entities on layers that are off or frozen, those that are invisible (group 60), and those of paper space (group 67) are counted and left out.
-//! Lines, arcs and open polylines are joined where their ends meet. Text, dimensions, points and hatches are no outlines and are left out;
-//! blocks, splines and ellipses are refused. The reader is our own because it says in which line something is wrong and takes no
-//! more memory than the text.
+//! Entities on layers that are off or frozen, invisible entities (group 60), and those of paper space (group
+//! 67) are counted and skipped. Lines, arcs and open polylines are joined if their ends meet. Text,
+//! dimensions, points and hatches are not outlines and are skipped; blocks, splines and ellipses are
+//! rejected. The reader is our own because it reports the line of every defect and uses no more memory than
+//! the text.
 
 use super::{NEAR, OutlineProblem, Stroke, Within};
 use glam::DVec2;

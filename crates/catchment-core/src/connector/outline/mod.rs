@@ -1,10 +1,12 @@
-//! Closed outlines in a plane: from loose polygons, or the curves of a drawing, to the regions that they bound.
+//! Closed outlines in a plane: from loose polygons, or the curves of a drawing, to the regions that they
+//! bound.
 //!
 //! ```text
 //! SVG, DXF ──curves to chords──▶ loops ──no two cross, none open──▶ regions: an outline with its holes
 //! ```
 //!
-//! A loop in no other bounds a region, one in it a hole, one in that hole a region again; the sense in which a loop is drawn does not count.
+//! A loop outside all others bounds a region, a loop inside it a hole, and a loop inside that hole a region
+//! again; the direction in which a loop is drawn has no effect.
 
 mod dxf;
 mod svg;

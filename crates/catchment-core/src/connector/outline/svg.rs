@@ -1,7 +1,8 @@
 //! The closed shapes of an SVG picture; y points up here, and down in the picture.
 //!
-//! Paths, rectangles, circles, ellipses, polygons and polylines, with the transforms of their groups; [`svg`] says which of them are drawn. A picture
-//! says its unit by a width such as `50mm` beside its `viewBox`.
+//! Paths, rectangles, circles, ellipses, polygons and polylines, with the transforms of their groups; [`svg`]
+//! determines which of them are drawn. A picture states its unit by a width such as `50mm` together with its
+//! `viewBox`.
 
 use super::{OutlineProblem, Stroke, Within, line_of};
 use crate::design::{LengthUnit, Quantity, Unit};

@@ -1,4 +1,4 @@
-//! Regions of loops, and the same outlines from both kinds of drawings.
+//! Regions of loops, and equal outlines from both kinds of drawings.
 
 use super::*;
 use crate::design::FileUnit;

@@ -1,11 +1,12 @@
-//! A half from its parts: meshes, pieces, balls, cones, boxes and extruded profiles, each at its place.
+//! A half from its parts: meshes, pieces, balls, cones, boxes and extruded profiles, each at its position.
 //!
 //! ```text
 //! PartSpec, file ──shape──▶ closed surfaces ──axis, rotate, at──▶ the solids of the half
 //! ```
 //!
-//! Parts may overlap and touch, as a pin does with the plate that it sits in: they are united afterwards (`mesh::union`). What is round becomes facets
-//! with their corners on it, so that a ball is never too large, and too small by at most its chord error.
+//! Parts may overlap and touch, as a pin does with its plate: they are united afterwards (`mesh::union`).
+//! Round surfaces become facets with their corners on the surface, so that a ball is never too large, and too
+//! small by at most its chord error.
 //!
 //! Not promised: a message about a part that touches no other.
 

@@ -1,4 +1,4 @@
-//! Balls and cones as facets, their corners on them.
+//! Balls and cones as facets, with their corners on the surface.
 //!
 //! ```text
 //!      ___

@@ -1,4 +1,4 @@
-//! The body of a PLY file, element by element: one a line, or bytes.
+//! The body of a PLY file, element by element: as lines, or as bytes.
 
 use super::header::{Dialect, Element, Header, Kind};
 use std::str::from_utf8;

@@ -1,4 +1,4 @@
-//! The head of a PLY file: its dialect, and what its elements are made of.
+//! The header of a PLY file: its dialect, and the properties of its elements.
 
 use crate::budget::Limit;
 

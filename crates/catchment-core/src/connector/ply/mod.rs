@@ -1,13 +1,15 @@
-//! PLY files, text and binary: the faces over the vertices, everything else left out.
+//! PLY files, text and binary: the faces over the vertices; all other content is skipped.
 //!
 //! ```text
 //! ply, format, element vertex 8, property float x … ──header──▶ elements ──body──▶ corners of vertices, faces; the rest is passed over
 //! ```
 //!
-//! Faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
+//! Faces of more than three corners are triangulated, which keeps every corner. The design states the unit,
+//! as for STL.
 //!
-//! The reader is our own because it says in which line or byte a file is broken, keeps nothing but corners and faces, and spends no more than the bytes that are
-//! there: an element without properties, of which a header could announce any number, is refused.
+//! The reader is our own because it reports the line or byte of every defect, stores only corners and faces,
+//! and uses no more than the bytes that are there: it rejects an element without properties, of which a
+//! header could announce any number.
 
 mod body;
 mod header;

@@ -1,4 +1,4 @@
-//! What a half given in memory held: a digest of its triangles' corners.
+//! Content of a half given in memory: a digest of its triangles' corners.
 
 use crate::connector::Surface;
 use crate::design::MeshContent;

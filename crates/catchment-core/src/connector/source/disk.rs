@@ -1,4 +1,4 @@
-//! Mesh files on disk: the one place of the room that touches a file system.
+//! Mesh files on disk: only this file of the module uses the file system.
 
 use super::FileBytes;
 use std::fs::File;

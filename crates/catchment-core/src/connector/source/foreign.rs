@@ -1,5 +1,5 @@
-//! Files that are no mesh, told by their first bytes: an ending alone says little, and what a reader of meshes would say of them
-//! helps nobody.
+//! Recognises files that are not meshes by their first bytes. A name's extension alone proves little, and a
+//! mesh reader's messages about such files do not help.
 
 use crate::connector::mesh::MeshProblem;
 

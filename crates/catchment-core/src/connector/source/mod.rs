@@ -1,4 +1,4 @@
-//! Where a half comes from: a family, convex pieces, the bytes of a mesh file, parts, or triangles in memory.
+//! Sources of a half: a family, convex pieces, the bytes of a mesh file, parts, or triangles in memory.
 //!
 //! ```text
 //! HalfSpec ──of, reading files──▶ Source ──build──▶ Half, and what the mesh held
@@ -6,8 +6,8 @@
 //!            a program's own triangles, no file
 //! ```
 //!
-//! Files are read by whatever the caller gives as [`Read`]; [`disk`] is the one place of the room that touches a file
-//! system. A mesh format is one entry of [`FORMATS`].
+//! The caller provides a [`Read`] to read files; only [`disk`] uses a file system. Each mesh format is an
+//! entry of [`FORMATS`].
 
 mod content;
 pub(super) mod disk;

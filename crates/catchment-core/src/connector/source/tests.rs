@@ -1,4 +1,4 @@
-//! The same solid from every source, and what is refused of each.
+//! The same solid from every source, and the inputs that each source rejects.
 
 use super::*;
 use crate::connector::Connector;

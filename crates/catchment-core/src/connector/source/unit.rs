@@ -1,4 +1,4 @@
-//! From the unit that a file or the design says to D.
+//! Conversion to D from the unit that a file or the design states.
 
 use crate::design::{FileSpec, FileUnit, LengthUnit};
 

@@ -1,6 +1,8 @@
-//! The one place where a process is started: an interpreter that reads its input, writes its answer, and is ended when nobody waits any more.
+//! Starts the only child process: an interpreter that reads its input, writes its result, and is ended once
+//! its result is no longer needed.
 //!
-//! It starts in an empty folder of its own, and no relative entry of `PYTHONPATH` reaches it: files that lie beside a design or a part are never run.
+//! It starts in its own empty folder, and relative entries of `PYTHONPATH` are removed: files beside a design
+//! or a part are never run.
 
 use super::StepProblem;
 use crate::exec::{Exec, Stopwatch};

@@ -1,20 +1,22 @@
-//! STEP files: curved faces, which `OpenCASCADE` turns into triangles in a Python of the person's own.
+//! STEP files: `OpenCASCADE` converts curved faces into triangles, in the user's own Python.
 //!
 //! ```text
 //!   bytes of part.step ──stdin──▶ python3 -I -c mesh.py ──stdout──▶ corners and triangles of every solid, in mm
 //!                                 (OCP: cadquery-ocp-novtk)
 //! ```
 //!
-//! Nothing heavy is linked in, nothing is fetched and no file is written. The interpreter is isolated and starts in an empty folder; packages are those
-//! that it has, those of the person, and those in the absolute entries of `PYTHONPATH`. Every solid is a body of its own; where there is none, every closed
-//! shell. Corners are joined as the topology has them, so that a closed shell is a closed mesh. Facets are off from the faces by at most the
-//! `deflection` that the design says, or 0.0002 of the part's largest side, as `OpenCASCADE` measures it: a corner lies on the part, a facet
-//! inside of what bulges and outside of what is hollow. Neighbouring facets of one face turn by at most 0.5 rad.
+//! No heavy library is linked, nothing is downloaded and no file is written. The interpreter is isolated and
+//! starts in an empty folder; it uses its own packages, those of the user, and those in the absolute entries
+//! of `PYTHONPATH`. Every solid is a separate body; in a file without solids, every closed shell. Corners are
+//! merged as the topology prescribes, so that a closed shell is a closed mesh. Facets deviate from the faces
+//! by at most the `deflection` of the design, or 0.0002 of the part's largest side, as measured by
+//! `OpenCASCADE`: a corner lies on the part, a facet inside convex and outside concave surfaces. Neighbouring
+//! facets of a face differ by at most 0.5 rad.
 //!
-//! Whatever unit a file is written in, its coordinates are read in mm. A file that was meshed is not meshed again by the same process.
+//! Coordinates are read in mm, whatever the unit of the file. The same process never meshes a file twice.
 //!
-//! Not promised: the same triangles from another version of OCP; what came out is in the digest of the design. Surfaces without thickness beside
-//! solids, and colours, are left out.
+//! Not promised: the same triangles from another version of OCP; the digest of the design covers the result.
+//! Surfaces without thickness beside solids, and colours, are skipped.
 
 mod child;
 mod reply;

@@ -1,4 +1,5 @@
-//! The answer of the child: a line of JSON, then of every body its corners and triangles, little-endian.
+//! The reply of the child process: a line of JSON, then for every body its corners and triangles,
+//! little-endian.
 
 use super::{FromCurves, StepProblem};
 use crate::connector::mesh::{self, MeshProblem, Place, Start, Triangle, most_read};

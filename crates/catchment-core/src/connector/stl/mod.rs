@@ -4,12 +4,12 @@
 //! bytes ──parse──▶ triangles, each with its place ──weld, check──▶ Surface, in D
 //! ```
 //!
-//! Both dialects are read; which one is decided by the size of the file and not by the word `solid`, which
-//! binary exporters write as well. Stored normals are ignored, the winding counts. What the triangles must hold
-//! is said in [`super::mesh`].
+//! Both dialects are read; the size of the file decides between them, not the word `solid`, which binary
+//! exporters write as well. Stored normals are ignored; the winding matters. [`super::mesh`] lists the
+//! requirements on the triangles.
 //!
-//! The reader is our own because it has to say *where* a file is broken and must not allocate what a hostile
-//! header claims.
+//! The reader is our own because it must report the place of every defect and must not allocate memory by a
+//! hostile header.
 
 mod parse;
 mod write;

@@ -1,4 +1,4 @@
-//! Every way a file can be broken, and the families through both dialects.
+//! All kinds of defects of a file, and the families through both dialects.
 
 use super::*;
 use crate::connector::mesh::{MAX_REPORTED, MAX_TRIANGLES, Place, Start};

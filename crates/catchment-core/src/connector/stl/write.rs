@@ -1,4 +1,4 @@
-//! Writing a half as STL: for other programs, and for reading it back in tests.
+//! Output of a half as STL: for other programs, and for round-trip tests.
 
 use crate::connector::{Half, Surface};
 use glam::DVec3;

@@ -1,16 +1,18 @@
-//! 3MF files: what their build puts on the plate, every item a body of its own.
+//! 3MF files: the content of their build, with each item as a separate body.
 //!
 //! ```text
 //! ZIP ──_rels/.rels──▶ model part ──▶ unit, objects, build
 //!                          └ items and components: an object, of this part or of another, moved by an affine map
 //! ```
 //!
-//! By the core specification and, of the production extension, the paths of items and components. Objects that are no models (supports, surfaces)
-//! are left out, and so are colours, slices and all that does not bound the solid; an extension that the file requires and that is not
-//! read is refused. A mirrored item is turned inside out again, as the specification says.
+//! Follows the core specification and, from the production extension, the paths of items and components.
+//! Objects that are not models (supports, surfaces) are skipped, as are colours, slices and everything else
+//! that does not bound the solid. A file that requires an unsupported extension is rejected. The winding of a
+//! mirrored item is reversed, as the specification requires.
 //!
-//! The reader is our own because it takes the XML piece by piece: an archive of a megabyte may hold gigabytes, of which no more than
-//! [`MOST_UNPACKED`] are unpacked, and none kept but numbers. Libraries for this keep the text, and do not say where it is broken.
+//! The reader is our own because it processes the XML as a stream: an archive of a megabyte may contain
+//! gigabytes, of which at most [`MOST_UNPACKED`] are unpacked and only numbers are stored. Existing libraries
+//! keep the text, and do not report the place of a defect.
 
 mod model;
 

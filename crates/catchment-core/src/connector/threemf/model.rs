@@ -1,4 +1,4 @@
-//! A model part of a 3MF file: its unit, its objects and its build, read piece by piece.
+//! A model part of a 3MF file: its unit, its objects and its build, read as a stream.
 
 use crate::budget::Limit;
 use crate::connector::mesh::MAX_TRIANGLES;

@@ -1,4 +1,4 @@
-//! What 3MF files hold, and what is refused of broken ones.
+//! Content of 3MF files, and the errors of broken files.
 
 use super::*;
 use std::io::Write;

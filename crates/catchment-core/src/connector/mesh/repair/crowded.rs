@@ -1,4 +1,4 @@
-//! Edges that more than two triangles share, as where solids touch along an edge.
+//! Edges that more than two triangles share, for example if solids touch along an edge.
 //!
 //! ```text
 //!          D                       Seen along the edge a → b, by angle, counter-clockwise. U runs along it from a to b and has
@@ -8,8 +8,9 @@
 //!            D
 //! ```
 //!
-//! Where both ends of an edge belong to one fan, as when a solid touches itself along that edge alone, the wedges get a corner each in its middle. Nothing
-//! moves. Not promised: edges around which U and D do not alternate stay, as where triangles lie on each other.
+//! If both ends of an edge belong to the same fan, as when a solid touches itself only along that edge, each
+//! wedge receives its own corner at the edge's midpoint. No corner moves. Not promised: edges around which U
+//! and D do not alternate remain, for example if triangles lie on each other.
 
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::sides::{Side, Sides};

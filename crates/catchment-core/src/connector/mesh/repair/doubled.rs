@@ -1,7 +1,8 @@
-//! Triangles whose corners fall together, and triangles on the same three corners.
+//! Triangles with coinciding corners, and duplicate triangles on the same three corners.
 //!
-//! A triangle with two corners in one place has no area, and its sides cancel: without it everything else still meets. Of triangles
-//! on the same corners those of opposite winding cancel, because a sheet without thickness bounds nothing, and of those that are left one is kept.
+//! A triangle with two coinciding corners has no area, and its sides cancel: without it the rest of the mesh
+//! still meets. Triangles of opposite winding on the same corners cancel, because a sheet without thickness
+//! bounds nothing; of the remaining duplicates only the first is kept.
 
 use crate::connector::mesh::indexed::Indexed;
 

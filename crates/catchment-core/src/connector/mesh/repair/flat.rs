@@ -8,8 +8,9 @@
 //!      ╲_m_╱
 //! ```
 //!
-//! The one with the longest edge goes first: a flat neighbour has its third corner between a and b then, and what is left of it is shorter,
-//! so that it ends. The surface moves by the height of the triangle, less than 1e-7 of its length; no corner moves.
+//! The triangle with the longest edge is repaired first: the third corner of a flat neighbour then lies
+//! between a and b, and its remainder is shorter, so the process ends. The surface moves by the height of the
+//! triangle, less than 1e-7 of its length; no corner moves.
 
 use crate::connector::mesh::check::is_flat;
 use crate::connector::mesh::indexed::Indexed;

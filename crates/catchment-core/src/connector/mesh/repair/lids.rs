@@ -6,10 +6,11 @@
 //!   ░░░░░╰┄┄┄┄┄╯░░░░░      thickness bounds nothing.
 //! ```
 //!
-//! Triangles are in one patch where just two of them share an edge. A patch is a lid where every edge of its border has three sides, and the other two
-//! belong to one patch, the same along all of the border.
+//! Triangles belong to the same patch if exactly two of them share an edge. A patch is a lid if every edge of
+//! its border has three sides and the other two belong to a single patch, the same along the whole border.
 //!
-//! Not promised: where three patches meet along a rim, as over a blind hole, any two of them bound a solid, and the mesh is refused.
+//! Not promised: if three patches meet along a rim, as over a blind hole, any two of them bound a solid, and
+//! the mesh is rejected.
 
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::sides::Sides;

@@ -1,4 +1,4 @@
-//! A mesh that bounds no solid as it is written, mended where the solid that it means is beyond doubt.
+//! Repair of a mesh that does not bound a solid as written, if the intended solid is unambiguous.
 //!
 //! ```text
 //! weld, divide ─▶ what is wrong? ─▶ nothing: as it is
@@ -6,10 +6,12 @@
 //!                       └▶ doubled ─▶ flat ─▶ divide ─▶ lids ─▶ winding ─▶ crowded ─▶ what is wrong? ─▶ crossings: unite, and again
 //! ```
 //!
-//! Each step is a file of its own and says what it changes. Corners stay where they are, but for those that welding joins; new ones arise on edges
-//! and where surfaces cross. [`Repairs`] counts what was done, and how far the surface moved.
+//! Each step has its own file, which describes its changes. Corners do not move, except for those that
+//! welding merges; new corners arise on edges and at crossings of surfaces. [`Repairs`] counts the repairs
+//! and gives the largest displacement of the surface.
 //!
-//! Not promised: holes are not closed, and what is left open, crowded or crossed is refused as without repair.
+//! Not promised: holes are not closed, and meshes with remaining open, crowded or crossed edges are rejected
+//! as without repair.
 
 mod crowded;
 mod doubled;

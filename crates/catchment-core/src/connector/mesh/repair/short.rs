@@ -1,4 +1,4 @@
-//! Edges shorter than what welding joins, as they arise where surfaces cross at small angles.
+//! Edges shorter than the welding tolerance, as they arise at crossings of surfaces under small angles.
 //!
 //! ```text
 //!      c               c            The edge from a to b goes, and with it the two triangles beside it; what met at b
@@ -8,7 +8,8 @@
 //!      d               d
 //! ```
 //!
-//! The surface moves by less than the tolerance of the mesh. Not promised: edges that may not go stay.
+//! The surface moves by less than the tolerance of the mesh. Not promised: edges that cannot be removed
+//! remain.
 
 use crate::connector::mesh::indexed::Indexed;
 use glam::DVec3;

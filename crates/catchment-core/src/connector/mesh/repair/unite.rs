@@ -1,16 +1,19 @@
-//! The union of what a mesh winds around: shells that cross or touch become one surface.
+//! Union of the regions that a mesh winds around: shells that cross or touch become a single surface.
 //!
 //! ```text
 //! solid = { p : w(p) ≥ 1 }         w: how many times the surface winds around p
 //! ```
 //!
-//! The work is done by `manifold-rust`, in exact arithmetic (Barki, Guennebaud, Foufou 2015; Zhou, Grinspun, Zorin, Jacobson 2016): the arrangement of all
-//! triangles, the cells that it cuts space into, and how often the surface winds around each. What it does with the result after that, which at times
-//! moves a corner by a millimetre, is left out. It is young and has one
-//! maintainer, so it stands behind this one function and nothing that it gives is believed: the result must wind once around what the mesh winds around and
-//! not at all around the rest, at points on both sides of its triangles and at others spread over its box, and afterwards passes every check of a mesh.
+//! `manifold-rust` does the work, in exact arithmetic (Barki, Guennebaud, Foufou 2015; Zhou, Grinspun, Zorin,
+//! Jacobson 2016): the arrangement of all triangles, the cells that it divides space into, and the winding
+//! number of the surface around each. Its later processing of the result, which sometimes moves a corner by a
+//! millimetre, is not used. The library is young and has a single maintainer, so it is isolated behind this
+//! function and its results are verified: the result must wind exactly once around the regions that the mesh
+//! winds around and not at all around the rest, at points on both sides of its triangles and at others spread
+//! over its box, and then pass every check of a mesh.
 //!
-//! Not promised: anything for meshes that are not closed, which have no solid. Corners where surfaces cross are rounded.
+//! Not promised: meshes that are not closed are not united, because they have no solid. Corners at crossings
+//! of surfaces are rounded.
 
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::shells::winding as winding_around;

@@ -1,10 +1,12 @@
-//! One winding for all triangles of a shell, and shells that enclose what they are meant to.
+//! Consistent winding of all triangles of a shell, and orientation of shells.
 //!
-//! Neighbours across an edge that only they share run along it in opposite senses: a flood over those edges says of each triangle whether it is wound
-//! as the first of its shell. A shell that was wound in both senses is then turned so that it encloses a positive volume, or a negative one where it
-//! lies in an odd number of others, as a cavity does. A shell that was wound in one sense is believed, unless it lies in no other and its volume is negative.
+//! Neighbours across an edge with exactly two triangles run along it in opposite directions: a flood over
+//! those edges determines for each triangle whether its winding agrees with that of the first triangle of its
+//! shell. A shell with mixed windings is then oriented so that it encloses a positive volume, or a negative
+//! volume if it lies in an odd number of other shells, as a cavity does. A shell with consistent winding is
+//! kept, unless it lies in no other shell and its volume is negative.
 //!
-//! Not promised: shells that have but one side (a Möbius band) stay as they are, and are refused.
+//! Not promised: single-sided shells (a Möbius band) remain, and are rejected.
 
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::shells;

@@ -1,4 +1,4 @@
-//! Faces cut into triangles: loops from their borders, holes cut open, ears clipped, all decided in whole numbers.
+//! Triangulation of faces: loops from their borders, holes cut open, ears clipped, all in integer arithmetic.
 //!
 //! ```text
 //!   ┌───────────┐      at a point where borders touch a loop takes the leftmost way, so that it goes around the same
@@ -8,7 +8,7 @@
 //!   └───────────┘
 //! ```
 //!
-//! n² steps for n corners, n³ where no ear is fat; faces have dozens.
+//! n² steps for n corners, n³ without fat ears; faces have dozens of corners.
 
 use super::UnionProblem;
 use super::planes::Model;

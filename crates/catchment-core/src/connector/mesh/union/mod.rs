@@ -12,15 +12,18 @@
 //! corners ──weld──▶ planes ──section, overlay──▶ what is left of every facet ──stitch──▶ faces ──triangles──▶ polygons ──verify──▶ Surface
 //! ```
 //!
-//! Coordinates that are written with a few decimals abut only to rounding, and planes through rounded corners meet in no common point. So equality is
-//! decided once, with a tolerance w, before anything is cut: corners closer than w are one, corners closer than 2w to a plane lie in it, and both halves of
-//! every later question use these answers. What is cut in a plane is decided in whole numbers (`i_overlay`, 64 bits). Every edge is then divided at all
-//! corners on it, and what two facets have of it in opposite senses cancels, which leaves slivers nothing.
+//! Coordinates written with a few decimals abut only to rounding, and planes through rounded corners meet in
+//! no common point. Equality is therefore decided once, with a tolerance w, before any cut: corners closer
+//! than w are merged, corners closer than 2w to a plane lie in it, and all later steps use these decisions.
+//! Cuts within a plane are decided in integers (`i_overlay`, 64 bits). Every edge is then divided at all
+//! corners on it, and opposite edges of two facets cancel, which removes slivers.
 //!
-//! The result is not believed: it must close, cross itself nowhere, and separate inside from outside where the given solids do, at points on both
-//! sides of its own facets and of the given ones. A union that fails is tried again with other tolerances, and then refused with the place.
+//! The result is verified: it must close, must not cross itself, and must separate inside from outside as the
+//! given solids do, at points on both sides of its own facets and of the given facets. A failed union is
+//! repeated with other tolerances, and then rejected with its place.
 //!
-//! Solids that share no area and no volume stay surfaces of their own, to the bit. Not promised: that details smaller than w remain.
+//! Solids that share no area and no volume remain separate surfaces, bit for bit. Not promised: details
+//! smaller than w may vanish.
 
 mod faces;
 mod overlay;

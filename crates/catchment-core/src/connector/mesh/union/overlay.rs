@@ -1,7 +1,9 @@
-//! What is left of every facet: itself without what other solids fill just above it, and without what an earlier solid has of the same face.
+//! The remainder of every facet: the facet minus the sections of other solids just above it, and minus the
+//! parts of the same face that an earlier solid covers.
 //!
-//! Plane by plane, in the two coordinates that are not the largest of its normal, on a lattice of 2⁻⁵⁰ of the largest coordinate, so that a corner has the same two
-//! numbers wherever they are used. Areas that are narrower than w are the rounding of faces that abut: such a solid takes nothing away.
+//! Computed plane by plane, in the two coordinates other than the largest of its normal, on a lattice of 2⁻⁵⁰
+//! of the largest coordinate, so that a corner has the same two numbers in every use. Areas narrower than w
+//! come from the rounding of abutting faces: such a solid removes nothing.
 
 use super::UnionProblem;
 use super::planes::Model;

@@ -1,7 +1,8 @@
-//! Which corners are one, and which facets lie in one plane.
+//! Merging of corners, and grouping of facets by plane.
 //!
-//! Facets that touch and lie in a common plane within 2w, whichever way they face, share the plane of the largest of them. Facets that touch
-//! nothing of it may have a plane of their own that is the same to rounding; nothing depends on that.
+//! Touching facets that lie in a common plane within 2w, whatever their orientation, share the plane of the
+//! largest of them. Facets without contact to the group may have their own plane that is equal to rounding;
+//! no result depends on that.
 
 use super::super::tree::{Bounds, Tree, overlap};
 use crate::connector::Surface;

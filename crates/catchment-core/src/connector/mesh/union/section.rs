@@ -1,4 +1,4 @@
-//! What a solid fills just above a plane, or just below it.
+//! Section of a solid just above a plane, or just below it.
 //!
 //! ```text
 //!        ╱╲             corners above the plane are above, corners in it are not: every facet with corners of both kinds
@@ -7,7 +7,8 @@
 //!     ╱______╲
 //! ```
 //!
-//! The limit of sections that come down to the plane. A face in the plane with the solid above it is filled, one with the solid below it is not.
+//! This is the limit of sections that approach the plane. A face in the plane is filled if its solid is above
+//! it, and empty if its solid is below.
 
 use super::planes::Model;
 use glam::DVec3;

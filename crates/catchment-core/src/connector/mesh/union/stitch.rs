@@ -1,4 +1,5 @@
-//! Borders of facets that meet: points that are one, edges divided where another ends, and what runs both ways cancelled.
+//! Stitching of facet borders: merges points, divides edges at the ends of others, and cancels opposite
+//! edges.
 //!
 //! ```text
 //!      ┌──────┐                    the border of a face is a sum of directed edges: what two of its facets
@@ -7,7 +8,7 @@
 //!      │  G   │
 //! ```
 //!
-//! The surface closes where, over all faces, every edge is there as often in one sense as in the other.
+//! The surface closes if, over all faces, every edge occurs as often in one direction as in the other.
 
 use super::UnionProblem;
 use super::planes::{Model, welded};

@@ -1,4 +1,4 @@
-//! Unions with known volumes, facets and edges; pieces of a cut solid are that solid again.
+//! Unions with known volumes, facets and edges; the pieces of a cut solid unite to that solid.
 
 use super::*;
 use crate::connector::convex_hull;

@@ -1,4 +1,4 @@
-//! Whether a surface separates inside from outside where the given solids do.
+//! Verifies that a surface separates inside from outside as the given solids do.
 //!
 //! ```text
 //!   · outside of all solids            a little to either side of the middle of every facet of the union, and of every
@@ -6,7 +6,8 @@
 //!   · inside of one of them
 //! ```
 //!
-//! Of many facets every n-th is looked at, so that the work is bounded. Not promised: what is thinner than the distance of the points from the facets.
+//! For many facets only every n-th is tested, so that the work is bounded. Not promised: features thinner
+//! than the distance of the points from the facets.
 
 use super::UnionProblem;
 use crate::connector::Surface;
