@@ -1,11 +1,12 @@
-//! From a design file to its area of acceptance: the rooms that compute. The crate `catchment` is what programs use.
+//! From a design file to its area of acceptance: the modules that compute. Programs use the crate
+//! `catchment`.
 //!
 //! ```text
 //! design ─▶ xml ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run
 //! ```
 //!
-//! Lengths are in D, the connector's width; angles are in radians. What asks the system for time, threads, memory, files or
-//! a process is listed with its reason in `tests/sealed.rs`.
+//! Lengths are in D, the connector's width; angles are in radians. `tests/sealed.rs` lists the modules that
+//! use time, threads, memory, files or a process of the system, with the reasons.
 
 pub mod acceptance;
 pub mod advice;

@@ -1,4 +1,4 @@
-//! What bounds a part of a half, alone or four at once.
+//! Bounds of a part of a half, singly or four at a time.
 //!
 //! ```text
 //!        ┌───────────┐        the box around its features, the plane across their mean normal that all of them lie
@@ -7,7 +7,7 @@
 //!        └───────────┘
 //! ```
 //!
-//! In single precision, four to an instruction: whoever asks widens what it asks for by [`rounding`].
+//! Stored in single precision, four per instruction: queries must widen their limits by [`rounding`].
 
 use super::cone::Cone;
 use super::tree::SLACKS;

@@ -1,5 +1,5 @@
 //! The definition of the height in executable form: every facet against every corner, every edge against
-//! every edge. Slow, plain, and the judge of every fast path.
+//! every edge. Slow and plain: the reference for every fast path.
 
 use super::Pair;
 use crate::connector::Surface;

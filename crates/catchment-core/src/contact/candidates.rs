@@ -1,4 +1,5 @@
-//! Which features of the two halves may touch: found once for a neighbourhood of poses, tried at every pose in it.
+//! Candidates: the features of the two halves that may touch, found once for a neighbourhood of poses and
+//! tried at every pose in it.
 //!
 //! ```text
 //!   all pairs of features ──sieve──▶ candidates ──try_at(R)──▶ elements at rotation R
@@ -14,8 +15,9 @@
 //!   facet faces up        n_z > lowest                                     widened to  lowest − skin
 //! ```
 //!
-//! and the window in plan view must be widened by its owner. Directions are compared in whichever frame needs no copy
-//! of a turned shape; (u × w)·s reduces to ±w·n and ±u·n with the normals n of the facets beside the edges.
+//! The owner must widen the window in plan view as well. Directions are compared in the frame that needs no
+//! copy of a rotated shape; (u × w)·s reduces to ±w·n and ±u·n with the normals n of the facets beside the
+//! edges.
 
 use super::Pair;
 use super::element::{Element, Features, Meeting};

@@ -1,4 +1,4 @@
-//! In which directions features can touch: cones of normals.
+//! Directions in which features can touch: cones of normals.
 //!
 //! ```text
 //!       \  α  |  α  /        all normals by which a corner, an edge or a facet can touch, and those of all features of a part, lie
@@ -7,14 +7,17 @@
 //!          \  |  /           two parts can touch only if a and −b, the axis of the other turned round, are within α + β
 //! ```
 //!
-//! A corner's spokes s reach down by h = −a·s beside its axis a. A normal at the angle θ from a, tilted towards where two
-//! neighbouring spokes span, is held by one of them, whose lateral reach that way is at least w, the distance of the axis from the line between their tips:
+//! A corner's spokes s reach down by h = −a·s beside its axis a. Consider a normal at the angle θ from a,
+//! tilted towards the sector between two neighbouring spokes. One of these spokes limits it; the lateral reach
+//! of that spoke in this direction is at least w, the distance of the axis from the line between the two
+//! tips:
 //!
 //! ```text
 //!   w·sin θ − h·cos θ ≤ σ      so that      θ ≤ φ + asin(σ/r)      with  (w, h) = r·(cos φ, sin φ)
 //! ```
 //!
-//! Not promised: the narrowest cone. What would need one of 90° or more is [`Cone::WIDE`], and can touch anything.
+//! Not promised: the narrowest cone. Features that would need a cone of 90° or more have [`Cone::WIDE`], and
+//! can touch anything.
 
 use super::shape::{Corner, INSIDE, Ridge, Shape};
 use glam::{DVec2, DVec3};

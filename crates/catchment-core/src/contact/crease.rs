@@ -1,4 +1,5 @@
-//! The creases of a half: where its surface bends, each from end to end, however its faces are divided into facets.
+//! The creases of a half: the edges at which its surface bends, each from end to end, independent of the
+//! division of its faces into facets.
 //!
 //! ```text
 //!   ┌───────┬───┐       the square has four creases: its diagonal is none, because both sides lie in one plane, and the
@@ -7,7 +8,8 @@
 //!   └───────┴───┘
 //! ```
 //!
-//! A solid has the same creases whatever it was written as, so symmetries are found on them and not on facets.
+//! The creases of a solid do not depend on its description, so symmetries are detected on creases and not on
+//! facets.
 
 use crate::connector::{Half, Surface};
 use crate::tolerance;

@@ -1,4 +1,5 @@
-//! One way in which two halves can touch: a corner on a facet, a facet on a corner, or two crossed edges.
+//! A pair of features of the two halves that can touch: a corner on a facet, a facet on a corner, or two
+//! crossed edges.
 //!
 //! At a fixed rotation every element is a plane in the position c of the COR:
 //!
@@ -7,7 +8,7 @@
 //!   z(x, y) = −(n_x x + n_y y + offset)/n_z                       its height of contact
 //! ```
 //!
-//! valid while the foot of the contact lies on both features.
+//! It is valid while the foot of the contact lies on both features.
 
 use super::Contact;
 use super::shape::Shape;

@@ -1,6 +1,7 @@
-//! The upper envelope of all elements at one rotation: heights wherever the moving half is.
+//! The upper envelope of all elements at one rotation: heights for any lateral position of the moving half.
 //!
-//! All that can carry is listed once for a rotation; where that would be too much, every position is searched by the trees.
+//! All elements that can carry are listed once for a rotation; if the list would be too long, the trees are
+//! searched for every position.
 
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve};

@@ -1,4 +1,4 @@
-//! Where the face centre is when the design does not say: both halves moved so that they first touch with their face centres together.
+//! Default face centre of a design: both halves are moved to first contact with their face centres together.
 //!
 //! ```text
 //!        ┌───────┐  moving                         z   top of the fixed half          ─┐
@@ -7,11 +7,12 @@
 //!   ────╲    ╱───── fixed
 //! ```
 //!
-//! Its height is half way between the bottom of the moving half, lowered without any error until it first touches, and the top of the fixed one.
-//! Where the halves are drawn assembled, it stands in the middle of the box around what both have in that band, in plan view; halves
-//! that are drawn facing have it on their z axis.
+//! Its height is midway between the bottom of the moving half, lowered to first contact at zero error, and
+//! the top of the fixed half. If the halves are drawn assembled, its lateral position is the centre of the
+//! box around the parts of both halves in that band, in plan view; halves drawn facing have it on their z
+//! axis.
 //!
-//! Not promised: that the halves hold where they first touch, which [`mated`](super::mated) asks.
+//! Not promised: that first contact is a rest; [`mated`](super::mated) checks this.
 
 use super::Pair;
 use super::mated::{CONTACT_TOLERANCE, MatedProblem};

@@ -1,4 +1,4 @@
-//! How firmly a contact is held: how far it is from ending at the border of one of its features.
+//! Distance of a contact from the border of its features, at which it would end.
 //!
 //! ```text
 //!       foot                       support
@@ -8,7 +8,8 @@
 //!    d: distance to the border     ╱   ╲ s        −n·s of the spoke that comes closest
 //! ```
 //!
-//! Both fall through zero continuously where the contact ends, so that the moment can be found by interpolation.
+//! Both pass continuously through zero at the end of the contact, so the instant of its end follows by
+//! interpolation.
 
 use super::element::{Features, Meeting};
 use super::shape::Shape;

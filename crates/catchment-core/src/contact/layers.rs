@@ -1,12 +1,12 @@
-//! Which surfaces of the two halves touch: of a connector in layers, whether each meets its partner.
+//! The surfaces of the two halves in contact; for a connector in layers, whether each touches its partner.
 //!
 //! ```text
 //!     ┌─────1─────┐ ┌─────2─────┐     moving half, off by y
 //!   ┌─────1─────┐ ┌─────2─────┐       fixed half: its layer 2 is under the moving layer 1 as well
 //! ```
 //!
-//! Partners are the surfaces of the same number. Lengths in D. Not promised: an answer where a half has slid under an
-//! overhang; it is asked as lowered from above.
+//! Partners are the surfaces with the same number. Lengths in D. Not promised: a result for a half under an
+//! overhang; the query assumes a half lowered from above.
 
 use super::Pair;
 use crate::design::Alignment;

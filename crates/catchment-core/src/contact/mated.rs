@@ -1,17 +1,19 @@
-//! Is the mated pose one? In it the halves must touch, not overlap, and no small error may let them sink
-//! deeper.
+//! Checks the mated pose: in it the halves must touch without overlap, and no small error may let the moving
+//! half sink deeper.
 //!
 //! ```text
 //!   h(aligned) = −cor        the face centres coincide at first contact
 //!   h(aligned ⊕ ε·d) ≥ h(aligned)   for every free direction d
 //! ```
 //!
-//! The second line is tried in every combination of signs of the free degrees of freedom. Slopes below 1 % and
-//! directions far from all of these are not seen: it is a check for wrong geometry, not a proof. Where a half balances that tips at the least error the
-//! first order says nothing; exact motions from small errors do ([`Fall`]).
+//! The second line is tested for every combination of signs of the free degrees of freedom. Slopes below 1 %
+//! and directions far from all of these are missed: the test detects wrong geometry and proves nothing. For a
+//! half in unstable balance the first order is not sufficient; exact motions from small errors decide
+//! ([`Fall`]).
 //!
-//! The seat must also hold: where it leaves an error more play than the design allows, as flat on flat or a round plug's yaw, there is no
-//! one mated pose to align with, and the design has to say what counts.
+//! The seat must also locate the half: if it leaves an error more play than the design allows, such as flat
+//! on flat or the yaw of a round plug, the mated pose is not unique, and the design must state the docking
+//! tolerance.
 
 use super::Pair;
 use super::display_unit::{DisplayUnit, number};

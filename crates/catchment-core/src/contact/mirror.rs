@@ -1,4 +1,5 @@
-//! Mirror symmetries of a pair: poses that are mirror images of each other have the same height and the same fate.
+//! Mirror symmetries of a pair: poses that are mirror images of each other have the same height and the same
+//! outcome.
 //!
 //! ```text
 //!   x → −x   (x, y, roll, pitch, yaw) → (−x,  y,  roll, −pitch, −yaw)
@@ -6,9 +7,10 @@
 //!   both, a half turn about z         → (−x, −y, −roll, −pitch,  yaw)
 //! ```
 //!
-//! Found, not declared: a pair has a symmetry if each of its halves has the same creases after the reflection, to
-//! [`GRAIN`], however its faces are divided into facets. Symmetries that exchange x and y, or turn by other angles, do not
-//! map a grid over Euler angles onto itself and are not looked for.
+//! They are detected, not declared: a pair has a symmetry if each of its halves has the same creases after
+//! the reflection, to [`GRAIN`], independent of the division of its faces into facets. Symmetries that
+//! exchange x and y, or rotate by other angles, do not map a grid over Euler angles onto itself and are not
+//! considered.
 
 use super::crease::{self, Crease};
 use crate::connector::Half;

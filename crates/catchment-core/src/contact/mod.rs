@@ -1,4 +1,4 @@
-//! The height of first contact, and what touches there.
+//! The height of first contact, and the contacts at that height.
 //!
 //! ```text
 //!        ┆ moving half, lowered along −z from far above
@@ -8,12 +8,12 @@
 //! ```
 //!
 //! At a fixed rotation R the envelope is piecewise linear in the lateral position: its pieces come from a
-//! corner of one half on a facet of the other, or from two crossing edges. [`brute`] writes that definition
-//! down in plain loops and judges every fast path.
+//! corner of one half on a facet of the other, or from two crossing edges. [`brute`] implements that
+//! definition in plain loops and is the reference for every fast path.
 //!
-//! Two rules decide about planes and borders that both halves share, in the plane and in space alike. *Heights* are those of closed solids: what lies
-//! over a border, or beyond it by rounding, touches. *Overlap* is that of open ones ([`Nearby::overlaps`]): a point inside both proves it, and surfaces
-//! that fall together do not.
+//! Two rules apply to planes and borders that both halves share. *Heights* are those of closed solids:
+//! features above a border, or beyond it by rounding, touch. *Overlap* is that of open solids
+//! ([`Nearby::overlaps`]): a point inside both proves it, and coincident surfaces do not.
 
 mod bounds;
 pub mod brute;

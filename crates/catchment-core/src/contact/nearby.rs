@@ -1,4 +1,4 @@
-//! What may touch near a moving half that moves on by small steps.
+//! Candidates for contact near a moving half that moves in small steps.
 //!
 //! ```text
 //!   collect about (R₀, c₀)          turn to (R, c): only the candidates are tried
@@ -8,7 +8,8 @@
 //!        ╰───────────╯              else collected anew about (R, c)
 //! ```
 //!
-//! The answers are those of a list collected at every pose, bit for bit: see [`super::candidates`].
+//! The results are bit for bit those of a list that is collected anew at every pose: see
+//! [`super::candidates`].
 
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, ROUNDING, Sieve, Window};

@@ -1,4 +1,4 @@
-//! Whether the halves overlap: whether some point lies inside both.
+//! Overlap of the halves: whether some point lies inside both.
 //!
 //! ```text
 //!      B ┌───────────────┐            the overlap of two solids has a corner that lies on a convex edge of one of them, A;
@@ -8,12 +8,14 @@
 //!           cuts: where the edge meets facets of B      witness: the middle of a part, moved by MARGIN into A
 //! ```
 //!
-//! Both solids are *open*: surfaces that only touch, or that lie in one plane with the material on opposite sides, share no point. Where both
-//! halves end in the same plane with the material on the same side (extruded profiles of one width, mated), edges of A run along facets of B
-//! or meet them on their borders. No border has an owner then, and none is needed: a *witness* decides, a point that lies inside A and inside B.
-//! Where an edge passes through the middle of a facet, the crossing itself is the proof, and no witness is looked for.
+//! Both solids are *open*: surfaces that only touch, or that lie in one plane with the material on opposite
+//! sides, share no point. If both halves end in the same plane with the material on the same side (extruded
+//! profiles of equal width, mated), edges of A run along facets of B or meet them on their borders. No border
+//! rule is needed then, because a *witness* decides: a point that lies inside A and inside B. If an edge
+//! passes through the middle of a facet, the crossing itself is the proof, and no witness is needed.
 //!
-//! Not promised: overlaps thinner than about [`MARGIN`], and halves one of which lies wholly inside the other.
+//! Not promised: overlaps thinner than about [`MARGIN`], and a half that lies wholly inside the other, are
+//! not detected.
 
 use super::Pair;
 use super::hold::inside;

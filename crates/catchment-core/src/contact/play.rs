@@ -1,4 +1,4 @@
-//! The play of the seat: how far off a half may rest and lie as deep as the mated one.
+//! The play of the seat: the largest misalignment at which a half rests as deep as in the mated pose.
 //!
 //! ```text
 //!      h │ ╲             ╱      along a direction d of pose errors:   largest t with h(s·d) ≤ h₀ for all s ≤ t
@@ -6,9 +6,10 @@
 //!        └────├──play──┤── q    sharp seats have none
 //! ```
 //!
-//! Directions are the combinations of signs of the free errors, one radian counting as ρ: first those of one error alone; an error that nothing
-//! stops by itself, up to twice what is allowed, takes no part in the others. A seat that is free in a direction far
-//! from all of these is not found here; the residual misalignment of docked poses shows it. Lengths in D, angles in radians.
+//! Directions are the combinations of signs of the free errors, with radians converted by ρ. Single errors
+//! come first; an error without a limit of its own, up to twice the allowed value, is left out of the
+//! combinations. Not promised: a direction of play far from all of these is missed here; the residual
+//! misalignment of docked poses shows it. Lengths in D, angles in radians.
 
 use super::seat::PATH_STEP;
 use super::{Nearby, Pair};

@@ -1,4 +1,4 @@
-//! Which cells of a lattice a convex polygon covers, row by row.
+//! Cells of a lattice that a convex polygon covers, row by row.
 
 use super::Lattice;
 use super::brute::SEAM;

@@ -1,16 +1,18 @@
-//! Heights of a part over a lattice in plan view, and of first contact over lateral offsets of two of them.
+//! Height maps of the two halves over a lattice in plan view, and the height of first contact over lateral
+//! offsets.
 //!
 //! ```text
 //!     fixed  F(p) = highest z over p          h(o) = max over p of  F(p) + M(p − o)
 //!     moving M(p) = −lowest z over p          where both have something over p; none where they share too little
 //! ```
 //!
-//! Sampled at points, so that a peg that fits its hole meets the rim where it stands between them. Therefore one of the two is worn by a
-//! point all around, first the fixed one, then the moving one, and the higher of both heights counts: a pin that wears away altogether still stops
-//! where its partner is worn. It finds places to look at, exact heights then judge them.
+//! The maps are sampled at points, so a peg that fits its hole collides with the rim if the rim lies between
+//! samples. One of the two maps is therefore eroded by one point all around, first the fixed one, then the
+//! moving one, and the higher of both heights counts: a pin that erodes away completely still stops where its
+//! partner is eroded. The maps only propose positions; exact heights decide.
 //!
-//! [`Relief::without_narrow`] leaves out what is narrower than three points, a web or a pin. Where a half would sink into a seat without it,
-//! [`in_the_way`] says where that is.
+//! [`Relief::without_narrow`] removes features narrower than three points, such as a web or a pin. If a half
+//! would sink into a seat without such a feature, [`in_the_way`] gives its position.
 
 use super::Lattice;
 use super::display_unit::DisplayUnit;

@@ -1,4 +1,4 @@
-//! The seat: where a half counts as docked.
+//! The seat: the region of poses that count as docked.
 //!
 //! ```text
 //!     h │╲   rim    ╱‾‾‾‾    S = { q : h(q) ≤ h₀ + depth }, of that the part connected with the mated pose.
@@ -8,14 +8,18 @@
 //!       └──────┴─┴───── q
 //! ```
 //!
-//! h₀ is the height of first contact without any error. S is entered from above. A half at rest below h₀ − depth has left the seat through its
-//! floor: the mated pose is no minimum then, and that rest is another one. Where the rim of a hollow is lower than the level of its seat, S *leaks*: it reaches over the
-//! rim to where it falls below the floor, and what is in it need not stay ([`Seat::leaks`]). Whether a pose is connected with the mated one is tried along four paths in
-//! the pose error: straight, and its yaw, its rotation or its translation first; along each h must stay at or below h₀ + depth. Poses nearer
-//! than [`CORE`] count as connected. How far the seat reaches by yaw alone, which what is round does all the way, is found once per pair.
+//! h₀ is the height of first contact at zero error. S is entered from above. A half at rest below h₀ − depth
+//! has left the seat through its floor: the mated pose is then not a minimum, and that rest is a different
+//! pose. If the rim of a hollow is lower than the level of its seat, S *leaks*: it extends over the rim to a
+//! region below the floor, and a half in it need not stay ([`Seat::leaks`]). Whether a pose is connected with
+//! the mated pose is tested along four paths in the pose error: straight, and with its yaw, its rotation or
+//! its translation first; along each path h must stay at or below h₀ + depth. Poses nearer than [`CORE`]
+//! count as connected. The range of the seat in yaw alone, which is the full circle for round halves, is
+//! computed once per pair.
 //!
-//! Not promised: walls between two places of rest that are thinner than [`PATH_STEP`] are stepped over, and a seat that bends more than
-//! its four paths do is not recognised to its end: what rests there counts as jammed. Leaks are looked for along each free error, and all of them together. Lengths in D, angles in radians.
+//! Not promised: walls between two rests that are thinner than [`PATH_STEP`] are stepped over, and a seat
+//! with more bends than its four paths is not recognised completely: rests in the remainder count as jammed.
+//! Leaks are searched along each free error, and along all of them together. Lengths in D, angles in radians.
 
 use super::mated::CONTACT_TOLERANCE;
 use super::{Nearby, Pair};

@@ -1,14 +1,16 @@
-//! Where aligned halves would settle that do not hold as they are drawn, and the connector that takes that for its mated pose.
+//! The rest that aligned halves reach if the drawn pose is not a rest, and the connector with that rest as
+//! its mated pose.
 //!
 //! ```text
 //!   drawn      ╲  ▁▁▁  ╱          settled   ╲     ╱        the moving half moved there: the same contacts at no error
 //!               ╲ ▁▁▁╱                       ╲▁▁▁╱
 //! ```
 //!
-//! A compass search on the height of first contact h over the free errors that matter: of all combinations of signs the one that
-//! lets the half sink deepest is taken, and gone on with while it leads on; where none does the step is halved, from `FIRST` to `LAST`. It stays
-//! near: what sinks farther than `FARTHEST` runs off. Not promised: the end of a ravine between all of these directions;
-//! [`mated`](super::mated) asks afterwards, as it asks any pair.
+//! A compass search on the height of first contact h over the free errors that count: of all combinations of
+//! signs the step with the deepest descent is taken, and repeated while it descends. If no step descends, the
+//! step is halved, from `FIRST` to `LAST`. The search stays near: a half that sinks farther than `FARTHEST`
+//! has run off. Not promised: the end of a ravine between all of these directions; [`mated`](super::mated)
+//! checks the result as it checks any pair.
 
 use super::Pair;
 use super::play::{directions, unit};

@@ -1,15 +1,16 @@
-//! A surface prepared for contact: what can touch, and in which directions it supports.
+//! A surface prepared for contact: the features that can touch, and the directions in which they support.
 //!
-//! Something touches first only where its solid is locally convex: a corner, a convex edge, a facet. A contact
-//! normal n (pointing from the fixed to the moving half) is *supported* by a feature when the solid lies
-//! locally on one side of the plane through it with normal n:
+//! A first contact needs a locally convex solid: a corner, a convex edge, a facet. A feature *supports* a
+//! contact normal n (from the fixed to the moving half) if the solid lies locally on one side of the plane
+//! through it with normal n:
 //!
 //! ```text
 //!   corner v   n·(w − v) ≤ 0 for every neighbour w
 //!   edge       n·s ≤ 0 for the two directions s that lead from it into its facets
 //! ```
 //!
-//! (for the fixed half; ≥ for the moving one). All other contacts are dominated by a supported one.
+//! This holds for the fixed half; for the moving half with ≥. All other contacts are dominated by a supported
+//! contact.
 
 use super::candidates::FLUSH;
 use super::plan::{Plan, PlanTree};

@@ -1,4 +1,4 @@
-//! Halves that lie side by side where they are mated: they share a vertical plane and no area in plan view.
+//! Detects halves that are mated side by side: they share a vertical plane and no area in plan view.
 //!
 //! ```text
 //!   plan view    ┌─────────┬─────────┐       first contact at no error is along the plane between them: pushed together
@@ -6,8 +6,9 @@
 //!                └─────────┴─────────┘
 //! ```
 //!
-//! Asked of the halves as they are, not of what touches: whether points of one plane touch is a matter of rounding. The planes that are tried are the
-//! vertical facets of the fixed half, and those across x and y; halves that interlock without an area in common lie on no side of one plane and are not seen.
+//! The test uses the halves themselves, not the contacts: whether points of one plane touch is a matter of
+//! rounding. The planes tested are the vertical facets of the fixed half, and those across x and y. Not
+//! promised: halves that interlock without a common area are not separated by a single plane, and are missed.
 
 use super::Pair;
 use crate::pose::CorPose;

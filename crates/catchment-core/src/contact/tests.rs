@@ -1,4 +1,4 @@
-//! Fast paths against the judge, and the exact gradient against finite differences.
+//! Fast paths compared with the brute-force reference, and the exact gradient with finite differences.
 
 use super::{Lattice, Pair, brute};
 use crate::connector::Connector;

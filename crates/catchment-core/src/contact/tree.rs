@@ -7,8 +7,8 @@
 //!          └──
 //! ```
 //!
-//! Every facet, corner and convex edge is a leaf, so that the pairs of leaves of two trees hold every pair of features once. What is asked of
-//! two trees walks down both of them at once ([`super::search`]).
+//! Every facet, corner and convex edge is a leaf, so that the pairs of leaves of two trees contain every pair
+//! of features once. Queries on two trees descend both of them at once ([`super::search`]).
 
 use super::bounds::{Four, One};
 use super::candidates::FLUSH;

@@ -1,4 +1,5 @@
-//! The pair at one rotation, as a list of elements: where a lowered half is stopped, and what touches there.
+//! The pair at one rotation, as a list of elements: the height at which a lowered half stops, and its
+//! contacts there.
 
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};

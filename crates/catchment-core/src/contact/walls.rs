@@ -1,4 +1,5 @@
-//! Whether a mated pair has walls that face each other closely: a peg in its hole, a pin in its socket, a plug under a lip.
+//! Detects steep walls of a mated pair that face each other closely: a peg in its hole, a pin in its socket,
+//! a plug under a lip.
 //!
 //! ```text
 //!      moving
@@ -8,8 +9,8 @@
 //!                    │ fixed
 //! ```
 //!
-//! Where no such walls are, the half sinks onto slopes that centre it, and small errors of its motion heal. Between walls
-//! they do not: a touch on the other side sends it elsewhere.
+//! Without such walls the half sinks onto slopes that centre it, and small errors of its motion decay.
+//! Between walls they do not: a contact with the opposite wall changes the motion.
 
 use super::plan::{Plan, PlanTree};
 use super::shape::Shape;

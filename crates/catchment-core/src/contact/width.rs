@@ -1,4 +1,4 @@
-//! D of halves whose design does not say it: how wide they are where they can touch.
+//! Default D of a design: the width of the halves in the region in which they can touch.
 //!
 //! ```text
 //!    ┌───────────────┐   moving, as mated
@@ -8,8 +8,9 @@
 //!       ├── D ──┤        the larger side, along x or y, of what both boxes share
 //! ```
 //!
-//! Facets that look sideways or away touch nothing first. Boxes, not outlines: a square that stands on its corner counts with its diagonal.
-//! Not promised: that D is what a person would name as the width. It is only a measure, in which answers are told.
+//! Facets that face sideways or away cannot be first contacts. The measure uses boxes, not outlines: for a
+//! square that stands on its corner the diagonal counts. Not promised: that a designer would call D the
+//! width. It is only the unit of the results.
 
 use crate::connector::Half;
 use crate::connector::mesh::PLAUSIBLE_WIDTH;

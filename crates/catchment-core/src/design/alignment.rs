@@ -1,4 +1,4 @@
-//! The alignment problem: everything but the geometry that the answer depends on.
+//! The alignment problem: every input besides the geometry that changes the result.
 
 use super::Family;
 use super::complaint::Complaint;

@@ -1,4 +1,4 @@
-//! What can be wrong with a design: facts, each with advice.
+//! Errors in a design: facts, each with advice.
 
 use super::FamilySpec;
 use super::keys::{MOST_PARTS, Range};

@@ -1,4 +1,4 @@
-//! What a file held, so that a stored design says what was computed and not only where it lay.
+//! Content of a file, so that a stored design records its geometry and not only a path.
 
 use super::{ConnectorSpec, Design, Repairs};
 use serde::{Deserialize, Serialize};

@@ -1,12 +1,12 @@
-//! A digest of everything in a design that changes an answer.
+//! A digest of all inputs in a design that change a result.
 //!
 //! ```text
 //! tag ‖ connector (family and parameters, or halves and face height) ‖ alignment  ──SHA-256──▶ 32 bytes
 //! ```
 //!
-//! Of a mesh counts what it held and its scale. Name, unit, width and paths do not count: results are in D. Numbers go in as
-//! little-endian doubles with −0 as 0, counts as 64 bits, texts with their length, so that no two designs share
-//! their bytes.
+//! For a mesh its content and its scale are included. Name, unit, width and paths are not: results are in D.
+//! Numbers enter as little-endian doubles with −0 as 0, counts as 64 bits, texts with their length, so that
+//! different designs never share their bytes.
 
 use super::family::Value;
 use super::{

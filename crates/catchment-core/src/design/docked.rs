@@ -1,4 +1,4 @@
-//! What counts as docked: how deep, and how far off a half may rest.
+//! The docking tolerance: the depth and the residual misalignment that count as docked.
 //!
 //! ```text
 //!   [docked]

@@ -1,4 +1,4 @@
-//! The text of a design with one key replaced: what a sweep does. The rest stays as its author wrote it.
+//! The text of a design with one key replaced, for a sweep. All other text remains as its author wrote it.
 
 use super::complaint::Complaint;
 use super::keys::{Key, Kind, Table};

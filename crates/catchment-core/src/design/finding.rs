@@ -1,4 +1,4 @@
-//! What is wrong, where it stands, and what to do about it: data, for whoever shows it.
+//! An error with its place and advice, as data for any front end.
 
 use super::line_column;
 use crate::terminal::shown;

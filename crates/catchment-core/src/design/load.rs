@@ -1,4 +1,4 @@
-//! The bytes of a design file, before they mean anything.
+//! The bytes of a design file, before parsing.
 
 use super::read::LARGEST_FILE;
 use crate::terminal::shown;

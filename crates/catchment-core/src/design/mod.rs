@@ -1,16 +1,16 @@
-//! What a person wrote, typed: the connector they mean and the alignment problem it has to solve.
+//! The user's design, typed: the connector and the alignment problem that it must solve.
 //!
 //! ```text
 //! design.toml ──load──▶ text ──read──▶ DesignFile { design, sources }
 //!                              └─────▶ Problems: all of them, each with line, column and advice
 //! ```
 //!
-//! A [`Design`] is resolved: units are gone (lengths in D, angles in radians), defaults are filled in, every
-//! number has been checked. Geometry is built from it by the next room, [`crate::connector`], which is also
-//! where geometry is judged: this room does not know whether halves fit.
+//! A [`Design`] is resolved: all units are converted (lengths in D, angles in radians), defaults are filled
+//! in, and every number has been checked. The next module, [`crate::connector`], builds geometry from it and
+//! checks that geometry; this module does not know whether halves fit.
 //!
-//! One table, [`keys`], says what a design file may contain; the reader, the JSON schema for editors
-//! ([`json_schema`]) and the commented starting points ([`template`]) all come from it.
+//! The table [`keys`] lists the content of a design file; the reader, the JSON schema for editors
+//! ([`json_schema`]) and the commented starting points ([`template`]) all derive from it.
 
 mod alignment;
 mod complaint;

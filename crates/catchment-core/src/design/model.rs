@@ -1,4 +1,4 @@
-//! The resolved design: no units, no defaults left open.
+//! The resolved design: without units, and with all defaults filled in.
 
 use super::{Alignment, Drawn, Family, FamilySpec, FileSpec, MeshContent, PartSpec, Placement};
 use crate::pose::DofSet;

@@ -1,4 +1,4 @@
-//! The title of a design whose parameters were replaced: the name in its file, with the values in force.
+//! The title of a design after changes to its parameters: the name in its file, with the current values.
 //!
 //! ```text
 //!   name in the file          replaced               title
@@ -7,8 +7,8 @@
 //!   V-Face, AR 1, COR 0       --over aspect_ratio    V-Face, COR 0
 //! ```
 //!
-//! A name is free text. What is recognised is a comma-separated part with one of the words of a [`Parameter`] before a number. A value
-//! that a name states in other words stays.
+//! A name is free text. A comma-separated part is recognised if it contains a word of a [`Parameter`] before
+//! a number. Values that a name states in other words remain unchanged.
 
 use super::Design;
 

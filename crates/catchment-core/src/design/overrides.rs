@@ -1,5 +1,5 @@
-//! A design with one setting changed: what sweeps and command-line options do. The rules are those of the file, and the name states the new value
-//! ([`super::name`]).
+//! A design with a changed setting, for sweeps and command-line options. The rules of the file apply, and the
+//! name shows the new value ([`super::name`]).
 
 use super::complaint::Complaint;
 use super::keys;

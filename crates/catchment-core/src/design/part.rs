@@ -1,4 +1,4 @@
-//! The parts of a half: what a person bought, printed or cut, each with its place.
+//! The parts of a half, each with its position.
 //!
 //! ```text
 //!        z, turned to `axis`

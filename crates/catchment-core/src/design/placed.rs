@@ -1,4 +1,4 @@
-//! How parts stand in their files, and how they come from there face to face.
+//! Placement of parts: from the coordinates of their files to the mated pose.
 //!
 //! ```text
 //!   drawn = "facing"                              drawn = "assembled"
@@ -7,9 +7,9 @@
 //!        ▲ its face centre on the z axis               ▲ fixed and moving share their face centre
 //! ```
 //!
-//! The face centre is where the mated halves' face centres fall together; pose errors are offsets of it, and the centre of rotation is measured
-//! from it. Where its height is not given, it is mid height of what the mated halves share along the approach, and the halves are mated
-//! where they first touch without any error.
+//! The face centres of the mated halves coincide; pose errors are offsets of the face centre, and the centre
+//! of rotation is measured from it. Its default height is mid height of the region
+//! that the mated halves share along the approach, with the halves mated at first contact at zero error.
 
 use serde::{Deserialize, Serialize};
 

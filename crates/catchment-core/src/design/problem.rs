@@ -1,4 +1,4 @@
-//! Problems: complaints with their places in the file.
+//! Errors with their places in the file.
 
 use super::complaint::Complaint;
 use super::finding::Findings;

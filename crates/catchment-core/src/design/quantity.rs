@@ -1,7 +1,7 @@
 //! Numbers with units: `"5 mm"`, `"30 deg"`, `"0.5 rad"`, `"0.2 D"`.
 //!
-//! A bare number is in D or radians. A length with a unit becomes a number of D through the width of the
-//! design, which only a design with a unit has.
+//! A bare number is in D or radians. A length with a unit is converted to D by the width of the design, which
+//! needs a design with a unit.
 
 use super::complaint::{Complaint, Dimension};
 use super::{Design, LengthUnit};

@@ -1,4 +1,4 @@
-//! From the text of a design file to a [`Design`], or to all its problems at once.
+//! Parses the text of a design file into a [`Design`], or into all its errors at once.
 
 use super::complaint::Complaint;
 use super::family::Value;

@@ -1,4 +1,4 @@
-//! From the tables of own halves to what they are: pieces, a mesh, or parts.
+//! Parses the tables of own halves: pieces, a mesh, or parts.
 
 use super::complaint::Complaint;
 use super::keys::{self, Key, Table};

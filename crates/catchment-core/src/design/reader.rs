@@ -1,7 +1,7 @@
-//! A typed walk over a TOML document that notes every problem and goes on.
+//! A typed traversal of a TOML document that records every error and continues.
 //!
-//! A getter returns `None` when the key is absent *or* its value is wrong; in the second case the problem is
-//! on the list, and a document with problems never becomes a design.
+//! A getter returns `None` if the key is absent *or* its value is wrong; in the second case the error is on
+//! the list, and a document with errors never becomes a design.
 
 use super::complaint::Complaint;
 use super::keys::{self, Key, Kind, Table};

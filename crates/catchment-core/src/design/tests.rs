@@ -1,4 +1,4 @@
-//! The design file as a person meets it: what is read, and what is said about what cannot be.
+//! The design file as a user sees it: valid input, and the messages for invalid input.
 
 use super::*;
 use crate::pose::{Dof, DofSet, Mount};

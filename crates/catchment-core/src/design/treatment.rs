@@ -1,6 +1,7 @@
-//! What may be done to a mesh before it is used, and what was done.
+//! Permitted changes to a mesh before use, and a record of the changes made.
 //!
-//! Repairs change a mesh and not the solid that it bounds, but for the deviation that is told; holes are not closed.
+//! Repairs change a mesh but not the solid that it bounds, except for the recorded deviation; holes are not
+//! closed.
 
 use super::{Design, FileSpec, HalfSpec, Meshed};
 use crate::terminal::shown;

@@ -8,8 +8,9 @@
 //!                             └─▶ CSV            the first table with keys, every digit
 //! ```
 //!
-//! A result implements [`Subject`] once, beside its type; the renderers are in `catchment-report`. A [`Table`] holds values, not text: its columns say
-//! how people read them ([`Format`]) and under which keys programs do. Lengths are in D and angles in radians wherever a program reads them.
+//! A result implements [`Subject`] once, beside its type; the renderers are in `catchment-report`. A
+//! [`Table`] holds values, not text: its columns define the format for people ([`Format`]) and the keys for
+//! programs. Lengths are in D and angles in radians wherever a program reads them.
 
 mod number;
 mod table;

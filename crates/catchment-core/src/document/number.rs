@@ -1,4 +1,4 @@
-//! Numbers as people and programs read them.
+//! Formats of numbers for people and programs.
 
 use std::fmt::Write;
 

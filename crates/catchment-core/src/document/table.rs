@@ -1,4 +1,4 @@
-//! Tables of values: what people see of them, and what programs read.
+//! Tables of values, with their forms for people and for programs.
 //!
 //! ```text
 //!   column   title "docks"   format Tenths   keys aligned, aligned_lo, aligned_hi

@@ -1,5 +1,5 @@
-//! The one clock of the library. Where the system has none (`wasm32-unknown-unknown`), no time passes: stopwatches
-//! stay at zero and deadlines never come.
+//! The clock of the library. On a system without a clock (`wasm32-unknown-unknown`) no time passes:
+//! stopwatches stay at zero and deadlines never expire.
 
 use std::time::Duration;
 

@@ -1,7 +1,7 @@
-//! Libraries that panic on what people give them.
+//! Protection against libraries that panic on user input.
 //!
-//! A panic of this program is a bug and is told as one. One of a library whose answers are not believed anyway is no more than a
-//! refusal; whoever tells panics asks [`is_expected`] and is silent.
+//! A panic of this program is a bug and is reported as such. A panic of a library whose results are verified
+//! anyway counts as a failure of that library; a panic hook must stay silent if [`is_expected`] is true.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};

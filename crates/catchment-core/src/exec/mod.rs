@@ -1,9 +1,9 @@
-//! How a computation runs: threads, cancel, clock, progress, memory budget. Nothing here may change a bit of a
-//! result; what may change the answer is a room's `Settings`.
+//! Execution of a computation: threads, cancellation, clock, progress, memory budget. Nothing here changes a
+//! bit of a result; settings that change the result are in a module's `Settings`.
 //!
-//! It is also the only room that asks the system for anything: threads, the time, and how much memory is free. Where a
-//! system lacks one of them (`wasm32-unknown-unknown` lacks all), work runs on the caller's thread, no time passes, and
-//! 4 GiB count as free.
+//! Only this module uses system services: threads, the time, and the amount of free memory. On a system
+//! without them (`wasm32-unknown-unknown` lacks all) work runs on the caller's thread, no time passes, and 4
+//! GiB count as free.
 
 mod clock;
 mod guard;

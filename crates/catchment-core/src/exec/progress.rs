@@ -1,4 +1,4 @@
-//! What a run tells about its progress: a fraction per stage that never goes back.
+//! Progress of a run: a fraction per stage that never decreases.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,5 +1,5 @@
-//! The threads of a run. The process-wide pool of `rayon` is never asked for: it cannot be sized by a run, and it panics
-//! where the system refuses threads.
+//! The threads of a run. The process-wide pool of `rayon` is never used: a run cannot set its size, and it
+//! panics if the system refuses threads.
 //!
 //! ```text
 //!   with_threads(n)   a pool of n threads of its own, or an error
@@ -8,8 +8,9 @@
 //!   each              pieces of work side by side, every one on a thread that works for it alone
 //! ```
 //!
-//! A thread that has its stack and then finds no room for what else it begins with ends the process. So the system is not
-//! asked for threads whose stacks would fill what the limit of the address space leaves: they are refused before.
+//! A thread that has its stack but finds no memory for its further startup ends the process. Therefore the
+//! system is not asked for threads whose stacks would fill the remaining address space: such requests are
+//! rejected in advance.
 
 use super::memory::{self, Bytes};
 use crate::terminal::escaped;

@@ -1,4 +1,4 @@
-//! Where heights come from: the definition, or a fast path that the same tests hold to it.
+//! Backends that compute heights: the definition, and fast paths that the same tests verify.
 //!
 //! ```text
 //!   rotations of the grid   0 ········ 3 4 5 6 7 ········ n        a backend fills the slabs of any range of them;

@@ -1,4 +1,4 @@
-//! Which rotations of a grid are mirror images of each other: only one of each is computed.
+//! Rotations of a grid that are mirror images of each other: only one of each set is computed.
 //!
 //! ```text
 //!      pitch ▲

@@ -9,9 +9,9 @@
 //!         mated
 //! ```
 //!
-//! Lengths in D, angles in radians. The heights are exact at the cells' centres up to single precision; nothing is
-//! promised about what lies between two centres. Any range of a grid's rotations can be computed apart, and parts put
-//! together are the whole, bit for bit.
+//! Lengths in D, angles in radians. The heights are exact at the cells' centres up to single precision. Not
+//! promised: heights between centres. Any range of a grid's rotations can be computed separately, and the
+//! assembled parts equal the whole, bit for bit.
 
 mod backend;
 mod fold;

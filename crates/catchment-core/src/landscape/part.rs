@@ -1,4 +1,4 @@
-//! Pieces of a landscape, computed apart and put together again: the same bits, however it was cut.
+//! Parts of a landscape, computed separately and assembled: the same bits for any division.
 
 use super::{Fold, Grid, Landscape, Patches, Relief};
 use std::ops::Range;

@@ -1,4 +1,5 @@
-//! The landscape together with what carries the moving half at every cell: heights and their exact gradients.
+//! The gradient field of the landscape: at every cell the height, the contact that carries the half, and the
+//! exact gradient.
 //!
 //! ```text
 //!   h │  ╲ patch 0                 At one rotation the height is piecewise linear in x and y. A cell keeps its height
@@ -8,8 +9,8 @@
 //!                                  ∂h/∂(x, y, ω) = g₀ + k_x·g_x + k_y·g_y        k: cell numbers along x and y
 //! ```
 //!
-//! Six bytes per cell, and only one of every set of rotations that are mirror images ([`Fold`]). Where several contacts
-//! carry the half at once, a cell keeps the first of them.
+//! It needs six bytes per cell, and stores only one of each set of rotations that are mirror images
+//! ([`Fold`]). If several contacts carry the half at once, a cell stores the first of them.
 
 use super::backend::{lateral, lateral_lattices};
 use super::heights::{usable, within};

@@ -1,4 +1,4 @@
-//! How finely the error box is sampled, as a person writes it: `30`, `x=40,yaw=24`, `20,yaw=36`.
+//! Resolution of the error box in text form: `30`, `x=40,yaw=24`, `20,yaw=36`.
 
 use super::Grid;
 use crate::design::Alignment;

@@ -1,5 +1,5 @@
-//! Figures of merit by their definitions, in plain loops over one flag per cell: the judges of the fast paths, and
-//! enough for small grids.
+//! Figures of merit by their definitions, in plain loops over a flag per cell: the reference for the fast
+//! paths, and sufficient for small grids.
 
 use crate::landscape::Grid;
 

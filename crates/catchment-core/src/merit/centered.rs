@@ -1,4 +1,5 @@
-//! The largest box in the accepted set with its centre at zero: what a robot whose errors are centred can use.
+//! The largest box in the accepted set with its centre at zero: the tolerance for a robot with centred
+//! errors.
 //!
 //! ```text
 //!        ░░░░░░░
@@ -8,11 +9,11 @@
 //!          ░░░             halfᵢ: half-width of the wanted box
 //! ```
 //!
-//! The box grows from zero until it meets a rejected cell, or the border of the error box, beyond which nothing is
-//! known. It ends on cell borders, so its half-width is right to half a cell along the axis that stopped it. With
-//! an even number of cells no centre lies at zero; the cells that meet there all count.
+//! The box grows from zero until it meets a rejected cell, or the border of the error box, beyond which
+//! outcomes are not known. It ends on cell borders, so its half-width is accurate to half a cell along the
+//! axis that limits it. With an even number of cells no centre lies at zero; all cells that meet there count.
 //!
-//! Where poses can be followed one by one, a run seeks it by them instead ([`crate::run`]).
+//! If poses can be followed singly, a run finds the box by exact motions instead ([`crate::run`]).
 
 use super::{MeritError, advance, axis_number, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};

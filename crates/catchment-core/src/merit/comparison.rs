@@ -1,5 +1,5 @@
-//! Two acceptances of the same errors, compared: how much they overlap, which outcomes they confuse, and how far from
-//! the border of the first they differ.
+//! Comparison of two acceptances of the same errors: their overlap, their confusion matrix, and the distance
+//! of the differences from the border of the first.
 //!
 //! ```text
 //!        first ┌───────┐              Jaccard     = ■ / (▒ + ■ + ░)      1 where neither accepts anything
@@ -9,13 +9,15 @@
 //!                 └───────┘
 //! ```
 //!
-//! Distance: from the centre of a cell on which they differ to the centre of the nearest cell that the *first* decides
-//! the other way. 1 cell touches the border. In units of the error box each axis is divided by its range, as for ONAA.
+//! Distance: from the centre of a cell with different labels to the centre of the nearest cell that the
+//! *first* labels the opposite way. A distance of 1 cell touches the border. In units of the error box each
+//! axis is divided by its range, as for ONAA.
 //!
-//! Grids are the same, or one is finer by odd factors along its axes: then every centre of the coarse grid is one of
-//! the fine grid too, and the two are compared there, exactly. Nothing is interpolated; other grids are refused.
+//! The grids are equal, or one grid is finer by odd factors along its axes: then every centre of the coarse
+//! grid is also a centre of the fine grid, and the two are compared exactly there. Nothing is interpolated;
+//! other grids are rejected.
 //!
-//! Not promised: which of the two is right.
+//! Not promised: a statement which of the two is correct.
 
 use super::distance::squared_distances;
 use super::onaa::Onaa;

@@ -1,12 +1,13 @@
-//! Distance from every cell of a grid to the nearest marked one, exactly.
+//! Exact distance from every cell of a grid to the nearest marked cell.
 //!
 //! ```text
 //!   d²(p) = min over marked q of Σ (wₖ (pₖ − qₖ))²     one axis after another: along a line, the lower envelope of
 //!                                                     the parabolas that stand on what the axes before have left
 //! ```
 //!
-//! O(cells · axes), after Felzenszwalb and Huttenlocher (Theory of Computing 8, 2012). Distances are between centres, in
-//! units of `spacing`; single precision, 1e-7 of themselves. [`super::brute::squared_distances`] is the definition.
+//! O(cells · axes), after Felzenszwalb and Huttenlocher (Theory of Computing 8, 2012). Distances are between
+//! centres, in units of `spacing`; single precision, relative error 1e-7. [`super::brute::squared_distances`]
+//! is the definition.
 
 use super::MeritError;
 use crate::advice::Advice;

@@ -1,4 +1,4 @@
-//! What slices say about the whole: two estimates of the full-dimensional ONAA edge.
+//! Two estimates of the full-dimensional ONAA edge from slices.
 //!
 //! ```text
 //!   yaw ▲                    corners (e, e) of the largest cubes of the slices x-y, x-roll, x-pitch, x-yaw,
@@ -11,8 +11,8 @@
 //! With `n_x = n_y`, which y-yaw equal to x-yaw means, `n_x + n_y = 1/e_xy` and `n_x + n_a = 1/e_xa`, so that
 //! `1/d = 1/e_xy + Σ (1/e_xa − 1/(2·e_xy))` over the rotations a.
 //!
-//! Not promised: that the true edge lies between the two. Slices through zero see nothing of the rest of the error
-//! box, and an ONAA cube need not be centred. Edges are shares of the error box, in [0, 1].
+//! Not promised: that the true edge lies between the two. Slices through zero contain no information on the
+//! rest of the error box, and an ONAA cube need not be centred. Edges are shares of the error box, in [0, 1].
 //!
 //! Source: the dissertation, section 4.2.2.
 

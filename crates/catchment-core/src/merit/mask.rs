@@ -1,13 +1,14 @@
-//! Marked cells of a grid, one bit each.
+//! Marked cells of a grid, as bits.
 //!
 //! ```text
 //!   axis 0 ─▶  one row is one or more words:   ░░▓▓▓░░░ ░▓▓░░···   (· padding, never marked)
 //!   the other axes: rows a fixed number of words apart, so that a step along them is an operation on words
 //! ```
 //!
-//! 64 cells are treated at once, and boxes one axis at a time, so that growing costs O(n · cells / 64) and fitting
-//! boxes of any size O(n · log(size) · cells / 64). All axes but the last are done slab by slab, while the slab is in
-//! the cache. Memory: a bit per cell, and what fills up the last word of each row of the first axis.
+//! 64 cells are processed at once, and boxes one axis at a time, so that growing costs O(n · cells / 64) and
+//! fitting boxes of any size O(n · log(size) · cells / 64). All axes but the last are processed slab by slab,
+//! while the slab is in the cache. Memory: a bit per cell, plus the padding of the last word of each row of
+//! the first axis.
 
 use super::MeritError;
 use crate::acceptance::Outcome;

@@ -1,7 +1,9 @@
-//! Which features of a half are each other's images: turns and reflections about the approach axis that map the half onto itself.
+//! Classes of equivalent features of a half: rotations and reflections about the approach axis that map the
+//! half onto itself map the features of a class onto each other.
 //!
-//! Looked for are turns by multiples of 30° and 45°, and the same with y reflected before. A half has one if every crease comes to lie on
-//! one of its creases, to [`GRAIN`], however its faces are divided into facets. Of halves of more than [`MOST_FACETS`] none is looked for but the identity.
+//! The search covers rotations by multiples of 30° and 45°, and the same after a reflection of y. A half has
+//! such a symmetry if every crease maps onto one of its creases, to [`GRAIN`], independent of the division of
+//! its faces into facets. For halves of more than [`MOST_FACETS`] only the identity is considered.
 
 use super::Lookup;
 use crate::connector::Half;

@@ -1,4 +1,5 @@
-//! The features of a half that a person would change: faces, edges and corners as a designer has them, not as a mesh does.
+//! The features of a half that a designer would change: faces, edges and corners in the sense of a designer,
+//! not of a mesh.
 //!
 //! ```text
 //!   face     facets that meet at less than 30°                           the wall of a hole, a ball, a floor cut into triangles
@@ -6,12 +7,15 @@
 //!   corner   where different edges meet, and points without any          the tip of a cone
 //! ```
 //!
-//! A contact is between two of them, one of each half. It is told of the largest that touch there: what lies flush is face on face, also
-//! where corners carry it, and an edge that lies on a face is no pair of corners.
+//! A contact is between two features, one of each half. It is described by the largest features that touch
+//! there: flush surfaces touch face on face even if corners carry them, and an edge that lies on a face is
+//! not described as a pair of corners.
 //!
-//! Features that a turn or a reflection of their own half about the approach axis maps onto each other are of one class.
+//! Features belong to the same class if a rotation or reflection of their half about the approach axis maps
+//! them onto each other.
 //!
-//! Not promised: anything about rounds that are meshed with twelve sides and fewer, which are corners and edges. Lengths in D, angles in radians.
+//! Not promised: round surfaces meshed with twelve sides or fewer are not recognised; they count as corners
+//! and edges. Lengths in D, angles in radians.
 
 use super::element::Features as Elements;
 use super::{Contact, Meeting, Pair};

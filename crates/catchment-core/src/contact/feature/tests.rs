@@ -1,4 +1,4 @@
-//! Features of halves whose features are known.
+//! Features of halves with known features.
 
 use super::*;
 use crate::connector::Connector;

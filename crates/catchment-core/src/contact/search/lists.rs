@@ -1,4 +1,4 @@
-//! Pairs of features that are near each other, kept for a neighbourhood of poses, of halves of many facets.
+//! Lists of nearby pairs of features, kept for a neighbourhood of poses, for halves with many facets.
 //!
 //! ```text
 //!        ╭──────────────────╮  list 0: pairs within 0.3 D at (R₀, c₀), from the trees
@@ -9,18 +9,23 @@
 //!        ╰──────────────────╯
 //! ```
 //!
-//! Every pair has its *clearance*: a lower bound of the distance of the two features where the list was made. At another pose two features within `reach` of
-//! each other have a clearance of at most `moved` + `reach`, so of a list sorted by clearance the first part answers, as long as that sum is not above the
-//! reach of the list. Directions are sieved as in [`super::super::candidates`], widened by the turn for which a list holds.
+//! Every pair has its *clearance*: a lower bound of the distance of the two features at the pose of the list.
+//! At another pose two features within `reach` of each other have a clearance of at most `moved` + `reach`.
+//! In a list sorted by clearance an initial part therefore answers the query, as long as that sum is at most
+//! the reach of the list. Directions are sieved as in [`super::super::candidates`], widened by the rotation
+//! for which a list holds.
 //!
-//! A wider list serves for longer and takes longer to make, so it is rented before it is bought (ski rental: at most about twice the least cost). Lists
-//! are made from the trees, and for some places it is kept what a wider list there would have saved. A wider list is made once that exceeds its price.
-//! A list that served a single query was a waste: the next query goes to the trees, and a list is made at the second query about the same pose.
+//! A wider list serves longer and costs more to make, so it is rented before it is bought (ski rental: at
+//! most about twice the minimum cost). Lists are made from the trees, and for each of several poses the
+//! savings of a wider list there are accumulated. The wider list is made once its savings exceed its price. A
+//! list that serves a single query is a waste: the next query uses the trees, and a list is made at the
+//! second query near the same pose.
 //!
-//! Prices are counts of pairs looked at, of parts in the trees and of features in lists, which take about as long each.
+//! Prices are counts of the pairs tested, of parts in the trees and of features in lists, which take about
+//! equal time.
 //!
-//! The answers are those of the trees: every pair whose contact lies on both features, with the same numbers. Where a list would hold more than
-//! [`MOST`] pairs, the next narrower one is the widest.
+//! The results are those of the trees: every pair whose contact lies on both features, with the same numbers.
+//! If a list would hold more than [`MOST`] pairs, the next narrower list is the widest.
 
 use super::{DIVIDED, ENLISTED, LISTED, Meets, Number, Turned, meeting};
 use crate::contact::candidates::{Candidate, Counts, Sieve, edges_may_touch};

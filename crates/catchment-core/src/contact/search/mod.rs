@@ -1,13 +1,15 @@
-//! Heights and contacts of halves of many facets, by their trees.
+//! Heights and contacts of halves with many facets, by their trees.
 //!
 //! ```text
 //!   height     the pair of parts that may carry highest first; what cannot rise above the best so far is left out
 //!   contacts   pairs of parts that are near each other
 //! ```
 //!
-//! The answers are those of the list of all elements ([`super::turned`]): the same elements are tried where they may count, and among
-//! equals the first in the order of that list counts. Parts are bounded in single precision and left out where they are lower, or apart, by more than
-//! that rounds ([`super::bounds`]); features are bounded in double precision and left out where they are [`SURE`] to be lower.
+//! The results are those of the list of all elements ([`super::turned`]): the same elements are tried
+//! wherever they can matter, and among equal elements the first in the order of that list wins. Parts are
+//! bounded in single precision and skipped if they are lower, or farther apart, by more than the rounding
+//! error ([`super::bounds`]); features are bounded in double precision and skipped if they are lower by more
+//! than [`SURE`].
 
 mod lists;
 mod near;

@@ -1,4 +1,4 @@
-//! What is near, of halves of many facets.
+//! Nearby features of halves with many facets.
 //!
 //! ```text
 //!        ╲ moving        gap > 0: in front; parts wholly in front of the plane that all of the other lies behind

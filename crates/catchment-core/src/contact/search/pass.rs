@@ -1,4 +1,4 @@
-//! Whether halves of many facets overlap: edges and facets that come near each other, by branch and bound.
+//! Overlap of halves with many facets: edges and facets near each other, by branch and bound.
 
 use super::lists::{Lists, Passing};
 use super::{DIVIDED, Side, Trees, Turned};

@@ -1,4 +1,4 @@
-//! The trees against the list of all elements, bit for bit, and against the judge.
+//! The trees compared with the list of all elements, bit for bit, and with the brute-force reference.
 
 use super::*;
 use crate::connector::{Connector, Half, Source, convex_hull};

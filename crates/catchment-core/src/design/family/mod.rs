@@ -1,4 +1,4 @@
-//! The built-in families and their parameters: one small struct per family, each in a file of its own.
+//! The built-in families and their parameters: a small struct for each family, in its own file.
 //!
 //! ```text
 //! families! { Cone: "cone", "circular cone in its socket", Freedom::Round; … }   one line per family
@@ -6,9 +6,10 @@
 //!      └──▶ FamilySpec::Cone(Cone)  the name with its parameters
 //! ```
 //!
-//! Lengths in D, angles in radians. A family's parameters stand in [`keys`]; the reader, the templates and the
-//! digest walk over them by key, so that nothing else has to know a family. How a family looks is drawn in
-//! [`crate::connector`], which also judges whether its parameters make a solid: here they only have their types.
+//! Lengths in D, angles in radians. A family's parameters are listed in [`keys`]; the reader, the templates
+//! and the digest iterate over them by key, so that no other code depends on a family. [`crate::connector`]
+//! constructs a family's geometry and checks that its parameters yield a solid; this module only defines
+//! their types.
 
 mod cone;
 mod pin_hole;

@@ -1,4 +1,4 @@
-//! What is known of one key of the design file: its place, its type, its range and its meaning.
+//! Description of a key of the design file: its place, its type, its range and its meaning.
 
 use super::KEYS;
 use crate::design::complaint::Complaint;

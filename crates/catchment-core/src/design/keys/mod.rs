@@ -1,7 +1,7 @@
 //! The design file as one table: every key with its place, type, range and meaning.
 //!
-//! The reader checks by it, the JSON schema and the commented templates are generated from it, so that they
-//! cannot disagree.
+//! The reader checks files by this table, and the JSON schema and the commented templates are generated from
+//! it, so that the three always agree.
 
 mod key;
 

@@ -1,4 +1,4 @@
-//! How much memory a result may take.
+//! Limits on the memory of a result.
 
 use crate::advice::Advised;
 use std::fmt;

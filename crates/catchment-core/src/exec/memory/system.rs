@@ -1,4 +1,4 @@
-//! What Linux says about memory, in files.
+//! Memory information from Linux, in files.
 //!
 //! ```text
 //!   /proc/meminfo               what is free on the machine
@@ -8,7 +8,8 @@
 //!     /sys/fs/cgroup/memory/…     memory.limit_in_bytes, memory.usage_in_bytes, memory.stat            (version 1)
 //! ```
 //!
-//! Pages of files that a group has read count as taken there, but are given up when memory is short: they are left out.
+//! File pages that a group has read count as used there, but the kernel frees them on demand: they are
+//! subtracted.
 
 use std::path::{Path, PathBuf};
 
