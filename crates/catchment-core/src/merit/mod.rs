@@ -8,12 +8,12 @@
 //!         │  ░└───┘░   ─▶ x                  success    probability that a given error lies in ░
 //! ```
 //!
-//! All of them are computed from an [`Acceptance`] alone. Over a grid a cell stands for its whole volume:
-//! the accepted set is the union of the accepted cells, and every length is a whole number of cell borders,
-//! right to about half a cell. Lengths are in D, angles in radians.
+//! All figures are computed from an [`Acceptance`] alone. On a grid a cell represents its whole volume: the
+//! accepted set is the union of the accepted cells, and every length is a whole number of cells, accurate to
+//! about half a cell. Lengths are in D, angles in radians.
 //!
-//! What is *not* promised: that the grid saw everything. A jam thinner than a cell can hide between centres.
-//! [`sum::bracket()`] says how much one cell of doubt on either side of the border amounts to.
+//! *Not* promised: a jam thinner than a cell can hide between centres. [`sum::bracket()`] gives the change of
+//! the Sum if the border moves by one cell to either side.
 
 pub mod brute;
 pub mod centered;

@@ -9,10 +9,10 @@
 //!   0 └──────────────┘
 //! ```
 //!
-//! A cube of edge e needs ⌈e·nᵢ⌉ cells along an axis of nᵢ cells, wherever it lies, and a box of that many
-//! accepted cells holds it. So e is the largest k/nᵢ for which such a box exists: found exactly, by bisection
-//! over those values. Boxes that fit are fitted together from the smaller ones that were found to fit, 64 cells at
-//! once. [`super::brute::largest_cube`] is the slow way.
+//! A cube of edge e needs ⌈e·nᵢ⌉ cells along an axis of nᵢ cells, at any position, and a box of that many
+//! accepted cells contains it. So e is the largest k/nᵢ for which such a box exists: found exactly, by
+//! bisection over those values. Fitting boxes are composed from smaller boxes that fit, 64 cells at once.
+//! [`super::brute::largest_cube`] is the slow reference.
 
 use super::mask::Mask;
 use super::{MeritError, grid_of};

@@ -1,14 +1,14 @@
-//! Slices of the grid: some axes kept, the others fixed.
+//! Slices of the grid: some axes vary, the others are fixed.
 //!
 //! ```text
 //!   grid over (x, y, yaw)  ──  axes = [x, yaw], at y = 0  ──▶  a table of x by yaw
 //! ```
 //!
-//! A slice shows part of an acceptance in which *all* free errors may move. It is not a restricted acceptance, for
+//! A slice shows part of an acceptance in which *all* errors are free. It is not a restricted acceptance, in
 //! which the other degrees of freedom are locked in the motion too.
 //!
-//! A fixed value is served by the cell that holds it; on a border between two, by the upper one. [`Slice::at`]
-//! gives the centres really used, half a cell or less away.
+//! A fixed value selects the cell that contains it, on a border between two cells the upper cell.
+//! [`Slice::at`] gives the centres that are used, at most half a cell away.
 
 use super::{MeritError, axis_number};
 use crate::landscape::{Grid, GridAxis};

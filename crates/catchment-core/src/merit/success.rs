@@ -1,4 +1,4 @@
-//! Success probability: how likely a pose error, drawn from a given distribution, lies in the accepted set.
+//! Success probability: the probability that a pose error of a given distribution lies in the accepted set.
 //!
 //! ```text
 //!   P = Σ over accepted cells of  P(error in the cell)
@@ -7,9 +7,9 @@
 //!   correlated errors:   counted in a seeded random sample, with Wilson's interval
 //! ```
 //!
-//! Error outside the error box counts as failure; how much of it there is, is reported. The resolution of the grid
-//! adds its own doubt: [`Success::bracket`] counts the border cells as failures, and as successes (undecided ones
-//! too). Errors along axes that were not sampled cannot be judged and are refused.
+//! Errors outside the error box count as failures, and their share is reported. The grid resolution adds an
+//! uncertainty of its own: [`Success::bracket`] counts the border cells as failures, and as successes
+//! (including undecided cells). A distribution with errors along axes that were not sampled is rejected.
 
 pub use crate::poses::Distribution;
 

@@ -4,13 +4,14 @@
 //!   Sum = (accepted cells) · (measure of a cell)
 //! ```
 //!
-//! Over a grid, [`bracket()`] encloses it: inside, the accepted cells without a rejected neighbour; outside,
-//! those and every cell with an accepted neighbour. For a *convex* set larger than a cell the true measure lies
-//! in the bracket; for others it does as long as nothing thinner than a cell was missed. It bounds the error of
-//! resolution. It is no confidence interval, and says nothing about the method that decided the cells.
+//! On a grid, [`bracket()`] encloses it: the lower bound counts the accepted cells without a rejected
+//! neighbour, the upper bound these and every cell with an accepted neighbour. For a *convex* set larger than
+//! a cell the true measure lies in the bracket; for other sets it does if the grid missed nothing thinner
+//! than a cell. It bounds the error of the resolution. It is not a confidence interval, and it does not
+//! include errors of the method that decided the cells.
 //!
-//! Over poses drawn at random, uniformly in the error box, [`Sum::ci95`] is Wilson's 95 % interval, widened
-//! above by the undecided poses.
+//! For poses sampled uniformly in the error box, [`Sum::ci95`] is Wilson's 95 % interval, widened upwards by
+//! the undecided poses.
 
 use super::mask::Mask;
 use super::{MeritError, grid_of};

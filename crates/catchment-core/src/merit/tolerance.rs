@@ -1,17 +1,18 @@
-//! Per-axis tolerance: how far one error alone may go, all others being zero. The "± 5 mm, ± 8°" of datasheets.
+//! Single-axis limits: the tolerance of each error while all others are zero. The "± 5 mm, ± 8°" of
+//! datasheets.
 //!
 //! ```text
 //!   x:  ✕ ✕ ░ ░ ░ ░ │ ░ ░ ░ ✕ ░ ✕       minus = 4 cells, plus = 3 cells
 //!                   0
 //! ```
 //!
-//! The contiguous accepted cells from zero outwards count, to the outer border of the last one: the true limit
-//! lies between the centres on either side of it, so within half a cell ([`Tolerance::half_cell`]). With an even
-//! number of cells no centre lies at zero; then a cell along the axis counts as accepted if it is so on every
-//! side of zero along the other axes.
+//! The contiguous accepted cells from zero outwards count, to the outer border of the last one: the true
+//! limit lies between the centres on either side of it, so within half a cell ([`Tolerance::half_cell`]).
+//! With an even number of cells no centre lies at zero; then a cell along the axis counts as accepted if it
+//! is accepted on every side of zero along the other axes.
 //!
-//! Where poses can be followed one by one, no grid is needed ([`followed`]): poses from zero outwards, evenly, and from the
-//! first that does not dock back by bisection.
+//! If poses can be followed singly, no grid is needed ([`followed`]): poses are followed from zero outwards
+//! at even steps, and the border before the first failure is found by bisection.
 
 use super::{MeritError, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};

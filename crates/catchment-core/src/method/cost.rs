@@ -1,4 +1,4 @@
-//! What decisions take, estimated before they are made.
+//! Estimates of time and memory before a computation.
 
 use super::descent::{End, Follower, Settings};
 use crate::acceptance::{Domain, Outcome};

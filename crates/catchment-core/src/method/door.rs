@@ -1,4 +1,4 @@
-//! The one door through which every method is entered.
+//! The common interface of all methods.
 //!
 //! ```text
 //!                 ┌ info       name, what it does, where it belongs
@@ -8,11 +8,12 @@
 //!                 └ follow(problem, poses)  ──▶ ends      only methods that decide each pose by itself
 //! ```
 //!
-//! A method is a type that implements [`Decide`], in a folder of its own, and one line in [`REGISTRY`](super::REGISTRY). Everything else, the
-//! command line, the run and the studies, knows only this door. A trait and not an enum, because an enum of all methods
-//! would have to be taken apart wherever a method is asked something, which is what the door is there to end.
+//! A method is a type that implements [`Decide`], in its own folder, and a line in
+//! [`REGISTRY`](super::REGISTRY). All other code, the command line, the run and the studies, uses only this
+//! interface. It is a trait and not an enum, because every use of an enum of all methods would have to match
+//! on the method, which this interface avoids.
 //!
-//! What decides translation alone ([`zraa`](super::zraa)) is not forced in.
+//! A method for translation alone ([`zraa`](super::zraa)) stands outside of it.
 
 use super::descent::{self, End};
 use crate::acceptance::{Acceptance, Domain, Warning};

@@ -1,4 +1,5 @@
-//! The normals at which a moving ridge may lie on a fixed one: an arc between the normals of the two facets of the fixed one.
+//! The normals of a contact between a moving and a fixed ridge: an arc between the normals of the two facets
+//! of the fixed ridge.
 //!
 //! ```text
 //!      s₂ ╲   ╱ s₁      the moving ridge, its facets lead away along s₁, s₂
@@ -7,9 +8,10 @@
 //!         ╱   ╲         supported where  n·s₁ ≥ 0  and  n·s₂ ≥ 0
 //! ```
 //!
-//! Where both ridges are nearly parallel their cross product may point anywhere; what the facets support is narrow where they lie flush.
+//! If the ridges are nearly parallel their cross product may have any direction, while the range that the
+//! facets support is narrow if they lie flush.
 //!
-//! Not promised: the smallest arc. Its ends are found to 2⁻²⁰ of the whole.
+//! Not promised: the smallest arc. Its ends are accurate to 2⁻²⁰ of the whole.
 
 use super::body::Ridge;
 use super::interval::{Interval, Vector, dot, thin};

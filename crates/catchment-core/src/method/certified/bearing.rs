@@ -1,4 +1,4 @@
-//! Bearings: directions, along errors and across them, that motions never go back along.
+//! Bearings: directions in the space of the errors along which motions never go back.
 //!
 //! ```text
 //!      │ ↗ ╲ ↗ │     from q nothing leads below the line ╲ through q while the motion is in boxes all of whose pushes go beyond it:
@@ -7,7 +7,8 @@
 //!      └────────┘    may be ruled out by where it would have to be
 //! ```
 //!
-//! d goes through all neighbours of a pose in a lattice of the free errors, as the ρ-metric measures them; of two errors also halfway between.
+//! d runs through the directions to all neighbours of a pose in a lattice of the free errors, in the
+//! ρ-metric; for two errors also halfway between them.
 
 use super::interval::Interval;
 use super::placed::PoseBox;

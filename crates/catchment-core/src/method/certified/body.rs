@@ -1,4 +1,4 @@
-//! What of the two halves can touch first, listed plainly: corners, facets, convex edges.
+//! The features of the two halves that can be first contacts, as plain lists: corners, facets, convex edges.
 //!
 //! ```text
 //!   facet ╲   ╱ facet        corner    its spokes lead to its neighbours
@@ -6,8 +6,8 @@
 //!           ● corner
 //! ```
 //!
-//! Made from the surfaces alone, not from the prepared shapes of [`crate::contact`]: its bounds judge that room, and are judged by it.
-//! Lengths in D, in each half's own frame (the moving one's from the centre of rotation).
+//! Built from the surfaces alone, not from the prepared shapes of [`crate::contact`], so that the two check
+//! each other. Lengths in D, in each half's own frame (that of the moving half from the centre of rotation).
 
 use crate::connector::Half;
 use crate::tolerance;

@@ -1,4 +1,4 @@
-//! Certified sets as a method: the boxes are its own, the grid is what is told of them.
+//! Certified sets as a method: it refines its own boxes, and the grid receives their labels.
 
 use super::{CertifiedError, LEAST_BOXES, Settings, certify};
 use crate::acceptance::Domain;

@@ -1,4 +1,4 @@
-//! What follows from heights alone: a motion cannot climb.
+//! Labels that follow from heights alone: a motion cannot climb.
 //!
 //! ```text
 //!   h │      pass ╲ exit        from the seat, boxes are taken in the order of the lowest way to them by floors:
@@ -7,11 +7,13 @@
 //!     │   seat                  no      roof below the lowest way to the seat, or to what is not known
 //! ```
 //!
-//! *Yes*: on its way down such a motion stays among boxes taken before, none of which lets it rest outside the terminal boxes, whose every rest
-//! is in the seat, so it docks. *No*: the part of the poses below the motion's height that it is in holds neither the seat nor a border.
-//! Both hold in any dimension, and whatever the motion's metric.
+//! *Yes*: during its descent such a motion stays in boxes taken before. None of these lets it rest outside
+//! the terminal boxes, and every rest in a terminal box is in the seat, so it docks. *No*: consider the
+//! connected set of poses below the motion's height that contains it; this set contains neither the seat nor
+//! a border. Both arguments hold in any dimension, for any metric of the motion.
 //!
-//! The same two walks bound the **retention** of the seat: by floors from below, by roofs, to what certainly does not come back, from above.
+//! The same two walks bound the **retention** of the seat: by floors from below; from above by roofs, up to a
+//! place from which no motion returns.
 
 use super::home::Home;
 use super::placed::PoseBox;

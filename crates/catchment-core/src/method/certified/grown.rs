@@ -1,4 +1,5 @@
-//! The neighbourhood of the mated pose, grown: box after box about it, as long as nothing rests between one and the next.
+//! Growth of the neighbourhood of the mated pose: larger and larger boxes around it, as long as the shell
+//! between successive boxes contains no rest.
 //!
 //! ```text
 //!   ┌─────────────┐   shell    cut into pieces over each of which one direction opens all that may touch: nothing rests there
@@ -8,10 +9,12 @@
 //!   └─────────────┘
 //! ```
 //!
-//! Pieces are halved until they tell: those of a shell are alike in shape however near it is, so that four and five errors take as many of them
-//! for a small neighbourhood as for a large one, where a tree of boxes would take more than there are.
+//! Pieces are halved until they are decided. The pieces of a shell have the same shape at any distance, so
+//! that four and five errors need as many of them for a small neighbourhood as for a large one; a tree of
+//! boxes would need far more.
 //!
-//! Not promised: the largest. What begins above the level is not spoken of, though most of it may dock.
+//! Not promised: the largest neighbourhood. Poses above the level remain undecided, though most of them may
+//! dock.
 
 use super::REACH;
 use super::home::Home;

@@ -1,4 +1,5 @@
-//! The neighbourhood of the mated pose in which nothing rests but in the seat: one argument for all of it, however small its boxes would have to be.
+//! A neighbourhood of the mated pose without rests outside the seat: a single argument covers all of it, in
+//! place of arbitrarily small boxes.
 //!
 //! ```text
 //!     h │ ╲         ╱      what carries at q has a plane, whose height f is h(q) at q and no more than h₀ at the mated pose 0
@@ -8,10 +9,11 @@
 //!       └─────0───── q     below the least h on its border nothing leaves: level
 //! ```
 //!
-//! Gⱼ and W are bounds over the whole neighbourhood, so the last line need be shown only on its border; it holds for every multiple of that.
-//! After Delanoue 2015, who shows as much of a smooth vector field.
+//! Gⱼ and W are bounds over the whole neighbourhood, so the last line must be shown only on its border; it
+//! then holds for every multiple. After Delanoue 2015, who shows the same for a smooth vector field.
 //!
-//! Not promised: that there is one. Seats with play have none, and where halves may tip over their own rims it is small.
+//! Not promised: that it exists. Seats with play have no such neighbourhood, and for halves that may tip over
+//! their own rims it is small.
 
 use super::body::{Meeting, Ridge};
 use super::interval::{Interval, Vector, cross, dot, thin};

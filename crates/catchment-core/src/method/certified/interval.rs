@@ -1,12 +1,13 @@
-//! Numbers known to lie between two others.
+//! Interval arithmetic: numbers with a lower and an upper bound.
 //!
 //! ```text
 //!        lo ├───────×───────┤ up          every operation rounds lo down and up up, by one unit in the last place or more
 //! ```
 //!
-//! Sines come from the system's library, which is right to a unit or two in the last place; they are widened by [`SINE`].
+//! Sines come from the system's library, which is accurate to a unit or two in the last place; they are
+//! widened by [`SINE`].
 //!
-//! Not promised: tightness. What occurs twice in a formula counts as two numbers.
+//! Not promised: tightness. A quantity that occurs twice in a formula counts as two independent numbers.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::{Add, Mul, Neg, Sub};

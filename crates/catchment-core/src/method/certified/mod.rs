@@ -1,4 +1,4 @@
-//! What is certain: poses that dock and poses that do not, by bounds that hold for whole boxes of poses.
+//! Certified labels: poses that dock and poses that fail, by bounds that hold for whole boxes of poses.
 //!
 //! ```text
 //!   bodies ──▶ survey of a box ──▶ tree of boxes ──▶ flood   a motion cannot climb          ──▶ yes · no · undecided
@@ -7,18 +7,21 @@
 //!                                                     home    what is certain about the seat at once
 //! ```
 //!
-//! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `arc`, `survey`). Four
-//! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), faces (`spread`: boxes
-//! that nothing leaves but into their like, without going back along a `bearing`) and the neighbourhood of the seat (`home`, and what it grows to: `grown`), in any dimension, and direction (`tube`: a bundle that holds
-//! all motions of a box until it lies in labelled boxes), where at most one rotation is free. Capture basins by intervals: Lhommeau, Jaulin,
-//! Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015; how high a caged body must be lifted:
-//! energy-bounded caging.
+//! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`,
+//! `touch`, `arc`, `survey`). Four arguments turn intervals into labels. Three of them hold in any dimension:
+//! energy (`flood`: a motion cannot leave the connected set of poses below its height), faces (`spread`:
+//! motions leave some boxes only into boxes with the same label, without going back along a `bearing`) and
+//! the neighbourhood of the seat (`home`, and its growth `grown`). The fourth, direction, needs at most one
+//! free rotation (`tube`: a bundle that contains all motions of a box until it lies in labelled boxes).
+//! Sources: capture basins by intervals: Lhommeau, Jaulin, Hardouin 2007; the neighbourhood of the seat
+//! without other rests: after Delanoue 2015; escape heights of caged bodies: energy-bounded caging.
 //!
-//! Certain means: of exact frictionless motion of the halves as drawn, up to what exact heights are rounded by (10⁻⁹ D). A certificate
-//! speaks of almost every motion that a box holds: which way a half goes that starts exactly on a ridge is nobody's promise.
+//! "Certified" refers to exact frictionless motion of the halves as drawn, up to the rounding of exact
+//! heights (10⁻⁹ D). A certificate covers almost every motion in a box: the direction of a half that starts
+//! exactly on a ridge is not determined.
 //!
-//! Not promised: that the undecided share is small. It shrinks with the boxes; seats with play, tight fits, halves that meet walls and more
-//! than two free errors leave more of it. Lengths in D, angles in radians.
+//! Not promised: that the undecided share is small. It shrinks with the boxes; it is larger for seats with
+//! play, tight fits, halves that meet walls, and more than two free errors. Lengths in D, angles in radians.
 
 mod arc;
 mod bearing;

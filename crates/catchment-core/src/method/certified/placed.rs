@@ -1,12 +1,12 @@
-//! The moving half at all poses of a box at once.
+//! The moving half at all poses of a box simultaneously.
 //!
 //! ```text
 //!   lateral(v) = (x, y) + (R v)_xy     v seen from the face centre, which the error moves
 //!   turned(v)  = R v                   v seen from the centre of rotation, whose z is the height
 //! ```
 //!
-//! A locked translation stays 0 at the centre of rotation: there v is seen from it. Taking v from the point that the error moves keeps a
-//! turn from counting twice.
+//! A locked translation stays 0 at the centre of rotation: in that direction v is relative to the centre of
+//! rotation. Measuring v from the point that the error moves avoids counting a rotation twice.
 
 use super::body::{Body, Meeting, meetings};
 use super::interval::{Interval, Vector, dot, thin};

@@ -1,4 +1,5 @@
-//! How deep any place of rest is, from below: how far a half must be lifted at least before it may come to rest elsewhere.
+//! Lower bounds on escape heights: the smallest height to which a half must be lifted before it can come to
+//! rest elsewhere.
 //!
 //! ```text
 //!     h │ ╲    ╱ exit      boxes are taken in the order of the lowest way to them by floors, from those about the rest:
@@ -6,10 +7,11 @@
 //!       │   ╲╱  rest       lifted by less, a half stays among those before it, and so it ends within CORE of where it rested
 //! ```
 //!
-//! The walk is that of [`super::flood`], with the boxes about the rest in the place of the seat. What is near-level has a depth of nothing here: it may rest a
-//! little beside.
+//! The walk is that of [`super::flood`], with the boxes around the rest in place of the seat. An almost level
+//! rest has escape height 0 here: the half may come to rest slightly beside it.
 //!
-//! Not promised: a bound that is near the depth. It comes near as boxes become small, and there are [`BOXES`] of them for each rest.
+//! Not promised: a bound close to the true escape height. It improves as boxes become small, and each rest
+//! has [`BOXES`] of them.
 
 use super::flood::{Seat, WayOut};
 use super::interval::Interval;

@@ -1,4 +1,4 @@
-//! Labels that spread from box to box by the direction of motion through their faces.
+//! Propagation of labels from box to box by the direction of motion through their faces.
 //!
 //! ```text
 //!      │ ↗ ↗ │            through   a face lets motion through one way or both, as what touches on it may push; bounds hold for the whole face
@@ -6,13 +6,16 @@
 //!      │ ↗ ↗ →  boxes     no        boxes from which no chain of faces leads to the seat or to what is not known
 //! ```
 //!
-//! The height falls all along a motion, so one that stays among boxes in which nothing rests comes to rest in the seat that is one of them. What a
-//! chain of faces leads to is more than what motions come to; but neither argument follows a single motion, and both hold for any number of errors.
+//! The height decreases along a motion. A motion that stays in boxes without rests outside the seat therefore
+//! comes to rest in the seat. The set that chains of faces reach is larger than the set that motions reach;
+//! but neither argument follows a single motion, and both hold for any number of errors.
 //!
-//! Faces alone say nothing of how far a motion went along them. So of each box it is known along which bearings ([`super::bearing`]) nothing in it goes back,
-//! and a chain that would have to is none.
+//! Faces alone do not limit the distance that a motion travels along them. Each box therefore also stores the
+//! bearings ([`super::bearing`]) along which no motion in it goes back, and a chain that would have to go
+//! back is excluded.
 //!
-//! Two boxes that share less than a face need no word: where a motion goes through a corner, what pushes it there is on a face of a box between.
+//! Two boxes that share less than a face need no separate treatment: if a motion passes through a corner, the
+//! contact that pushes it there is on a face of a box between.
 
 use super::flood::Seat;
 use super::tree::{Cell, Face, Label, Tree};

@@ -1,4 +1,4 @@
-//! What is certain of the height over a box of poses.
+//! Bounds on the height over a box of poses.
 //!
 //! ```text
 //!     h │    ╱‾‾ roof          touches    all that may carry somewhere in the box
@@ -8,11 +8,12 @@
 //!       └──[────]──── q        restless   one direction opens all touches at once: nothing rests in the box
 //! ```
 //!
-//! h jumps only where in plan view a corner of the rim of one half comes to the rim of the other from outside. Where that is ruled out a
-//! motion stays on h: it neither falls nor slides under anything. Touches below the floor carry nothing and are left out, which may raise the
-//! floor. What the exact heights are rounded by is [`ROUNDING`].
+//! h jumps only if, in plan view, a corner of the rim of one half reaches the rim of the other from outside.
+//! If that is excluded, a motion stays on h: it neither falls nor slides under anything. Contacts below the
+//! floor cannot carry and are removed, which may raise the floor. [`ROUNDING`] covers the rounding of the
+//! exact heights.
 //!
-//! Not promised: that a box is called continuous or restless where it is; smaller ones are.
+//! Not promised: that every continuous or restless box is recognised as such; smaller boxes are.
 
 use super::bearing::{Bearings, Rising};
 use super::body::{Body, Corner, Meeting, Ridge, Side};

@@ -1,4 +1,4 @@
-//! Bounds against exact poses, labels against exact motions.
+//! Bounds compared with exact poses, labels compared with exact motions.
 
 use super::survey::Survey;
 use super::*;

@@ -1,4 +1,5 @@
-//! One meeting of two features over a box of poses: whether it may carry the half there, how high, and how it pushes.
+//! A possible contact of two features over a box of poses: whether it may carry the half, its height, and its
+//! push.
 //!
 //! ```text
 //!   plane through the meeting    z = a_z − (R p)_z − n_xy·(lateral(p) − a_xy)/n_z        a fixed, p moving, n the normal
@@ -6,11 +7,12 @@
 //!   so over a box around m       z(q) ∈ z(m) + Σ (−rates/n_z)·(q − m)                    mean value form
 //! ```
 //!
-//! The normal of two ridges is their cross product, of either sense; where they may be parallel it is what lies between the normals of
-//! their facets. Only the direction of n matters, so it need not be unit.
+//! The normal of two ridges is their cross product, with either sign; if they may be parallel it lies between
+//! the normals of their facets. Only the direction of n matters, so it need not be a unit vector.
 //!
-//! May carry: the features support the normal, their feet may meet in plan view, and `n_z` may be above 0. All three are judged by bounds,
-//! so nothing that carries is left out; what does not carry may be left in.
+//! A contact may carry if the features support the normal, their feet may meet in plan view, and `n_z` may be
+//! above 0. All three are tested by bounds, so no carrying contact is missed; contacts that do not carry may
+//! remain.
 
 use super::arc::Arc;
 use super::body::{Facet, Meeting, Ridge};

@@ -1,4 +1,4 @@
-//! Where all motions of a box go, together: a bundle around them, followed until it lies in labelled boxes.
+//! A bundle around all motions of a box, followed until it lies in labelled boxes.
 //!
 //! ```text
 //!        c₁ ▲     ┌──────┐         c₀  along the descent in the middle: every touch of the slab pushes that way
@@ -9,15 +9,16 @@
 //!           └─────└──────┘──▶ c₀
 //! ```
 //!
-//! A motion goes along a combination, with weights that are not negative, of the pushes wᵢ of what touches it. Its slope dc₁/dc₀ is then a
-//! mean of their slopes, whatever the weights: speeds cancel. That the faces are bounded by what is near them (Müller 1927) lets a
-//! bundle follow a valley, which both sides push into, without growing.
+//! A motion goes along a combination, with non-negative weights, of the pushes wᵢ of its contacts. Its slope
+//! dc₁/dc₀ is then a mean of their slopes, for any weights: speeds cancel. The bounds on a face depend only
+//! on the contacts near it (Müller 1927), so a bundle can follow a valley, into which both sides push,
+//! without growing.
 //!
-//! c is linear in the errors: straight lines of the metric at the centre of rotation, turned so that c₀ points downhill. Where the descent bends
-//! the bundle is taken into new coordinates.
+//! c is linear in the errors: straight lines of the metric at the centre of rotation, rotated so that c₀
+//! points downhill. If the descent bends, the bundle is transformed to new coordinates.
 //!
-//! Not promised: that a bundle stays narrow. It gives up where it grows wide, where something may rest, and where a wall may be met. At
-//! most one rotation may be free.
+//! Not promised: that a bundle stays narrow. The search stops if the bundle becomes wide, if it may contain a
+//! rest, or if it may meet a wall. At most one rotation may be free.
 
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox, middle};

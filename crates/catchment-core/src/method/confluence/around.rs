@@ -1,4 +1,4 @@
-//! The centres of the cells around a pose error, and whether those that are known agree.
+//! The centres of the cells around a pose error, and whether those that are decided agree.
 //!
 //! ```text
 //!   ·  ·  ·  ·   │       2ⁿ centres: the two nearest along every axis; beyond the last ones, up to half a cell

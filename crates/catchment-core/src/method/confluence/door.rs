@@ -1,4 +1,4 @@
-//! Confluence as a method: exact motions over a grid, which join each other.
+//! Confluence as a method: exact motions over a grid with inherited labels.
 
 use super::{ConfluenceError, Settings, bytes, run};
 use crate::acceptance::Domain;

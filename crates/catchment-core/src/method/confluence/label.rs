@@ -1,4 +1,4 @@
-//! What is known of a cell, in a byte: its outcome, and how it is known.
+//! State of a cell, in a byte: its outcome, and how it was decided.
 
 use crate::acceptance::Outcome;
 

@@ -1,4 +1,5 @@
-//! Confluence: the outcome of every cell of a grid by exact motions, each followed only until it joins others that are known.
+//! Confluence: the outcome of every cell of a grid by exact motions, each followed only until it reaches
+//! cells that are already decided.
 //!
 //! ```text
 //!   ·   ·   ·   ·   ·        cells by rising height. From the centre of a cell
@@ -9,22 +10,25 @@
 //!   a   a   a   j   j             may be thinner than a cell
 //! ```
 //!
-//! What lies lower is known before: motion falls. As rivers do, motions flow together, so most are followed for a fraction of their way, and
-//! where a whole neighbourhood ends alike not at all. Cells are decided in batches that read only what earlier batches found: the same
-//! bits for any number of threads.
+//! Lower cells are decided first, because a motion falls. Like rivers, motions flow together, so most are
+//! followed for a fraction of their length, and not at all if a whole neighbourhood has the same outcome.
+//! Cells are decided in batches that read only the results of earlier batches: the same bits for any number
+//! of threads.
 //!
-//! A budget of motions or of time ends this early: what lies lower is decided then, what lies higher is undecided, and nothing is guessed.
+//! A budget of motions or of time stops this early: lower cells are then decided, higher cells are undecided,
+//! and no outcome is guessed.
 //!
-//! With friction ([`descent::Settings::friction`]) the first of the three is left out: the way bends from the direction of descent.
+//! With friction ([`descent::Settings::friction`]) the first of the three steps is skipped, because the
+//! motion departs from the direction of descent.
 //!
-//! **Not guaranteed:** the label of a cell that joined others may differ from that of its centre's own motion, where
-//! something thinner than a cell lies between. [`Joined`] says how often: cells drawn at random among them are followed to their end. For 5-D grids of the pyramid and the
-//! 3-D X-Face it is one or two in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of
-//! them.
+//! **Not guaranteed:** an inherited label may differ from the outcome of the centre's own motion if a feature
+//! thinner than a cell lies between. [`Joined`] gives the rate: randomly sampled cells with inherited labels
+//! are followed to their end. For 5-D grids of the pyramid and the 3-D X-Face it is one or two in ten
+//! thousand. Outcomes hold at the centres of cells, not between two of them.
 //!
 //! Memory: 10 bytes per kept cell (height, sides, order, label; [`Falls`] keeps a half or a quarter of a
-//! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue 1987: here the map is
-//! the motion itself. Lengths in D, angles in radians.
+//! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue
+//! 1987: here the map is the motion itself. Lengths in D, angles in radians.
 
 mod around;
 pub(super) mod door;

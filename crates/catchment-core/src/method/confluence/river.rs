@@ -1,4 +1,4 @@
-//! Labels the kept cells of a relief by rising height.
+//! Labels the kept cells of a gradient field in order of rising height.
 //!
 //! ```text
 //!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by height; a batch reads what earlier batches found, and nothing of its own

@@ -10,11 +10,13 @@
 //!   hi   = sum + √Σ_s p_s²(u_s − a_s)²
 //! ```
 //!
-//! The combination of intervals is MOVER (Zou and Donner, Stat. Med. 27 (2008) 1693). With Wilson's intervals it holds
-//! where strata are nearly pure: 0 of n poses aligned leaves the stratum 3.8/n of doubt, not none.
+//! The intervals are combined by MOVER (Zou and Donner, Stat. Med. 27 (2008) 1693). With Wilson's intervals
+//! it is valid even for nearly pure strata: 0 docked of n poses leaves an uncertainty of 3.8/n of the
+//! stratum, not zero.
 //!
-//! Unbiased, although later batches are drawn where earlier ones saw most doubt: the numbers `n_sb` are fixed before
-//! batch b is drawn, so each batch is an unbiased estimate whatever went before, and its weight `N_b` is fixed in advance.
+//! The estimate is unbiased, although later batches go to the strata that earlier batches found uncertain:
+//! the numbers `n_sb` are fixed before batch b is drawn, so each batch is unbiased whatever preceded it, and
+//! its weight `N_b` is fixed in advance.
 
 /// Two-sided 95 % quantile of the standard normal distribution.
 pub const Z95: f64 = 1.959_963_984_540_054;

@@ -1,4 +1,4 @@
-//! An unbiased Sum with a 95 % interval: the answer of a grid method, corrected by a sample of exact descents.
+//! An unbiased Sum with a 95 % interval: the result of a grid method, corrected by a sample of exact motions.
 //!
 //! ```text
 //!   grid method            strata s, share p_s           poses drawn at random in each stratum, followed exactly
@@ -9,15 +9,16 @@
 //!   └─────────────┘        └─────────────┘                 …
 //! ```
 //!
-//! The Sum is the measure of the accepted set in the *continuous* error box. Where the grid method is sure, hardly
-//! any pose fares otherwise, and few descents show it; most go where the border runs. Whatever the grid says, right or
-//! wrong, the Sum is unbiased ([`Corrected::ci95`] says how): a bad grid only makes the interval wide.
+//! The Sum is the measure of the accepted set in the *continuous* error box. In strata with reliable labels
+//! hardly any pose is misclassified, and few motions suffice to show it; most motions go to strata along the
+//! border. The Sum is unbiased whether the grid is right or wrong ([`Corrected::ci95`] gives the method): a
+//! bad grid only widens the interval.
 //!
-//! Pose j of stratum s is a function of the seed, s and j alone. A cell of the stratum is drawn by its rank, then a pose
-//! in the cell. Undecided poses are not in the Sum; they widen the interval upwards.
+//! Pose j of stratum s is a function only of the seed, s and j. A cell of the stratum is drawn by its rank,
+//! then a pose in the cell. Undecided poses are excluded from the Sum; they widen the interval upwards.
 //!
-//! Not promised: the interval is for one result. With [`Stop::Tolerance`] the sampling ends by what was seen, which
-//! makes the stated interval miss a little more often than with a number fixed beforehand.
+//! Not promised: the interval is for a single result. With [`Stop::Tolerance`] the sampling ends depending on
+//! its results, which makes the stated interval miss slightly more often than with a number fixed in advance.
 
 mod interval;
 mod schedule;

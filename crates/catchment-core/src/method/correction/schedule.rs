@@ -1,4 +1,4 @@
-//! How many poses are drawn, when, and where.
+//! Schedule of the samples: sizes of the batches, and their distribution over the strata.
 //!
 //! ```text
 //!   batch   1        2     3       4            …   the last
@@ -6,8 +6,8 @@
 //!           stratum  at most 8192
 //! ```
 //!
-//! The sizes depend on the number of strata and on nothing else, so that the first n poses are the same whatever ends
-//! the sampling: a run of a given time and a run of as many poses give the same bytes.
+//! The sizes depend only on the number of strata, so that the first n poses are the same for every stopping
+//! rule: a run with a time limit and a run with the same number of poses give the same bytes.
 
 use super::interval::{Seen, Whole};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Cells that a method leaves in doubt, followed exactly.
+//! Exact motions of cells that a method leaves undecided.
 
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};

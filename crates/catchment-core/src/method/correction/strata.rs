@@ -1,4 +1,5 @@
-//! Strata: the grid's cells, parted by how sure the method is of them; counted, and every cell found by its rank.
+//! Strata: the grid's cells, classified by the reliability of their labels, with their counts, and access to
+//! every cell by its rank.
 //!
 //! ```text
 //!   cells      ░░█░▓▓░░ ░▓░░░░░█ █████▓░░ …      ░ █ ▓ strata
@@ -6,7 +7,8 @@
 //!   cell 12 of ░:  the last block with before ≤ 12, then cell by cell
 //! ```
 //!
-//! A random cell of a stratum is thus found without a list of cells and without rejection, however rare the stratum.
+//! A random cell of a stratum is thus found without a list of cells and without rejection, however rare the
+//! stratum.
 
 use super::CorrectionError;
 use crate::acceptance::Outcome;

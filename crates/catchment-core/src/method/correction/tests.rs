@@ -1,4 +1,5 @@
-//! Known volumes and wrong grids: is the Sum unbiased, and does its interval hold it as often as it says?
+//! Known volumes and wrong grids: checks that the Sum is unbiased, and that its interval has the stated
+//! coverage.
 
 use super::*;
 use crate::acceptance::Outcome;

@@ -1,4 +1,4 @@
-//! Coulomb friction in the one small optimisation behind every step.
+//! Coulomb friction in the small optimisation behind every step.
 //!
 //! ```text
 //!   u = p + Σ (λᵢ aᵢ + τᵢ·bᵢ)                    p push, aᵢ row of the gap of contact i, bᵢ the two rows of its slip
@@ -6,29 +6,34 @@
 //!   |τᵢ| ≤ μ λᵢ,   = μ λᵢ against bᵢ·u ≠ 0        sticks, or slips against all the friction there is
 //! ```
 //!
-//! As De Saxcé and Feng wrote it (*Math. Comput. Modelling* 28, 1998) the last two lines are one cone: with sᵢ = μ|bᵢ·u|,
+//! De Saxcé and Feng (*Math. Comput. Modelling* 28, 1998) combine the last two lines into one cone: with sᵢ =
+//! μ|bᵢ·u|,
 //!
 //! ```text
 //!   aᵢ·u + gᵢ + sᵢ ≥ μ |bᵢ·u|        and u the closest to p of all that hold it
 //! ```
 //!
-//! so that for given s friction is the same projection as without it, and s is found by repeating it (Cadoux 2009; Acary, Cadoux, Lemaréchal and
-//! Malick, *ZAMM* 91, 2011). On one slope every round leaves μ²/(1 + μ²) of what is missing. The cone is cut out by its tangent planes, each found where the last
-//! answer violates it: exact forces, no polygons.
+//! so that for given s friction is the same projection as without it, and s is found by iteration (Cadoux
+//! 2009; Acary, Cadoux, Lemaréchal and Malick, *ZAMM* 91, 2011). On a single slope every iteration leaves
+//! μ²/(1 + μ²) of the residual. The cone is approximated by its tangent planes, each added at the point at
+//! which the last solution violates it: the forces are exact, without polygons.
 //!
-//! Rounds begin with the slip that there would be without friction, and end at the slip they come to: where a force that makes the half
-//! stick exists as well ([`Coulomb::may_stick`]), rigid bodies under Coulomb's law do not say which of the two happens, and slip it is.
+//! The iteration starts with the slip of the frictionless motion, and ends at the slip to which it converges.
+//! If a force that makes the half stick exists as well ([`Coulomb::may_stick`]), Coulomb's law for rigid
+//! bodies does not decide between the two; the half then slips.
 //!
-//! Near the friction at which slip ends, rounds say little: a slip that fades loses next to nothing in each, and one that a round hardly changes may be far from where it
-//! comes to. What has become slow is decided by its direction d instead, which is known long before its speed ([`Coulomb::slow`]): with friction of all pressed contacts along
-//! −bᵢ·d the forces balance the push up to a multiple of d, and its sign says whether it goes on.
+//! Near the friction at which slip ends, the iteration is unreliable: a slip that fades decreases very little
+//! in each iteration, and a slip that an iteration hardly changes may be far from its limit. A slow slip is
+//! therefore decided by its direction d, which converges long before its speed ([`Coulomb::slow`]): with the
+//! friction of all loaded contacts along −bᵢ·d the forces balance the push up to a multiple of d, and its
+//! sign decides between slip and stiction.
 //!
 //! ```text
 //!   p + Σ λᵢ (aᵢ − μ bᵢ·d/|bᵢ·d|) = σ d,   λᵢ ≥ 0        σ > 0 it slips, at this speed       σ ≤ 0 it sticks
 //! ```
 //!
-//! Not promised: that there is only one such slip, nor that the rounds find it where there is. What they have not found after [`ROUNDS`] is taken as
-//! it is then.
+//! Not promised: that such a slip is unique, nor that the iteration finds it if it is. After [`ROUNDS`]
+//! iterations the current value is used.
 
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 

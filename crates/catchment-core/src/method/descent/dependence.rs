@@ -1,12 +1,13 @@
-//! Whether outcomes still depend on the step: random poses followed twice, at the step and at half of it.
+//! Test whether outcomes depend on the step: sampled poses are followed twice, with the step and with half of
+//! it.
 //!
 //! ```text
 //!   share = changed / of          with Wilson's 95 % interval
 //! ```
 //!
-//! Asked where fits are tight ([`Pair::is_tight`]); elsewhere small errors of the motion heal.
+//! Used for tight fits ([`Pair::is_tight`]); in other pairs small errors of the motion decay.
 //!
-//! Not seen: errors that both steps share.
+//! Not detected: errors that both steps share.
 
 use super::{Settings, run};
 use crate::acceptance::{Domain, Warning};

@@ -1,4 +1,4 @@
-//! Exact descent as a method: every pose by itself.
+//! Exact descent as a method: every pose is followed separately.
 
 use super::{End, Settings, rests, rests_told, run, step_dependence};
 use crate::acceptance::{Acceptance, Domain, Warning};

@@ -1,18 +1,21 @@
-//! Whether what is a little off the mated pose stays in its seat, by exact motion: [`crate::contact::mated`] probes the first order only, and a half
-//! that balances is level to the first order.
+//! Test by exact motion whether a half slightly off the mated pose stays in its seat.
+//! [`crate::contact::mated`] tests only the first order, and a half in unstable balance is level to first
+//! order.
 //!
 //! ```text
 //!     ╲   ___●___   ╱    let go: without error; 0.01 D or 1° off, each free error both ways, and all of them together
 //!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose does not hold
 //! ```
 //!
-//! Of halves of many facets the same motions, followed to their ends, tell whether all that is a little off comes to the mated pose itself, as it does in a
-//! seat that tapers.
+//! For halves of many facets the same motions, followed to their ends, also show whether all poses slightly
+//! off reach the mated pose itself, as in a tapered seat.
 //!
-//! Asked once per pair, of ten motions or so; of tight fits and of halves of many facets of five. Whoever calls motions before they have come to rest asks it
-//! first: a half that comes down into such a seat does not stay in it.
+//! Run once per pair, with about ten motions; for tight fits and halves of many facets with five. Code that
+//! ends motions before they come to rest must run this test first: in a seat that fails it, an arriving half
+//! does not stay.
 //!
-//! Not promised: a fall that needs a larger error, or one in a direction that none of these leads into.
+//! Not promised: a fall that needs a larger error, or that starts in a direction outside the tested ones, is
+//! missed.
 
 use super::motion::{Motion, Until};
 use super::rest::TOUCHING;

@@ -1,4 +1,4 @@
-//! What a half withstands where it rests: how hard it may be pushed until it leaves.
+//! Holding force of a half at rest: the largest load under which it stays.
 //!
 //! ```text
 //!        │ preload 1, along −z through the centre of rotation
@@ -7,18 +7,22 @@
 //!      ╲___╱                  most = the largest such t
 //! ```
 //!
-//! Forces of contacts lie along their normals or, with friction, in Coulomb's cones about them: a convex cone of loads, so that what is held at t is held at
-//! less. Whether a load is held is one projection ([`super::projection`], [`super::coulomb`]); the largest t follows by halving. Without
-//! friction it is, by duality, the least lift per way of all motions that the contacts allow,
+//! Contact forces lie along the contact normals or, with friction, in the friction cones about them: a convex
+//! cone of loads, so that a half that resists t resists every smaller load. Each load is tested by one
+//! projection ([`super::projection`], [`super::coulomb`]); the largest t follows by bisection. Without
+//! friction it equals, by duality, the smallest lift per displacement over all motions that the contacts
+//! permit,
 //!
 //! ```text
 //!   most = min { lift of the centre of rotation : w·u = 1, no contact is entered by u }
 //! ```
 //!
-//! and with all other errors held ([`Guide::Along`]) the slope of the height of first contact that way.
+//! and with all other errors fixed ([`Guide::Along`]) the slope of the height of first contact in that
+//! direction.
 //!
-//! Not promised: that a half with friction stays up to there. Beyond it no force holds it, and it moves; below it forces exist that hold, which of rigid bodies
-//! says no more ([`super::sticking()`]). Elastic halves give way before.
+//! Not promised: that a half with friction stays in place up to this load. Above it no contact forces can
+//! balance the load, and the half moves; below it such forces exist, but for rigid bodies that does not
+//! guarantee stiction ([`super::sticking()`]). Elastic halves yield earlier.
 
 use super::coulomb::is_still;
 use super::motion::{Motion, State};

@@ -1,4 +1,4 @@
-//! Whether all motion near the mated pose leads to it, so that a motion may be called before it has come there.
+//! Test whether all motions near the mated pose dock, so that a motion may end before it reaches the seat.
 //!
 //! ```text
 //!     ╲         ╱      near: face centres within 0.02 D and rotation within 0.02 rad
@@ -7,8 +7,9 @@
 //!        ╲_●_╱
 //! ```
 //!
-//! Sharp seats (faces that end in a point or a ridge) have this; motion into their last corner takes as long as all before. Tight fits
-//! and limits on what may rest are always followed into the seat, and so are halves of so many facets that these poses take longer than they
+//! Sharp seats (faces that end in a point or a ridge) pass; motion into their last corner takes as long as
+//! all motion before. With tight fits and with docking tolerances on the errors, motions are always followed
+//! into the seat, and so are those of halves with so many facets that these poses would take longer than they
 //! save.
 //!
 //! Not promised: that no pose near it jams, only that fewer than three in a hundred do, with 95 % confidence.

@@ -1,4 +1,5 @@
-//! How a rest is held: to first order by where its contacts lie, to second by how they bend (Rimon and Burdick).
+//! Order of immobility of a rest: first order by the positions of its contacts, second order by their
+//! curvature (Rimon and Burdick).
 //!
 //! ```text
 //!   lowest z  subject to  gapᵢ(q, z) ≥ 0        at a rest    −load = Σ μᵢ aᵢ,  μᵢ ≥ 0        aᵢ the row of contact i, μᵢ its force
@@ -7,17 +8,20 @@
 //!   second order   it may move to first order, by d with aᵢ·d = 0:  rise = ½ κ s²,  κ(d) = max over all μ of  −Σ μᵢ gapᵢ″(d)
 //! ```
 //!
-//! E. Rimon and J. Burdick (*Mobility of bodies in contact I and II*, IEEE Trans. Robotics and Automation 14, 1998) call a body that bodies around it hold without a
-//! load immobile to first order, and where contacts leave it free to first order immobile to second if the relative curvature of the
-//! contacts keeps it; here one force, the load, is given and counts as one more finger that follows. For facets, edges and corners gapᵢ is known in closed form at every
-//! pose, also beyond the borders of the features, so that κ is exact but for the differences by which it is taken (10⁻⁶ per D).
+//! E. Rimon and J. Burdick (*Mobility of bodies in contact I and II*, IEEE Trans. Robotics and Automation 14,
+//! 1998) call a body that surrounding bodies hold without a load immobile to first order. If contacts leave
+//! it free to first order, it is immobile to second order if the relative curvature of the contacts holds it.
+//! Here a force, the load, is given and counts as an additional finger that follows. For facets, edges and
+//! corners gapᵢ has a closed form at every pose, also beyond the borders of the features, so that κ is exact
+//! except for the finite differences (10⁻⁶ per D).
 //!
-//! The least slope of a first-order rest is that of the nearest facet of the hull of the contacts' height gradients, exact for up to [`MOST_HULL`] of them; of more
-//! contacts it is bracketed by what the rest withstands along the axes. Where two directions or more are free to first order the least κ is looked for: the true least may
-//! be lower.
+//! The smallest slope of a first-order rest is that of the nearest facet of the hull of the contacts' height
+//! gradients, exact for up to [`MOST_HULL`] contacts; for more contacts it is bracketed by the holding forces
+//! along the axes. If two or more directions are free to first order, the smallest κ is found by search: the
+//! true minimum may be lower.
 //!
-//! Not promised: what higher orders say where κ is 0. Features nearer to flush than [`super::TOUCHING`] count as flush. Lengths in the metric of the
-//! motion, in D.
+//! Not promised: the result of higher orders if κ is 0. Features closer to flush than [`super::TOUCHING`]
+//! count as flush. Lengths in the metric of the motion, in D.
 
 use super::holding::Holding;
 use super::projection::{MAX_COORDINATES, Vector, dot};

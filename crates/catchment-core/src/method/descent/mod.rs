@@ -1,21 +1,24 @@
-//! Exact quasi-static motion of one pose: overdamped, contact kept, without friction or with Coulomb's. The ground truth.
+//! Exact quasi-static motion of a pose: overdamped, in contact, without friction or with Coulomb friction.
+//! The reference for all methods.
 //!
 //! ```text
 //!   q̇ = −M⁻¹ · (minimum-norm point of the convex hull of the active contacts' gradients of h)
 //! ```
 //!
-//! in the metric `|v|² + ρ²|ω|²` (v at the COR), several simultaneous contacts as a matter of course, until
-//! docked ([`crate::contact::Seat`]), at rest elsewhere, or off. No grid is involved, and no sampling of surfaces. Where walls of
-//! the halves face each other closely (a peg in its hole) motion goes from one change of contacts to the next (`sliding`),
-//! elsewhere by plain steps (`step`).
+//! in the metric `|v|² + ρ²|ω|²` (v at the COR), with any number of simultaneous contacts, until the half has
+//! docked ([`crate::contact::Seat`]), rests elsewhere, or has slid off. It uses no grid and does not sample
+//! surfaces. If walls of the halves face each other closely (a peg in its hole), motion proceeds from event
+//! to event (`sliding`), in all other pairs by plain steps (`step`).
 //!
-//! With friction ([`Settings::friction`]) the forces of the contacts lie in Coulomb's cones instead of along their normals (`coulomb`), and motion
-//! ends where they hold it; from which friction on they may, [`sticking()`] says.
+//! With friction ([`Settings::friction`]) the contact forces lie in friction cones instead of along the
+//! normals (`coulomb`), and motion ends if they balance the push; [`sticking()`] gives the friction
+//! coefficients at which this is possible.
 //!
-//! Where a half that is a little off the mated pose comes to rest below its seat ([`fall()`]) no motion is called before it has come to rest.
+//! If a half slightly off the mated pose comes to rest below its seat ([`fall()`]), every motion is followed
+//! until it rests.
 //!
-//! Not promised: speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
-//! the motion could go either way, may be reported as jammed there.
+//! Not promised: speed, bounce and mass are neglected; a pose that starts exactly on a ridge, from which the
+//! motion could go either way, may be reported as jammed there.
 
 mod coulomb;
 mod dependence;

@@ -1,4 +1,5 @@
-//! One motion, from first contact to its end: by plain steps ([`super::step`]), of pairs with tight fits by [`super::sliding`].
+//! A motion, from first contact to its end: by plain steps ([`super::step`]), for pairs with tight fits by
+//! [`super::sliding`].
 
 use super::coulomb::Coulomb;
 use super::fall::{fall, home};

@@ -1,7 +1,7 @@
-//! The one small optimisation behind every step of a motion.
+//! The small optimisation behind every step of a motion.
 //!
-//! Overdamped motion without friction: of all displacements u (scaled so that dissipation is `|u|²`) that the contacts
-//! allow, the body takes the one closest to where the force alone would push it,
+//! Overdamped motion without friction: of all displacements u (scaled so that dissipation is `|u|²`) that the
+//! contacts permit, the body takes the one closest to the displacement p that the force alone would cause,
 //!
 //! ```text
 //!   u = argmin |u − p|²    subject to   aᵢ·u ≥ −gapᵢ      for every contact i

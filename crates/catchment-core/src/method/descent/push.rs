@@ -1,4 +1,4 @@
-//! What drives a motion: a generalized force and its potential energy.
+//! The push of a motion: a generalized force and its potential energy.
 //!
 //! ```text
 //!        push(s) = −∇ energy(s)         in coordinates (x, y, z, ρ·roll, ρ·pitch, ρ·yaw) of the COR
@@ -9,10 +9,12 @@
 //!        ╲___╱                           constant push: energy is the height of the COR
 //! ```
 //!
-//! The push is constant, of unit size and along −z through the COR: the force that brings the halves together. Its size cancels in quasi-static motion, so
-//! energies are in D. What depends on the pose (a weight off the COR, springs, magnets) attaches here: both functions take the state.
+//! The push is constant, of unit size and along −z through the COR: the force that brings the halves
+//! together. Its size cancels in quasi-static motion, so energies are in D. Both functions take the state, so
+//! that pose-dependent forces (a weight off the COR, springs, magnets) can be added here.
 //!
-//! Not promised: that [`super::sliding`] falls along any other push while nothing touches; it looks for the first contact below.
+//! Not promised: that [`super::sliding`] moves along any other push while the halves do not touch; it
+//! searches the first contact below.
 
 use super::motion::State;
 use super::projection::{MAX_COORDINATES, Vector, dot};

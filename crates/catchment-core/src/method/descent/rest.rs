@@ -1,4 +1,4 @@
-//! Where a motion ends, with what carries the half there: for people who ask why it jams.
+//! The end of a motion with the contacts that carry the half there, as the explanation of a jam.
 
 use super::coulomb::Contacts;
 use super::holding::BORDER;

@@ -1,14 +1,14 @@
-//! What a step may meet, as rows of the projection.
+//! Constraint rows of the projection: the contacts that a step may meet.
 //!
 //! ```text
 //!   a·u ≥ −g      a   what a displacement u does to the gap: (n, (p − c) × n / ρ)
 //!                 g   the gap, less the clearance that is kept from walls
 //! ```
 //!
-//! with n the normal of a contact, p its point on the moving half and c the COR; with friction two rows more say how its point slides along either
-//! tangent. Rows are those of the contacts seen now ([`Motion::gather`]),
-//! of the same contacts halfway along a step ([`Motion::look_ahead`]), and of what was met without being announced
-//! ([`Motion::cut`], [`Motion::meet`]).
+//! with n the normal of a contact, p its point on the moving half and c the COR; with friction, two more rows
+//! give the slip of its point along the two tangents. Rows come from the current contacts
+//! ([`Motion::gather`]), from the same contacts halfway along a step ([`Motion::look_ahead`]), and from
+//! unexpected contacts ([`Motion::cut`], [`Motion::meet`]).
 
 use super::coulomb::{Contacts, Tangents};
 use super::motion::{Motion, State};

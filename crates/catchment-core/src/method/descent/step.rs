@@ -1,9 +1,9 @@
-//! One plain step.
+//! A plain step of a motion.
 //!
-//! Everything that touches or may be met is found exactly at the current position ([`super::rows`]); the closest allowed
-//! displacement to the push of the force is taken ([`super::projection`]); the height is then set to that of
-//! first contact, so that errors of the linearisation never build up. A step that the height contradicts
-//! is halved, unless what contradicts it is one more contact.
+//! All current and possible contacts are found exactly at the current position ([`super::rows`]); the half
+//! takes the permitted displacement closest to the push ([`super::projection`]); the height is then set to
+//! that of first contact, so that linearisation errors never accumulate. A step that contradicts the height
+//! is halved, unless the contradiction is an additional contact.
 
 use super::motion::{Motion, State};
 use super::projection::{Vector, dot};

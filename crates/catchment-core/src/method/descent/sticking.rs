@@ -1,4 +1,4 @@
-//! From which friction on a half sticks where it touches: two thresholds, not one.
+//! Friction coefficients at which a half sticks at its contacts: two thresholds, not one.
 //!
 //! ```text
 //!   friction   0 ───────────┬──────────────┬─────────▶
@@ -6,15 +6,18 @@
 //!                       holds from     slips until
 //! ```
 //!
-//! From the first on forces within the cones of friction exist that hold the half against the push; up to the second there is a way to slip. Between
-//! them Coulomb's law for rigid bodies leaves open what happens: let go at rest it may hold, and once it slides it goes on. Motions
-//! ([`super::Settings::friction`]) slip there; [`super::Follower::follow_doubting`] says whether they came through such a place.
+//! From the first threshold on, forces within the friction cones exist that hold the half against the push;
+//! up to the second the half can slip. Between them Coulomb's law for rigid bodies does not decide: a half
+//! released at rest may stick, and a sliding half continues. Motions ([`super::Settings::friction`]) slip in
+//! this range; [`super::Follower::follow_doubting`] reports whether they passed such a place.
 //!
-//! A half *wedges* where forces within the cones would hold it against a pull straight out as well: contacts press against each other, and how
-//! hard they do rigid bodies do not say (Whitney, *J. Dyn. Sys. Meas. Control* 104, 1982). Halves that give a little, as real ones and those of
-//! engines do, may come loose there.
+//! A half *wedges* if forces within the cones would also hold it against a straight pull: contacts press
+//! against each other, and rigid-body mechanics does not determine how hard (Whitney, *J. Dyn. Sys. Meas.
+//! Control* 104, 1982). Slightly compliant halves, as real ones and those of engines are, may come loose
+//! there.
 //!
-//! Not promised: that a half which comes to a place where it slips did not stick before. What happens at each friction, motions say.
+//! Not promised: that a half which reaches a place at which it slips did not stick earlier. Only motions show
+//! the result at each friction coefficient.
 
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
 use super::motion::{Motion, State, Watch};

@@ -1,4 +1,4 @@
-//! Closed forms of what a half withstands, and a judge that tries motions.
+//! Closed forms of holding forces, and a reference that tries motions.
 
 use super::holding::{self, Guide, Holding, Load};
 use crate::acceptance::Stream;

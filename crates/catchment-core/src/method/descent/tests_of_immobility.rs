@@ -1,4 +1,4 @@
-//! Rests whose order is known: fingers, plates, a wedge between two fingers.
+//! Rests of known order: fingers, plates, a wedge between two fingers.
 
 use super::holding::{Holding, TOUCHING};
 use super::{Immobility, Order, immobility};

@@ -1,4 +1,4 @@
-//! The path of one pose, for pictures and for people who ask why.
+//! The trajectory of a pose, for pictures and explanations.
 
 use crate::acceptance::Outcome;
 use crate::pose::PoseError;

@@ -1,4 +1,4 @@
-//! Drop tests as a method: every pose by itself.
+//! Drop tests as a method: every pose is decided separately.
 
 use super::engine::SUNK;
 use super::{DropError, Settings, run, run_told};

@@ -1,8 +1,8 @@
-//! One trial in the engine: the moving half is let go above the fixed one and falls until it is aligned, at rest, lost, or out
-//! of time.
+//! A trial in the engine: the moving half is released above the fixed half and falls until it is docked, at
+//! rest, lost, or out of time.
 //!
-//! Every trial has a world of its own, so trials know nothing of each other. The engine (rapier) moves a body with the mass of
-//! [`Mass::damped`]; between steps the velocity is brought to the momentum of the true body.
+//! Every trial has its own world, so trials are independent. The engine (rapier) moves a body with the mass
+//! of [`Mass::damped`]; between steps the velocity is corrected to the momentum of the true body.
 
 use super::DropError;
 use super::mass::Mass;

@@ -1,4 +1,5 @@
-//! Coplanar facets joined before they become bodies: on an edge inside a flat face an engine finds a contact normal of its own, and what slides over it jams.
+//! Coplanar facets are merged before they become bodies: at an edge inside a flat face an engine finds a
+//! separate contact normal, at which a sliding body jams.
 //!
 //! ```text
 //!   ╲                        ╲
@@ -8,7 +9,8 @@
 //!             ╲                  ╲
 //! ```
 //!
-//! Facets within [`FLAT`] of one plane are one: profiles come with rounded coordinates. Where nothing is joined nothing changes.
+//! Facets within [`FLAT`] of a plane are merged, because profiles have rounded coordinates. A surface without
+//! such facets is not changed.
 
 use crate::connector::Surface;
 use glam::DVec3;

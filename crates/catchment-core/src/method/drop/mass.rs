@@ -1,13 +1,13 @@
-//! Mass, centre of mass and inertia, and how damping joins them.
+//! Mass, centre of mass and inertia, and their combination with damping.
 //!
 //! ```text
 //!   implicit step    (M + Δt·C)·u' = M·u + Δt·f        C: force −c·v at the COR, torque −c_ω·ω
 //! ```
 //!
-//! C is itself the mass matrix of a rigid body: a point mass c at the COR with an isotropic inertia. So a damped half moves
-//! like an undamped one with `M + Δt·C` in place of M, which begins each step with the velocity that has the
-//! momentum `M·u`. Contacts see `M + Δt·C` too: where damping rules, they push in the metric of friction, whatever the
-//! inertia, and no step is too long to be stable.
+//! C is itself the mass matrix of a rigid body: a point mass c at the COR with an isotropic inertia. A damped
+//! half therefore moves like an undamped half with `M + Δt·C` in place of M, which begins each step with the
+//! velocity that has the momentum `M·u`. Contacts see `M + Δt·C` too: if damping dominates, they push in the
+//! metric of friction, for any inertia, and every step is stable.
 
 use super::settings::{Body, Settings};
 use crate::connector::{Half, Surface};

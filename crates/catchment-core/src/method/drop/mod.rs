@@ -1,4 +1,5 @@
-//! Dynamic drop tests in a rigid-body engine: what quasi-statics leaves out, friction, speed, mass and bounce.
+//! Dynamic drop tests in a rigid-body engine: friction, speed, mass and bounce, which quasi-static motion
+//! neglects.
 //!
 //! ```text
 //!       │ F      let go above first contact, pushed along the approach through the COR (or falling by gravity)
@@ -8,21 +9,24 @@
 //!                undecided still moving when the time is up
 //! ```
 //!
-//! Three trials with perturbed starts decide by majority; equal poses are perturbed equally, wherever they stand. The default is heavily damped, without friction and bounce: the
-//! motion of [`descent`](super::descent), reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
-//! and the default inertia mass·ρ² about the COR has the same metric, so that ρ means the same in both.
+//! Three trials with perturbed starts decide by majority; equal poses receive equal perturbations at any
+//! position in the input. The default is heavily damped, without friction and bounce: the motion of
+//! [`descent`](super::descent), by an independent algorithm. There friction dissipates c·(|v|² + ρ²|ω|²), v
+//! at the COR, and the default inertia mass·ρ² about the COR has the same metric, so that ρ has the same
+//! meaning in both.
 //!
-//! The fixed half may stand on a ground (`ground`), which the moving one can come to rest on too (dissertation, figure 4.5).
+//! The fixed half may stand on a ground plane (`ground`), on which the moving half can come to rest too
+//! (dissertation, figure 4.5).
 //!
-//! Locked errors are locked as in [`descent`](super::descent): translations at the COR, rotations as hinges one inside the other.
-//! Geometry is exact: convex pieces, or the triangles of a mesh; see `pieces`.
+//! Locked errors are locked as in [`descent`](super::descent): translations at the COR, rotations by nested
+//! hinges. Geometry is exact: convex pieces, or the triangles of a mesh; see `pieces`.
 //!
-//! Not promised: contacts of the engine are springs, so halves overlap by some 10⁻³ D under load, and time goes in steps; poses
-//! near the border of the accepted set may fall on either side. Meshes with undercuts are surfaces without an inside to
-//! the engine: what is pushed through one stays there.
+//! Not promised: contacts of the engine are springs, so halves overlap by about 10⁻³ D under load, and time
+//! is discrete; poses near the border of the accepted set may have either outcome. To the engine, meshes with
+//! undercuts are surfaces without an interior: a body that is pushed through one stays there.
 //!
-//! Units: D, s, kg; see [`Settings`]. Engine: rapier, with bits that do not depend on threads or machine. Source of the test: the
-//! dissertation, section 4.2.
+//! Units: D, s, kg; see [`Settings`]. Engine: rapier, with results that are bit-identical for any threads or
+//! machine. Source of the test: the dissertation, section 4.2.
 
 pub(super) mod door;
 mod engine;

@@ -1,12 +1,12 @@
-//! The way of one trial: where the half was, when, how fast, and what pushed it.
+//! Record of a trial: position, time, speed and contacts of the half.
 //!
 //! ```text
 //!   let go ──▶ · · · falling · · · ▼ first contact ── · bounces, slides · ──▶ end
 //!   0 D                                                                       path length in the ρ-metric
 //! ```
 //!
-//! A moment is kept where the half has moved on by a step of the path, where contacts begin or end, and at both ends. Contacts are those
-//! that pushed in the step before.
+//! A waypoint is stored if the half has moved by a step of the path, if contacts begin or end, and at both
+//! ends. Contacts are those that exerted force in the step before.
 
 use super::engine::{Engine, Fall};
 use crate::acceptance::Outcome;

@@ -1,4 +1,4 @@
-//! The halves as an engine can take them: convex pieces where they are exact, oriented triangles where they are not.
+//! The halves in the form that an engine accepts: convex pieces if they are exact, else oriented triangles.
 //!
 //! ```text
 //!      ╱╲      every facet that faces the other half carries a column of       the columns make up the solid
@@ -6,10 +6,11 @@
 //!    ╱_││_╲
 //! ```
 //!
-//! A surface is one convex piece if it is convex; else its columns, where every facet turned away from the face lies in the
-//! back plane (then their volumes add up to the whole's, and no two overlap). All families are one or the other.
-//! What is left, a mesh with undercuts, stays one mesh of triangles. Nothing is ever approximated by a decomposition. Coplanar facets are joined first
-//! ([`super::faces`]): columns side by side under one face have edges inside it, on which an engine jams.
+//! A convex surface is a single convex piece. A surface whose facets that face away all lie in the back plane
+//! is divided into columns (then their volumes add up to that of the whole, and no two overlap). All families
+//! are one or the other. The remaining case, a mesh with undercuts, stays a mesh of triangles. Nothing is
+//! ever approximated by a decomposition. Coplanar facets are merged first ([`super::faces`]): columns side by
+//! side under one face have edges inside it, on which an engine jams.
 
 use super::faces::{joined, merged};
 use crate::connector::{Half, Surface};

@@ -1,4 +1,4 @@
-//! What changes the answer of a drop test.
+//! Settings that change the result of a drop test.
 //!
 //! Units: lengths in D, times in s, masses in kg, so a force of 1 is 1 kg·D/s² (1 N where D is a metre) and
 //! gravity on a connector of D = 50 mm is 9.81 m/s² = 196 D/s².

@@ -1,4 +1,4 @@
-//! Closed forms, and what must not change a verdict.
+//! Closed forms, and changes of input that must not change an outcome.
 
 use super::*;
 use crate::connector::Connector;

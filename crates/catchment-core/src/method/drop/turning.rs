@@ -1,14 +1,15 @@
-//! Which turns are free, and how the others are locked.
+//! Free rotations, and the locking of the others.
 //!
 //! ```text
 //!   R = Rz(yaw)·Ry(pitch)·Rx(roll)     hinges one inside the other: z outermost, x innermost
 //!   ω = Σ axisₖ(angles)·ȧₖ             over the free ones
 //! ```
 //!
-//! An engine's locked axes are fixed in the world, which is right for one free rotation and wrong for two: turning to and
-//! fro about two axes adds up to a turn about the third. Here the inertia is infinite about whatever the free hinges
-//! cannot reach, `A·(Aᵀ·I·A)⁻¹·Aᵀ` in place of `I⁻¹`, with the axes where they are at the beginning of a step; what a step
-//! leaves beside the hinges, of second order, is taken away by reading the angles off and building the rotation again.
+//! An engine's locked axes are fixed in the world, which is correct for one free rotation and wrong for two:
+//! rotating to and fro about two axes adds up to a rotation about the third. Here the inertia is infinite
+//! about the axes that the free hinges cannot reach, `A·(Aᵀ·I·A)⁻¹·Aᵀ` in place of `I⁻¹`, with the axes at
+//! the beginning of a step; the second-order deviation of a step from the hinges is removed by recovering the
+//! angles and rebuilding the rotation.
 
 use crate::pose::{Dof, DofSet, euler_angles, rotation};
 use glam::{DMat3, DVec3};

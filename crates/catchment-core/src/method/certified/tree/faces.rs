@@ -1,4 +1,4 @@
-//! Which leaves share faces: kept with every leaf, and found anew about those that were given parts alone.
+//! Leaves with common faces: stored for every leaf, and recomputed only around leaves that were divided.
 
 use super::{Cell, Parts, Tree, WHOLE};
 use crate::exec::{Cancelled, Exec};

@@ -1,4 +1,4 @@
-//! Boxes of pose errors, each halved along its widest errors where more is to be known.
+//! A tree of boxes of pose errors; a box is halved along its widest errors if it needs refinement.
 //!
 //! ```text
 //!   ┌───────────────┐   root: the error box, or what motions may come to from it: a whole turn, and as far as the halves
@@ -9,7 +9,8 @@
 //!   └───────────────┘
 //! ```
 //!
-//! A root that goes once around a rotation closes on itself. Which errors a box is widest along the ρ-metric says: a turn θ is as wide as ρθ.
+//! A root that covers a full turn of a rotation is periodic. The ρ-metric decides along which errors a box is
+//! widest: a rotation θ has the width ρθ.
 
 mod faces;
 

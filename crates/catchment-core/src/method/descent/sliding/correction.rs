@@ -1,12 +1,12 @@
-//! Back to touching, by Newton's method.
+//! Correction back to contact, by Newton's method.
 //!
 //! ```text
 //!   δ = argmin |δ|²    subject to   aᵢ·δ  = −gᵢ   for contacts that are held
 //!                                   aᵢ·δ ≥ −gᵢ   for the other active ones
 //! ```
 //!
-//! with gaps g and rows a of the features seen as planes and lines without borders. Quadratic: a step of 0.02 D leaves
-//! gaps of some 1e-5 D, the third pass some 1e-13.
+//! with gaps g and rows a of the features treated as planes and lines without borders. Convergence is
+//! quadratic: a step of 0.02 D leaves gaps of about 1e-5 D, the third iteration about 1e-13.
 
 use super::super::motion::{Motion, State};
 use super::super::projection::MAX_COORDINATES;

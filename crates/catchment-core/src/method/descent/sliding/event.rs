@@ -1,4 +1,4 @@
-//! The first event on the way of a step.
+//! The first event within a step.
 //!
 //! ```text
 //!   f(s)   gap of what is met, or hold of what carries
@@ -8,8 +8,10 @@
 //!     │      ╲        passed
 //! ```
 //!
-//! What is met is landed on within its tolerance, on the open side of 0 where it can be: edges that are nearly parallel and overlap by 10⁻⁹ D seem to pass
-//! through each other's facets. What is lost is left on the far side of its border, so that it is not felt again. At every length the step is made anew: direction at its own middle, then corrected.
+//! A new contact is located within its tolerance, on the open side of 0 if possible: nearly parallel edges
+//! that overlap by 10⁻⁹ D seem to pass through each other's facets. A lost contact is left on the far side of
+//! its border, so that it is not active again. At every tried length the step is recomputed: direction at its
+//! own midpoint, then correction.
 
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;

@@ -1,4 +1,4 @@
-//! Motion from event to event, where fits are tight.
+//! Motion from event to event, for tight fits.
 //!
 //! ```text
 //!     q₀ ──── s·u ────▶ q₁      the contacts that carry the body are kept, all others stay open
@@ -7,20 +7,22 @@
 //!             └ lost    a foot leaves its feature, or the feature stops supporting the normal
 //! ```
 //!
-//! A step between walls that ignores what happens within it lets go of contacts that carry the body, and what it meets
-//! later compensates in height, not in the other errors. So each step ends at the first event:
+//! A step between walls that ignores events within it loses contacts that carry the body, and later contacts
+//! then compensate in height, not in the other errors. Each step therefore ends at the first event:
 //!
-//! 1. Active contacts are those that touch and are truly supported. None: straight down to the next one.
-//! 2. The direction is the closest one to straight down that no active contact forbids (the minimum-norm point of
-//!    the gradients, see [`super::projection`]), taken at the middle of the step; a step that bends is halved.
-//! 3. Newton's method brings the contacts that carry back to touching ([`correction`]).
-//! 4. If anything was met or lost on the way, the step ends there ([`event`]).
+//! 1. Active contacts are those that touch and are supported. Without active contacts the half moves straight
+//!    down to the next one.
+//! 2. The direction is the closest one to straight down that no active contact forbids (the minimum-norm
+//!    point of the gradients, see [`super::projection`]), evaluated at the midpoint of the step; a step that
+//!    bends is halved.
+//! 3. Newton's method brings the carrying contacts back to contact ([`correction`]).
+//! 4. If a contact was met or lost within the step, the step ends there ([`event`]).
 //!
-//! Heights are not reset and walls keep no margin: contacts touch to rounding, and between events the error is the midpoint
-//! rule's, third order in the step.
+//! Heights are not reset and walls have no margin: contacts touch to rounding, and between events the error
+//! is that of the midpoint rule, third order in the step.
 //!
-//! Not promised: a way on where the halves are caught in an overlap that no contact explains, or where flush contacts
-//! alternate without an end. There one step is taken as where nothing is tight.
+//! Not promised: a continuation if the halves are caught in an overlap that no contact explains, or if flush
+//! contacts alternate without end. Then one plain step is made as for pairs without tight fits.
 
 mod correction;
 mod event;

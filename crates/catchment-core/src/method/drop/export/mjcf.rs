@@ -1,8 +1,8 @@
 //! A trial as MJCF, for MuJoCo.
 //!
-//! The moving body has its origin at the COR. Its joints are slides along x, y, z and a ball, or hinges about z, y, x one
-//! inside the other, as the free errors ask; their positions are the COR in the world and the rotation, so any pose can be
-//! set. The keyframe `start` holds the trial's own.
+//! The moving body has its origin at the COR. Its joints are slides along x, y, z and a ball, or nested
+//! hinges about z, y, x, depending on the free errors; their positions are the COR in the world and the
+//! rotation, so any pose can be set. The keyframe `start` holds the start of the trial.
 
 use super::super::settings::Push;
 use super::{Scene, attribute, triple};

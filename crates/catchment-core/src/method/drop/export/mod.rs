@@ -1,4 +1,4 @@
-//! The same trial for other engines: world files that a person can run again in MuJoCo or Gazebo.
+//! A trial for other engines: world files that can be run again in MuJoCo or Gazebo.
 //!
 //! ```text
 //!   Scene ──▶ mjcf::write   one XML file: convex pieces as vertex lists inside
@@ -7,8 +7,9 @@
 //!       unperturbed
 //! ```
 //!
-//! Pieces stay as they are drawn, which is how they are known in the other program; `run` takes the columns of the solid that they make together,
-//! where it has them. Both engines take convex pieces only; a mesh that is no union of columns is refused, not approximated.
+//! Pieces remain as drawn, as a user of the other program expects; `run` uses the columns of the combined
+//! solid if it has them. Both engines accept only convex pieces; a mesh that is not a union of columns is
+//! rejected, not approximated.
 
 pub mod mjcf;
 pub mod sdf;

@@ -1,8 +1,8 @@
-//! A trial as an SDF world, for Gazebo: the world and the STL files of the pieces, which SDF cannot hold inside.
+//! A trial as an SDF world, for Gazebo: the world and the STL files of the pieces, which SDF cannot embed.
 //!
-//! Where all errors are free the moving half floats; else it hangs on a chain of sliders and hinges at the COR, whose
-//! links in between weigh next to nothing. Damping is given as the decay of the velocity per step (`velocity_decay`), as the
-//! dissertation did.
+//! If all errors are free the moving half floats; if not, it hangs on a chain of sliders and hinges at the
+//! COR, with nearly massless intermediate links. Damping is given as the decay of the velocity per step
+//! (`velocity_decay`), as in the dissertation.
 
 use super::super::settings::Push;
 use super::{Scene, attribute, triple};
