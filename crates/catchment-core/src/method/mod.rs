@@ -1,5 +1,5 @@
-//! Ways to decide what becomes of a pose error. All enter through one door ([`Method`]): settings + problem + domain + `&Exec` →
-//! outcomes, doubts and by-products ([`Decided`]).
+//! Methods that decide outcomes of pose errors. All share an interface ([`Method`]): settings + problem +
+//! domain + `&Exec` → outcomes, warnings and by-products ([`Decided`]).
 //!
 //! ```text
 //!   confluence  exact motions that join each other              the default
@@ -12,8 +12,9 @@
 //!   transport   arrival along exact directions over a grid
 //! ```
 //!
-//! [`correction`] gives the Sum of any of them its interval by exact descents. [`zraa`] decides translation alone and is
-//! entered by itself. A method is added by its folder, which implements [`Decide`], and by one line in [`REGISTRY`].
+//! [`correction`] adds an interval to the Sum of any of them by exact motions. [`zraa`] decides translation
+//! alone and has a separate interface. A new method needs its folder, which implements [`Decide`], and a line
+//! in [`REGISTRY`].
 
 pub mod certified;
 pub mod confluence;

@@ -1,4 +1,4 @@
-//! The methods by their names: every one in a line, and any of them as a value that is read, changed and stored.
+//! The methods by name: each is a line of the registry, and a value that can be read, changed and stored.
 
 use super::door::{Decide, Info};
 use crate::design::nearest;

@@ -1,11 +1,11 @@
-//! The slow, obvious versions that judge the fast ones.
+//! The slow, obvious reference versions of the fast algorithms.
 //!
-//! A facet is a plane through `dimension` of the points that has all of them behind it; a point is inside if it is
-//! behind all facets; two vertices are joined if the normals of the facets that they share span all directions but one;
-//! a volume is the share of evenly strewn points that are inside.
+//! A facet is a plane through `dimension` of the points with all points behind it; a point is inside if it is
+//! behind all facets; two vertices are joined if the normals of their common facets span all directions but
+//! one; a volume is the share of evenly spread points that are inside.
 //!
-//! In plain floating point, and slow: n^(dimension + 1) for the facets of n points. Wrong where points lie nearer to a
-//! common plane than [`RESOLUTION`] without being in it.
+//! In plain floating point, and slow: n^(dimension + 1) for the facets of n points. Wrong for points closer
+//! to a common plane than [`RESOLUTION`] without being in it.
 
 use super::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, dot};
 

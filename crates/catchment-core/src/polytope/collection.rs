@@ -1,7 +1,7 @@
 //! Finite unions of polytopes: *P-collections*.
 //!
-//! The polytopes may overlap. Operations go polytope by polytope, so that their number can grow with the product of the
-//! numbers; [`Collection::disjoint`] makes the same set of polytopes that do not overlap.
+//! The polytopes may overlap. Operations process polytope by polytope, so that their number can grow with the
+//! product of the numbers; [`Collection::disjoint`] represents the same set by polytopes that do not overlap.
 
 use super::{Point, Polytope};
 

@@ -1,4 +1,4 @@
-//! Cutting a polytope by a plane, and what follows from it: intersection, difference, overlap.
+//! Cut of a polytope by a plane, with the operations based on it: intersection, difference, overlap.
 //!
 //! ```text
 //!      outside     o         Vertices are inside (i), outside (o) or on the plane (x), up to RESOLUTION. Every edge
@@ -8,11 +8,11 @@
 //!              i───────i
 //! ```
 //!
-//! Nothing but the classes of the vertices depends on numbers: what is kept and what is joined follows from which
-//! vertex lies on which facet. Both halves share the new vertices to the last bit, unless one had to be made anew as a
+//! Numbers only determine the classes of the vertices: all further decisions follow from the incidence of
+//! vertices and facets. Both halves share the new vertices to the last bit, unless one had to be rebuilt as a
 //! hull, which rounds them.
 //!
-//! Cost: vertices inside × vertices outside words, and one search for a third vertex per edge.
+//! Cost: vertices inside × vertices outside words, and a search for a third vertex per edge.
 
 use super::incidence::{Incidence, ones};
 use super::{Gap, Halfspace, Point, Polytope, RESOLUTION};

@@ -1,17 +1,18 @@
-//! On which side of a plane does a point lie? The exact answer.
+//! Exact side of a point relative to a plane.
 //!
 //! ```text
 //!   normal_j = (−1)^j · det(rows p_i − p_0, without column j)        side of q = sign Σ_j normal_j (q_j − p_0j)
 //! ```
 //!
-//! Points are rounded to a lattice of [`SPACING`], so that coordinates are whole numbers, sums of points are exact, and
-//! sums that ought to be coplanar are. The normal is computed in floating point, and the same sums with all signs
-//! positive bound its error (Shewchuk, *Adaptive precision floating-point arithmetic*, 1997, explains such filters).
-//! Only where the bound does not decide, the normal is computed in whole numbers of up to 384 bits, once per plane.
+//! Points are rounded to a lattice of [`SPACING`], so that coordinates are integers, sums of points are
+//! exact, and sums that should be coplanar are. The normal is computed in floating point, and the same sums
+//! with all signs positive bound its error (Shewchuk, *Adaptive precision floating-point arithmetic*, 1997,
+//! explains such filters). Only if the bound does not decide, the normal is computed in integers of up to 384
+//! bits, once per plane.
 //!
 //! Sizes: coordinates are below [`REACH`] / [`SPACING`] = 2^50, those of a sum of two below 2^51, differences
-//! below 2^52, which floating point holds exactly. By Hadamard's inequality a k × k minor is below
-//! k^(k/2) · 2^(52 k), and with k ≤ 6 that is below 2^(64 k − 1): it fits k words with its sign.
+//! below 2^52, which floating point holds exactly. By Hadamard's inequality a k × k minor is below k^(k/2) ·
+//! 2^(52 k), and with k ≤ 6 that is below 2^(64 k − 1): it fits k words with its sign.
 
 use super::{MAX_DIMENSION, Point};
 use std::cell::OnceCell;

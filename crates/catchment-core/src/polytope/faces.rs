@@ -1,10 +1,10 @@
 //! From a hull's simplices to a polytope's facets.
 //!
-//! Simplices in one plane are one facet, and a point that is a corner of no face (it lies on no facet that another
-//! vertex does not lie on too) is no vertex. First, what is in one plane up to rounding counts as in one plane: that
-//! swallows the splinters that rounding leaves on facets with many vertices. If any vertex is in doubt (see [`Gap`]) or
-//! the edges do not close, exactly coplanar simplices only are put together; that is always right, and may keep
-//! splinters.
+//! Coplanar simplices form a single facet, and a point that is not a corner of any face (it lies on no facet
+//! that excludes some other vertex) is not a vertex. First, simplices that are coplanar up to rounding count
+//! as coplanar: this removes the splinters that rounding leaves on facets with many vertices. If any vertex
+//! is uncertain (see [`Gap`]) or the edges do not close, only exactly coplanar simplices are merged; that is
+//! always correct, and may keep splinters.
 
 use super::exact::{self, SPACING};
 use super::hull::Hull;

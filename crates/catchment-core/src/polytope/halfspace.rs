@@ -1,4 +1,4 @@
-//! Half of the space: what lies behind a plane, `normal · x ≤ offset`.
+//! A half-space: the points behind a plane, `normal · x ≤ offset`.
 
 use super::{MAX_DIMENSION, Point, dot};
 

@@ -1,4 +1,4 @@
-//! The convex hull of lattice points as simplices, every decision exact.
+//! The convex hull of lattice points as simplices, with every decision exact.
 //!
 //! ```text
 //!        p                     Every point outside waits above one facet that it sees. The highest one, p, is taken:
@@ -7,11 +7,13 @@
 //!   ╱_________╲                above new ones, or are inside.
 //! ```
 //!
-//! Seen means strictly: a facet whose plane holds p stays, and the new simplices beside it are coplanar with it. That
-//! is right for any points (a seen facet cannot be coplanar with a ridge's join, so no join is flat), and
-//! [`super::faces`] puts coplanar simplices together. The order of the points does not matter: they are sorted.
+//! "Sees" is strict: a facet whose plane contains p stays, and the new simplices beside it are coplanar with
+//! it. That is correct for any points (a visible facet cannot be coplanar with a ridge's join, so no join is
+//! flat), and [`super::faces`] merges coplanar simplices. The order of the points has no effect: they are
+//! sorted.
 //!
-//! Cost: a normal for each simplex made, a height for each point that waits above one that goes and each new one.
+//! Cost: a normal for each new simplex, and a height for each waiting point of a removed facet and each new
+//! facet.
 //!
 //! Source: Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, ACM TOMS 22 (1996), without its
 //! tolerances.

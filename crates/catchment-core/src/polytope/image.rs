@@ -1,7 +1,7 @@
-//! Hulls of moved points: Minkowski sums, projections, cross-sections, facets seen from one side.
+//! Hulls of moved points: Minkowski sums, projections, cross-sections, facets visible from one side.
 //!
-//! Points are rounded to the lattice of hulls before they are added, so that sums are exact and coplanar where they
-//! ought to be.
+//! Points are rounded to the lattice of hulls before they are added, so that sums are exact, and coplanar if
+//! they should be.
 
 use super::exact::{self, Lattice};
 use super::{MAX_DIMENSION, Point, Polytope, RESOLUTION};

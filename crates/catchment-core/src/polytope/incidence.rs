@@ -1,8 +1,8 @@
-//! Which vertex lies on which facet: a matrix of bits, a row per vertex.
+//! Incidence of vertices and facets: a matrix of bits, a row per vertex.
 //!
-//! All that cutting needs of a polytope's faces is here. Two vertices are joined by an edge when they share at least
-//! dimension − 1 facets and no third vertex lies on all the facets they share. One allocation for all rows, and no
-//! limit on the number of facets; up to 64 of them, a row is one word.
+//! This is all the combinatorial information that a cut needs. Two vertices are joined by an edge if they
+//! share at least dimension − 1 facets and no third vertex lies on all the facets they share. A single
+//! allocation holds all rows, and the number of facets is not limited; for up to 64 facets a row is one word.
 
 /// Facets in a word.
 const WORD: usize = u64::BITS as usize;

@@ -1,11 +1,10 @@
 //! Volume and centroid.
 //!
-//! A face is the union of the cones from one of its vertices over its own facets that do not hold that vertex, and so
-//! on down to simplices, whose volumes are determinants, all taken positive: nothing cancels. Errors are a few units
-//! of the last place of the volume of the box around.
+//! A face is the union of the cones from one of its vertices over its own facets that do not contain that
+//! vertex, and so on down to simplices, whose volumes are determinants, all taken positive, so that nothing
+//! cancels. Errors are a few units of the last place of the volume of the bounding box.
 //!
-//! The facets of a face are its meetings with the polytope's facets that are as large as any such meeting that
-//! holds them.
+//! The facets of a face are its intersections with the polytope's facets that are maximal by inclusion.
 
 use super::incidence::ones;
 use super::{MAX_DIMENSION, Point, Polytope};

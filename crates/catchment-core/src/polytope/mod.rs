@@ -8,29 +8,30 @@
 //!      •─────────────•                             ╱_____________╲
 //! ```
 //!
-//! A [`Polytope`] keeps both forms, and which vertex lies on which facet. It is bounded and full-dimensional: a set
-//! thinner than [`RESOLUTION`] is no polytope here, and operations answer `None` for it. A [`Collection`] is a finite
-//! union of polytopes (a *P-collection*), the currency of the polyhedral method.
+//! A [`Polytope`] stores both forms, and the incidence of vertices and facets. It is bounded and
+//! full-dimensional: a set thinner than [`RESOLUTION`] is not a polytope here, and operations return `None`
+//! for it. A [`Collection`] is a finite union of polytopes (a *P-collection*), the data type of the
+//! polyhedral method.
 //!
-//! # What is exact and what is not
+//! # Exact and rounded operations
 //!
-//! **A hull's signs are exact.** [`Polytope::hull`], and with it sums, projections and cross-sections, round points to a
-//! lattice of 2⁻⁴⁰ and then decide every side in whole numbers. A wrong sign there gives a wrong topology, and that
-//! changes a set by anything: hulls in floating point are known to be wrong for one in fifty Minkowski sums, because
-//! their facets are parallelograms with exactly coplanar corners. On the lattice, sums are exact, so coplanar sums are
-//! coplanar.
+//! **A hull's signs are exact.** [`Polytope::hull`], and with it sums, projections and cross-sections, round
+//! points to a lattice of 2⁻⁴⁰ and then decide every side in integers. A wrong sign there gives a wrong
+//! topology, which can change a set arbitrarily: floating-point hulls are known to be wrong for one in fifty
+//! Minkowski sums, because their facets are parallelograms with exactly coplanar corners. On the lattice,
+//! sums are exact, so coplanar sums are coplanar.
 //!
-//! **Cuts are regularised.** [`Polytope::cut`] and all set operations on it count a vertex nearer to the cutting plane
-//! than [`RESOLUTION`] as on it. What such a decision changes is a sliver thinner than that, which has no measure to
-//! speak of and must not exist in either reading. Where a vertex is on the plane only by this rule (farther from it than
-//! rounding explains, or not much nearer than others), or the faces would not close, the result is the exact hull of
-//! its vertices.
+//! **Cuts are regularised.** [`Polytope::cut`] and all set operations on it treat a vertex closer to the
+//! cutting plane than [`RESOLUTION`] as on it. Such a decision changes only slivers thinner than that, which
+//! have negligible measure and must not exist in either case. If a vertex is on the plane only by this rule
+//! (farther from it than rounding explains, or not much closer than others), or the faces would not close,
+//! the result is the exact hull of its vertices.
 //!
 //! # Units and limits
 //!
-//! Coordinates are in D and rad, of order 1, and at most 1024; beyond that `None` is the answer. Cost grows quickly with
-//! the dimension: a polytope with n vertices in six dimensions may have n³ facets. Memory is not reserved
-//! beforehand: a caller who multiplies collections bounds their number.
+//! Coordinates are in D and rad, of order 1, and at most 1024; beyond that the result is `None`. Cost grows
+//! quickly with the dimension: a polytope with n vertices in six dimensions may have n³ facets. Memory is not
+//! reserved in advance: a caller who multiplies collections must limit their number.
 //!
 //! # Example
 //!

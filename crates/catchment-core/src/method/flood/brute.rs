@@ -1,5 +1,5 @@
-//! Basins and their tree as they are defined, in plain loops: the judge of the fast path. For small grids only,
-//! since most steps look at every cell.
+//! Basins and their tree by definition, in plain loops: the reference for the fast path. For small grids
+//! only, since most steps visit every cell.
 
 /// Minimum cell, its height and its depth, in the order of the cells: cell after cell from the lowest on, united with
 /// those neighbours that are there already. Where two bodies of water meet, the one with the higher minimum (the

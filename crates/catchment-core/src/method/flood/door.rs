@@ -1,4 +1,4 @@
-//! Flooding as a method, by either rule: two lines of the registry, one door.
+//! Flooding as a method, by either rule: two lines of the registry, one implementation.
 
 use super::{FloodError, Rule, Settings, bytes, docks, flood};
 use crate::acceptance::Domain;

@@ -1,15 +1,15 @@
-//! Where every cell drains: the basins before any merging.
+//! The cell to which every cell drains: the basins before any merging.
 //!
 //! ```text
 //!   lowest     to the lowest cell of the 3ⁿ − 1 around it, the first in memory among equals
 //!   steepest   to where the height falls most per distance (see `steepest`)
 //! ```
 //!
-//! A cell without a lower neighbour is *flat*. On a plateau that drains, flat cells lead to its rim by the shortest
-//! way (in cells; the first in memory among equals); a plateau without a rim is one minimum, however large. Cells
-//! without contact (height −∞) are one basin, the outside.
+//! A cell without a lower neighbour is *flat*. On a plateau that drains, flat cells lead to its rim by the
+//! shortest path (in cells; the first in memory among equals); a plateau without a rim is a single minimum,
+//! however large. Cells without contact (height −∞) form a single basin, the outside.
 //!
-//! Memory: 4 bytes per cell, which hold first the next cell of the way down and then the number of the basin; the
+//! Memory: 4 bytes per cell, which hold first the next cell downhill and then the number of the basin; the
 //! slabs of a sweep; and the rim of the widest plateau.
 
 use super::meyer::neighbourhood::Neighbourhood;

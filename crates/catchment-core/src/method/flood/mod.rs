@@ -1,5 +1,5 @@
-//! The discrete method: basins of the height landscape over the error grid (the dissertation's chapter 5), and the
-//! tree that tells how they merge.
+//! The discrete method: basins of the height landscape over the error grid (the dissertation's chapter 5),
+//! and the tree of their merging.
 //!
 //! ```text
 //!    ╲               ╱      every cell drains to its lowest neighbour; a basin is what drains to one minimum.
@@ -9,26 +9,27 @@
 //! ```
 //!
 //! 1. Every cell drains to the lowest of its 3ⁿ − 1 neighbours ([`Rule::Lowest`]), or to the steepest
-//!    ([`Rule::Steepest`]). Cells without contact are one basin of their own, the outside.
-//! 2. The merge tree ([`MergeTree`]) holds the depth of every minimum and the pass across which it merges, so that
-//!    the result is known for every tolerance at once.
-//! 3. Basins shallower than [`Settings::depth_tolerance`] are merged. Where none is given, it lies in the widest gap
+//!    ([`Rule::Steepest`]). Cells without contact form a separate basin, the outside.
+//! 2. The merge tree ([`MergeTree`]) holds the depth of every minimum and the pass across which it merges, so
+//!    that the result is known for every tolerance at once.
+//! 3. Basins shallower than [`Settings::depth_tolerance`] are merged. Its default lies in the widest gap
 //!    between the depths (see [`Choice`]).
 //!
-//! The mated pose is lower than all around it. Where it falls between cell centres (an even number of cells),
-//! the minima among the cells around it are therefore one minimum, and where none of these cells is a minimum, the
-//! target is the basin of the lowest of them. If that basin, after merging, gathers deeper below the mated pose than
-//! the tolerance, the mated pose does not hold and nothing is accepted.
+//! The mated pose is lower than all poses around it. If it falls between cell centres (an even number of
+//! cells), the minima among the cells around it count as a single minimum; if no such cell is a minimum, the
+//! target is the basin of the lowest of them. If that basin, after merging, drains to a minimum deeper below
+//! the mated pose than the tolerance, the mated pose is not a rest and no cell is accepted.
 //!
-//! **Beside Meyer's flooding** ([`meyer`]), which the dissertation uses: the minima are the same and merging follows
-//! the same rule, but not the borders. There, a cell that two waters reach is a *dam* and passes none on, so that what
-//! lies above it is reached from the sides; here it drains on to its lowest neighbour. [`meyer::accept`] decides by it. At 100 × 100 cells on five
-//! planar designs the two decide 3.9, 8.8, 1.6, 2.5 and 0 % of the cells differently.
+//! **Compared with Meyer's flooding** ([`meyer`]), which the dissertation uses: the minima are the same and
+//! merging follows the same rule, but the borders differ. There, a cell that two basins reach is a *dam* and
+//! is not flooded through, so that the cells above it are reached from the sides; here it drains to its
+//! lowest neighbour. [`meyer::accept`] decides by that rule. At 100 × 100 cells on five planar designs the
+//! two decide 3.9, 8.8, 1.6, 2.5 and 0 % of the cells differently.
 //!
 //! **Not guaranteed:** motion on a grid can only follow the grid's directions, so the border of a basin does
-//! not converge to the true one as the grid refines ([`Warning::FloodingBias`]). Bias of the Sum at 100 × 100 cells
-//! against exact descent, in percent, for the X-Face (AR 1, COR ½; AR ½, COR −½; AR 2, COR 1) and the V-Face (AR 1,
-//! COR 0; AR ½, COR −½):
+//! not converge to the true border as the grid is refined ([`Warning::FloodingBias`]). Bias of the Sum at 100
+//! × 100 cells compared with exact descent, in percent, for the X-Face (AR 1, COR ½; AR ½, COR −½; AR 2, COR
+//! 1) and the V-Face (AR 1, COR 0; AR ½, COR −½):
 //!
 //! | | X 1, ½ | X ½, −½ | X 2, 1 | V 1, 0 | V ½, −½ |
 //! |---|---|---|---|---|---|
@@ -36,8 +37,8 @@
 //! | steepest neighbour | +4.5 | −20 | +1.3 | +0.8 | −7.4 |
 //! | Meyer's queue | +2.3 | −24 | +1.6 | +0.5 | −3.5 |
 //!
-//! Nothing is known of what lies beyond the error box: a basin whose minimum lies on a border of x or y counts as
-//! missed (the halves slide off), one on a border of a rotation as jammed.
+//! Motion beyond the error box is unknown: a basin whose minimum lies on a border of x or y counts as missed
+//! (the halves slide off), on a border of a rotation as jammed.
 //!
 //! [`Warning::FloodingBias`]: crate::acceptance::Warning::FloodingBias
 

@@ -1,17 +1,18 @@
-//! The passes between basins that matter: a shortest tree over all of them.
+//! The relevant passes between basins: a minimum spanning tree over all of them.
 //!
-//! Two cells are neighbours where some unit cube of 2ⁿ cells holds both, and the pass over them is as high as the
-//! higher one. Within a cube every cell neighbours every other, so a knock-out tournament tells all that matters:
-//! each cell loses once, to a lower one, and the games connect all cells of the cube no higher than their neighbourhood
-//! does. Cubes share their early games: n games per cell instead of (3ⁿ − 1)/2 neighbours.
+//! Two cells are neighbours if some unit cube of 2ⁿ cells contains both, and the pass over them has the
+//! height of the higher cell. Within a cube all cells are neighbours, so a knock-out tournament finds all
+//! relevant passes: each cell loses once, to a lower cell, and the games connect all cells of the cube at the
+//! same heights as their neighbourhood does. Cubes share their early games: n games per cell instead of (3ⁿ −
+//! 1)/2 neighbours.
 //!
 //! ```text
 //!   3 ─ 7      games: 3–7, 5–4, then 3–4, where 7, 5 and 4 lose: passes of height 7, 5 and 4.
 //!   5 ─ 4      The neighbours 7 and 5 are connected at height 7 all the same: 7 ▸ 3 ▸ 4 ◂ 5.
 //! ```
 //!
-//! Of all games between different basins only those in the shortest spanning tree (Kruskal 1956) are kept: water that
-//! rises in any basin first meets another over a pass of that tree. Memory: O(basins).
+//! Of all games between different basins only those in the minimum spanning tree (Kruskal 1956) are kept:
+//! water that rises in any basin first overflows a pass of that tree. Memory: O(basins).
 
 use super::drain::Basins;
 use super::sweep::{Slabs, level_of, number_of};

@@ -1,12 +1,12 @@
-//! The classical rule of steepest neighbours: down to where the height falls most per distance.
+//! The classical rule of steepest neighbours: to the neighbour with the greatest fall per distance.
 //!
 //! ```text
 //!   distance² = |step of the COR, in x and y|² + (ρ·angle between the rotations)²
 //! ```
 //!
-//! the metric in which "downhill" is steepest for exact descent too. The grid is over the face centre's offsets, so a
-//! step that turns the half also moves its COR. Directions are still those of the grid: the rule does not converge
-//! as the grid refines, and is here for comparison.
+//! This is the metric of steepest descent in exact motions, too. The grid is over the offsets of the face
+//! centre, so a step that rotates the half also moves its COR. Directions are still those of the grid: the
+//! rule does not converge as the grid is refined, and is provided for comparison.
 
 use super::drain::{FLAT, OUTSIDE};
 use crate::design::Alignment;

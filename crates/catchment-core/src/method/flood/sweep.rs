@@ -1,4 +1,4 @@
-//! Passes over a whole grid that look at one axis after another.
+//! Passes over a whole grid that process one axis after another.
 //!
 //! ```text
 //!    the least of a 3ⁿ block                      the least of a unit cube of 2ⁿ cells
@@ -6,9 +6,9 @@
 //!      the least of three along axis 1, …           the least of two along axis 1, …
 //! ```
 //!
-//! n steps per cell instead of 3ⁿ. The grid is walked slab by slab along its last axis, so that only three slabs are
-//! held at once. A value is a height in the upper half of a word and something that tells cells apart in the lower:
-//! the least value is that of the lowest cell, and among equals that of the least number.
+//! n steps per cell instead of 3ⁿ. The grid is traversed slab by slab along its last axis, so that only three
+//! slabs are held at once. A value is a height in the upper half of a word and a distinguishing number in the
+//! lower half: the smallest value is that of the lowest cell, and among equals that of the smallest number.
 
 use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};

@@ -1,4 +1,4 @@
-//! Where the mated pose lies in a grid.
+//! Position of the mated pose in a grid.
 //!
 //! ```text
 //!   odd number of cells            even number of cells

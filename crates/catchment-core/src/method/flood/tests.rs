@@ -1,4 +1,4 @@
-//! Closed forms, and what the documentation says of the results.
+//! Closed forms, and the results that the documentation states.
 
 use super::*;
 use crate::acceptance::Warning;

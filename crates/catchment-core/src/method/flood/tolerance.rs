@@ -1,4 +1,4 @@
-//! The depth tolerance when none is given: between the pits that sampling makes and the true minima.
+//! Default depth tolerance: between the pits caused by sampling and the true minima.
 //!
 //! ```text
 //!   depths, log    ·   · ··  ·                   ·     ·            ·
@@ -6,19 +6,22 @@
 //!               δ/8                       gap, τ in its middle
 //! ```
 //!
-//! The exact heights need no tolerance: without friction every minimum holds. What must be merged are the pits that
-//! sampling makes where a crease of the landscape runs obliquely through the grid. They are about as deep as the
-//! height differs between neighbouring cells (δ), or any fraction of that, while a true minimum does not depend on the
-//! grid. So the rule is: *the widest gap between depths on a logarithmic scale, which starts no higher than δ*.
+//! The exact heights need no tolerance: without friction every minimum is a rest. Merging removes the pits
+//! that sampling causes at a crease of the landscape oblique to the grid. Their depth is at most about the
+//! height difference between neighbouring cells (δ), or any fraction of it, while a true minimum does not
+//! depend on the grid. So the rule is: *the widest gap between depths on a logarithmic scale, which starts no
+//! higher than δ*.
 //!
-//! - Logarithmic, because true depths differ by factors. On a linear scale the widest gap is the one below the
-//!   deepest minimum, and jams of a tenth of its depth would be merged.
-//! - It starts at δ at most: a deeper minimum is more than sampling can make.
-//! - It starts at δ/8 at least: pits come arbitrarily shallow, and the widest gap in their ratios would lie among them.
-//! - It ends at the latest where the mated basin itself would run into a lower one.
+//! - Logarithmic, because true depths differ by factors. On a linear scale the widest gap is the last before
+//!   the deepest minimum, and jams of a tenth of its depth would be merged.
+//! - It starts at δ at most: sampling does not cause deeper minima.
+//! - It starts at δ/8 at least: pits can be arbitrarily shallow, and the widest gap in their ratios would lie
+//!   among them.
+//! - It ends at the latest at the depth at which the mated basin would merge into a lower one.
 //!
-//! Within the gap no depth lies, so every tolerance in it gives the same basins; the one in its (geometric) middle is
-//! reported. *Not guaranteed:* on a coarse grid δ reaches the depth of true jams; then the gap between them counts.
+//! The gap contains no depth, so every tolerance in it gives the same basins; the (geometric) middle is
+//! reported. *Not guaranteed:* on a coarse grid δ reaches the depth of true jams; then the gap between them
+//! counts.
 
 use super::tree::{MergeTree, Step};
 use serde::{Deserialize, Serialize};

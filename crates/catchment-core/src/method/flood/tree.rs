@@ -1,4 +1,4 @@
-//! The merge tree: in which order the basins of a rising water run together, and how deep each of them is.
+//! The merge tree: the order in which the basins of a rising water merge, and the depth of each.
 //!
 //! ```text
 //!   ╲        ╱╲      ╱          a minimum is as deep as the water must rise in it to reach a lower one:
@@ -7,10 +7,10 @@
 //!      B         ╲╱ C           and the tree knows them all.
 //! ```
 //!
-//! The tree is exact: it is that of the sets of cells below every height, connected in the full neighbourhood.
-//! Source: the "elder rule" of persistent homology (Edelsbrunner, Letscher, Zomorodian 2002); merging by depth is the
-//! watershed hierarchy "by dynamics" (Grimaud 1992). Where one pass leads into several basins at once, the one of the
-//! smallest number counts.
+//! The tree is exact: it is that of the sets of cells below every height, connected in the full
+//! neighbourhood. Source: the "elder rule" of persistent homology (Edelsbrunner, Letscher, Zomorodian 2002);
+//! merging by depth is the watershed hierarchy "by dynamics" (Grimaud 1992). If a pass leads into several
+//! basins at once, the basin with the smallest number counts.
 
 use super::drain::Basins;
 use super::passes::Pass;

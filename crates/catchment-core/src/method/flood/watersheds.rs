@@ -1,4 +1,4 @@
-//! The labels of flooding: the watershed of every cell before any merging, and what merging makes of it.
+//! The labels of flooding: the watershed of every cell before any merging, and after it.
 //!
 //! ```text
 //!   first labels      1 1 2 2 2 ▒ 3 3        ▒ a dam, which belongs to none yet (Meyer's flooding alone)
@@ -6,8 +6,8 @@
 //!   after merging     1 1 1 1 1   3 3
 //! ```
 //!
-//! A narrow canal that runs diagonally to the grid is cut into many small watersheds by sampling alone; merging is there to join them
-//! again. (Dissertation, section 5.3, figures 5.10 and 5.11.)
+//! Sampling alone divides a narrow canal that runs diagonally to the grid into many small watersheds; merging
+//! joins them again. (Dissertation, section 5.3, figures 5.10 and 5.11.)
 
 use serde::{Deserialize, Serialize};
 

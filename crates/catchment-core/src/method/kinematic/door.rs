@@ -1,4 +1,4 @@
-//! The kinematic bounds as a method. Its settings are those of the design: there is nothing to set.
+//! The kinematic bounds as a method. Their settings follow from the design.
 
 use super::{KinematicError, accept};
 use crate::acceptance::{Domain, Outcome};

@@ -11,20 +11,23 @@
 //!        P_B ○            θ₁   from the lateral direction to the edge's normal
 //! ```
 //!
-//! A body's vertical runs along its approach axis. Angles are positive as they are in the aligned contact: the sense of all is chosen so
-//! that `β_p + α_e` ≥ 0, and θ₂ < 0 is the text's failed mate. θ₂ less `β_p + α_e` is how far the halves are turned apart, with its sign.
-//! In these terms the place of the corner's rotation point seen from the edge's is, across and along N,
+//! A body's vertical runs along its approach axis. Angles are positive in the sense of the aligned contact:
+//! the sense of all is chosen so that `β_p + α_e` ≥ 0, and θ₂ < 0 is the text's failed mate. θ₂ minus
+//! `β_p + α_e` is the signed relative rotation of the halves. In these terms the position of the corner's
+//! rotation point relative to the edge's is, across and along N,
 //!
 //! `e·(P − P') = d cos θ₁ + q₁ sin θ₁ + l cos(θ₁ − θ₂)`,   `q₂ = d + l cos θ₂`,
 //!
-//! with e = ∓x, the side to which the sense points: the text's constraint x = x₀ and its first equation of (3.1). Both hold exactly here,
-//! which is how θ₁ was told apart from its text, which leaves it to the figure: that reading is ours.
+//! with e = ∓x, the side to which the sense points: the text's constraint x = x₀ and its first equation of
+//! (3.1). Both hold exactly here; θ₁, which the text leaves to the figure, was identified by this, and that
+//! reading is ours.
 //!
-//! Rotation points are those of the method ([`super`]): that of the base half lies on its axis as that of the moving half
-//! on its own, −cor behind mid height. Where an edge lies flush on an edge, the contact is a corner of the moving half. Lengths in D,
-//! angles in radians, places as (x, z). Source: the dissertation, section 3.1.1, figures 3.3 and 3.4, equations 3.1 and 3.2.
+//! Rotation points are those of the method ([`super`]): each lies on the axis of its half, −cor behind mid
+//! height. If an edge lies flush on an edge, the contact is a corner of the moving half. Lengths in D, angles
+//! in radians, positions as (x, z). Source: the dissertation, section 3.1.1, figures 3.3 and 3.4, equations
+//! 3.1 and 3.2.
 //!
-//! Not promised: more than the first contact, or that it is the only one (figure 3.6 has two).
+//! Not promised: any later contact, or that the first contact is unique (figure 3.6 has two).
 
 use super::stepping::{self, Faces, Halt};
 use super::{Face, Settings, Unfit};

@@ -1,5 +1,5 @@
-//! The dissertation's planar kinematic method (chapter 3): closed bounds for the V-Face and the S-Face, in the form that
-//! its printed tables take, and the X-Face stepped by its one contact.
+//! The dissertation's planar kinematic method (chapter 3): closed bounds for the V-Face and the S-Face, in
+//! the form of its printed tables, and for the X-Face a stepping by its single contact.
 //!
 //! ```text
 //!         ● rotation point, r_p half-widths behind mid height
@@ -14,21 +14,23 @@
 //! V and S also need |θ₀| below a right angle less the slope of the outer edge (V: 2H/D, S: 3H/(2D)) and
 //! `|x₀| < r_p·D + H/2`. All bounds are strict; D = 1.
 //!
-//! The starts of the tables are `x₀ = (i − 20)·D/20`, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0, π/2]. Each counts
-//! (2/40)(π/40) all the same, so that the one-sided count stands for ±π/2. They are indexed by integers: added-up
-//! floating-point steps would break ties.
+//! The starts of the tables are `x₀ = (i − 20)·D/20`, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0,
+//! π/2]. Each counts (2/40)(π/40) all the same, so that the one-sided count represents ±π/2. Starts are
+//! indexed by integers, because accumulated floating-point steps would break ties.
 //!
-//! The bounds reproduce the printed tables 3.3 and 3.4 in every entry, and depart from a literal reading of the text in three
-//! places: the range of θ₀, half dimensions in the lever and in the limit on |x₀|, and the outer edge's angle for S. The
-//! coefficient of `r_p` in that limit cannot be told from the tables: it binds at `r_p` = 0 only. Table 3.2, of the
-//! X-Face, does not follow from its text; the stepping stands beside it, not in its place.
+//! The bounds reproduce the printed tables 3.3 and 3.4 in every entry, and depart from a literal reading of
+//! the text in three points: the range of θ₀, half dimensions in the lever and in the limit on |x₀|, and the
+//! outer edge's angle for S. The tables do not determine the coefficient of `r_p` in that limit: it binds
+//! only at `r_p` = 0. Table 3.2, of the X-Face, does not follow from its text; the stepping is provided
+//! beside it and does not reproduce it.
 //!
-//! **As a method** ([`accept`]) it decides pose errors of a planar family: θ₀ = −pitch, x₀ the place of the rotation point,
-//! `x₀ = x − cor·sin pitch`, and `r_p = −2·cor`: a rotation point `r_p` half-widths behind mid
-//! height is a COR of −`r_p`/2. Accepted is aligned; beyond the limit on |x₀|, or without contact, missed; the rest jammed.
+//! **As a method** ([`accept`]) it decides pose errors of a planar family: θ₀ = −pitch, x₀ the position of
+//! the rotation point, `x₀ = x − cor·sin pitch`, and `r_p = −2·cor`: a rotation point `r_p` half-widths
+//! behind mid height is a COR of −`r_p`/2. An accepted pose docks; beyond the limit on |x₀|, or without
+//! contact, it misses; all others jam.
 //!
-//! Not promised: that a start within the bounds succeeds (they are the best case), or that the rotation point keeps its
-//! x in a real docking, as it does here. For free motion see [`crate::method::descent`].
+//! Not promised: that a start within the bounds succeeds (they are the best case), or that the rotation point
+//! keeps its x in a real docking, as it does here. For free motion see [`crate::method::descent`].
 
 pub(super) mod door;
 mod lever;

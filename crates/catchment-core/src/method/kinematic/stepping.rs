@@ -1,4 +1,4 @@
-//! Two planar X-Faces that pivot: one contact at a time, stepped.
+//! Two planar X-Faces that pivot, stepped by a single contact at a time.
 //!
 //! ```text
 //!          P_M ○                 moving half: pivots about P_M, which only moves along z (x = x₀ is kept)
@@ -11,21 +11,24 @@
 //!          P_B ○                 base half: pivots about P_B, which is fixed
 //! ```
 //!
-//! **Bodies.** A layer is the right triangle (−½, 0), (½, 0), (½, H) of the base, D = 1; the second layer is its mirror image;
-//! the moving half is the base turned by a half turn in the plane. Both pivot a distance `r_p`/2 behind mid height H/2:
-//! `r_p` half-widths. Angles are counter-clockwise (the tip swings to +x for θ > 0); start at `θ_M = θ₀`, `θ_B = 0`.
+//! **Bodies.** A layer is the right triangle (−½, 0), (½, 0), (½, H) of the base, D = 1; the second layer is
+//! its mirror image; the moving half is the base rotated by a half turn in the plane. Both pivot at a
+//! distance `r_p`/2 behind mid height H/2: `r_p` half-widths. Angles are counter-clockwise (the tip swings to
+//! +x for θ > 0); start at `θ_M = θ₀`, `θ_B = 0`.
 //!
-//! **Contact.** y is the largest over all pairs of a corner and an edge of the same layer whose places overlap: corners of
-//! the moving half over upward edges of the base, corners of the base under downward edges of the moving half. The highest
-//! pair is *the* contact.
+//! **Contact.** y is the largest over all pairs of a corner and an edge of the same layer that overlap
+//! laterally: corners of the moving half over upward edges of the base, corners of the base under downward
+//! edges of the moving half. The highest pair is *the* contact.
 //!
-//! **Motion.** Overdamped, frictionless, both with the same damping of rotation and none of y: with
-//! `g = (∂y/∂θ_M, ∂y/∂θ_B) = (−r_M × n, r_B × n)/n_z`, the angles move along −g. Only the path matters: a step turns them so
-//! far that the farthest corner moves by [`STEP`] (midpoint rule, unless another pair is the highest halfway). When another pair becomes the highest, the contact has
-//! passed on, whether it slid over a corner or fell.
+//! **Motion.** Overdamped, frictionless, both halves with the same rotational damping and no damping of y:
+//! with `g = (∂y/∂θ_M, ∂y/∂θ_B) = (−r_M × n, r_B × n)/n_z`, the angles move along −g. Only the path matters:
+//! a step rotates them such that the farthest corner moves by [`STEP`] (midpoint rule, unless another pair is
+//! the highest halfway). When another pair becomes the highest, the contact has changed, whether it slid over
+//! a corner or fell.
 //!
-//! **End.** With ψ the angle from the normal of the edge (pointing at the edge's body) to the lever from the corner's pivot to the
-//! corner, and ψ* what it is where the two halves are parallel (the text's `β_p + α_e`), `θ₂ = ψ·sign ψ*`:
+//! **End.** With ψ the angle from the normal of the edge (pointing at the edge's body) to the lever from the
+//! corner's pivot to the corner, and ψ* its value for parallel halves (the text's `β_p + α_e`),
+//! `θ₂ = ψ·sign ψ*`:
 //!
 //! | halt | when |
 //! |---|---|
@@ -36,8 +39,9 @@
 //! | bound | two pairs, each of which pushes back into the other: `g₁·g₂ < min(|g₁|², |g₂|²)` |
 //! | at rest | y no longer falls, or [`MOST_STEPS`] steps are over |
 //!
-//! There is no distance condition, which the printed table for this face does not keep to either. Not promised: that this
-//! is what was run for that table; it is not, see [`super`]. Source: the dissertation, section 3.1.1.
+//! There is no distance condition; the printed table for this face does not follow that condition either. Not
+//! promised: agreement with the computation behind that table, from which it differs, see [`super`]. Source:
+//! the dissertation, section 3.1.1.
 
 use glam::DVec2;
 use serde::Serialize;

@@ -8,8 +8,8 @@
 //!           ▓ next ▓
 //! ```
 //!
-//! Neighbours are found through an R-tree of bounding boxes (the original compared all pairs, which took most of
-//! its time).
+//! Neighbours are found through an R-tree of bounding boxes (the original compared all pairs, which took most
+//! of its time).
 
 use super::compose::Compartment;
 use super::space::{Affine, Tile};

@@ -9,13 +9,14 @@
 //!    │ └───┘  slice i         2k polytopes for k vertices: their union keeps what is hollow
 //! ```
 //!
-//! Repeated for roll, pitch and yaw, as `R = Rz(yaw)·Ry(pitch)·Rx(roll)` is built up. The other half is flat in every
-//! angle: the sum is taken slice by slice. (Dissertation, section 5.1.2, algorithm 1.)
+//! The composition is repeated for roll, pitch and yaw, in the order of `R = Rz(yaw)·Ry(pitch)·Rx(roll)`. The
+//! other half is flat in every angle: the sum is taken slice by slice. (Dissertation, section 5.1.2,
+//! algorithm 1.)
 //!
-//! Not promised: between two slices a vertex runs along the chord of its circle, so a composite is too small there by
-//! up to `r(1 − cos(Δ/2))`; and an edge turns by Δ about *each* of its ends, so a composite bulges by up to `L·Δ/4`
-//! over an edge of length L, with slopes that are wrong by as much as `L/2` however fine the slices. Cutting
-//! the half into strips first makes L small; see [`super::Settings::strips`].
+//! Not promised: between two slices a vertex runs along the chord of its circle, so a composite is too small
+//! there by up to `r(1 − cos(Δ/2))`; and an edge rotates by Δ about *each* of its ends, so a composite bulges
+//! by up to `L·Δ/4` over an edge of length L, with slopes that are wrong by as much as `L/2` however fine the
+//! slices. Cutting the half into strips first makes L small; see [`super::Settings::strips`].
 
 use super::pieces::Piece;
 use crate::polytope::Point;

@@ -1,4 +1,4 @@
-//! The polyhedral partition as a method, sampled at the poses that are asked for.
+//! The polyhedral partition as a method, sampled at the requested poses.
 
 use super::{PartitionError, Settings, run};
 use crate::acceptance::{Domain, Outcome};

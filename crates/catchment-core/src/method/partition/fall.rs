@@ -1,9 +1,10 @@
-//! Where one point of the contact space ends: the judge of the partition, and what it asks about ravines.
+//! End of the motion from a point of the contact space: the reference for the partition, and the partition's
+//! rule for ravines.
 //!
-//! From a point, motion crosses the cell whose own velocity leads into it (the steepest, if several), up to the facet
-//! where it leaves. Where no cell does, motion runs along a ravine or a wall to its lowest point (the dissertation's ravine
-//! rule, section 5.1.6; over two pose errors that is exact, over more a ravine's own slope would bend it). Where there is no lower
-//! one, it has come to rest.
+//! From a point, motion crosses the cell whose own velocity leads into it (the steepest, if several), up to
+//! the facet through which it leaves. If there is no such cell, motion runs along a ravine or a wall to its
+//! lowest point (the dissertation's ravine rule, section 5.1.6; exact over two pose errors; over more, the
+//! ravine's own slope would bend the path). If no lower point exists, the motion has come to rest.
 
 use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, removed, touches};
 use crate::polytope::{MAX_DIMENSION, Point};

@@ -1,11 +1,13 @@
-//! From the COR, whose lateral position the contact space is over, to the face centre, whose error is asked for.
+//! Conversion from the COR, whose lateral position spans the contact space, to the face centre, whose error
+//! is requested.
 //!
 //! ```text
 //!   (x, y) of the face centre = (x, y) of the COR + cor·(R ẑ)      a shear: it moves every rotation as a whole,
 //!                                                                  so measures are the same on both sides
 //! ```
 //!
-//! Between slices the offset is interpolated, as the composites are; so parts that meet still meet.
+//! Between slices the offset is interpolated, as the composites are; adjacent parts therefore remain
+//! adjacent.
 
 use super::Partition;
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope};

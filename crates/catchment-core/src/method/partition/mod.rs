@@ -1,4 +1,4 @@
-//! The dissertation's polyhedral method: the contact space as polytopes, and its watersheds exactly.
+//! The dissertation's polyhedral method: the contact space as polytopes, with exact watersheds.
 //!
 //! ```text
 //!   slices ──▶ composites ──▶ Minkowski sum ──▶ contact space ──▶ gates ──▶ watersheds ──▶ area of acceptance
@@ -11,8 +11,9 @@
 //! outline. It works in any number of free errors from two (x and an angle: polytopes in 3-D) to five (6-D); the number of
 //! polytopes grows with the product of the slices of all rotations, so up to three errors are practical.
 //!
-//! What is approximate is the rotation between slices (a corner runs along its chord) and, over three errors and more, the ravine rule.
-//! Not promised: convergence of the watersheds at a fixed number of strips, see [`Settings::strips`].
+//! The rotation between slices is approximate (a corner runs along its chord), and so is the ravine rule for
+//! three errors and more. Not promised: convergence of the watersheds at a fixed number of strips, see
+//! [`Settings::strips`].
 //!
 //! Source: dissertation, sections 5.1 and 5.2, figures 5.5–5.8.
 

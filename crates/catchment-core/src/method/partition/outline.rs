@@ -1,4 +1,4 @@
-//! The partition of two errors as polygons, and the exact outline of what is accepted.
+//! The partition of two errors as polygons, and the exact outline of the accepted set.
 //!
 //! ```text
 //!    ┌──┬─────╱╲      edges of accepted parts, without what another accepted part shares:

@@ -6,8 +6,8 @@
 //!   └──────╲╱──────┘
 //! ```
 //!
-//! A half that is an extrusion along y, moving in x and pitch, is its profile in the x–z plane: its pieces are polygons,
-//! and each meets only those whose slabs in y it overlaps.
+//! A half that is an extrusion along y, moving in x and pitch, is represented by its profile in the x–z
+//! plane: its pieces are polygons, and each meets only those whose slabs in y it overlaps.
 
 use super::PartitionError;
 use crate::connector::{Half, Surface};

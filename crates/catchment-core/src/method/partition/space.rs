@@ -8,12 +8,12 @@
 //!     └──────────────▶ q     facet ∖ ⋃ { q in a shadow : every plane of that roof lies above the facet }
 //! ```
 //!
-//! Each covered set is convex, so the difference is one of polytopes over the pose errors q, one dimension below
-//! that of the sum. What remains tiles the shadow of the whole sum with convex cells, over each of which the height
-//! of first contact is affine. Where two roofs agree, the earlier one keeps the ground.
+//! Each covered set is convex, so the difference is a set of polytopes over the pose errors q, one dimension
+//! below that of the sum. The remainder tiles the shadow of the whole sum with convex cells, over each of
+//! which the height of first contact is affine. If two roofs agree, the earlier roof keeps the area.
 //!
-//! The dissertation (section 5.1.3) keeps every boundary facet that faces up, also those under an overhang. The approach meets what
-//! lies over them first, so they are left out here.
+//! The dissertation (section 5.1.3) keeps every boundary facet that faces up, also those under an overhang.
+//! The approach meets the facets above them first, so they are omitted here.
 
 use super::compose::{Compartment, compose};
 use super::pieces::PiecePair;

@@ -1,5 +1,5 @@
-//! From cells to watersheds: every part of a cell drains to one part below it, so the parts make a forest, and each
-//! tree stands in a place of rest, or outside.
+//! From cells to watersheds: every part of a cell drains to a single part below it, so the parts form a
+//! forest, and the root of each tree is a rest, or the outside.
 //!
 //! ```text
 //!       ┌────┬────┐        A cell whose gates all lead to the same watershed belongs to it whole. Otherwise the
@@ -10,12 +10,13 @@
 //!     │ a  │  │ b  │
 //! ```
 //!
-//! Cells are taken from below: strongly connected components of "drains into" in topological order. Most have one
-//! cell. Within a larger one parts are swept up one by one until nothing is new; what then is left circles around a point of
-//! rest (a loop of more than two facets, a *base watershed*), which [`super::fall`] finds.
+//! Cells are processed from below: strongly connected components of "drains into" in topological order. Most
+//! have a single cell. Within a larger component parts are swept up one by one until no new part appears; the
+//! remaining set circles around a rest (a loop of more than two facets, a *base watershed*), which
+//! [`super::fall`] finds.
 //!
-//! Splitting only where watersheds part is what keeps the number of parts near that of the cells; the original split wherever
-//! two neighbours meet.
+//! Cells are split only along the borders of watersheds, which keeps the number of parts near that of the
+//! cells; the original split at every meeting of two neighbours.
 
 use super::cells::{Beyond, Cells, Gate, facing};
 use super::fall::{self, Fate};

@@ -1,5 +1,5 @@
-//! The definition of transport in executable form: all cells, sorted by height, one after the other; every contact
-//! found anew at every cell. Slow, plain, and the judge of the fast path.
+//! The definition of transport in executable form: all cells, sorted by height, one after the other; every
+//! contact is recomputed at every cell. Slow and plain: the reference for the fast path.
 
 use super::links::{CROSSINGS, LEAST, NEGLIGIBLE};
 use super::{Settings, surface};

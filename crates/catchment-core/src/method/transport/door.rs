@@ -1,4 +1,4 @@
-//! Transport as a method: the cells of a grid from one another, with a fraction for each.
+//! Transport as a method: cells of a grid, with an arrival fraction for each.
 
 use super::{Arrival, Settings, TransportError, bytes, run};
 use crate::acceptance::Domain;

@@ -1,4 +1,5 @@
-//! Where a cell's arrival comes from: the corners of the simplex that its exact descent direction points into.
+//! Links of a cell's arrival fraction: the corners of the simplex into which its exact direction of descent
+//! points.
 //!
 //! ```text
 //!   ·──────·──────·      Freudenthal's (Kuhn's) simplices: with the axes in the order of |v|, the corners are
@@ -8,11 +9,11 @@
 //!   ·──────·──────·      (Freudenthal 1942; Kuhn 1960)
 //! ```
 //!
-//! A corner that is not lower than c lies across a valley: from there motion comes back. It is replaced by where *it*
-//! leads, [`CROSSINGS`] times over; what comes back to c itself is left out, which solves the cycle exactly; what is
-//! still not lower then is left out too. So every link leads downwards and the links of all cells have an order. A cell
-//! that keeps less than [`LEAST`] of its weight has no direction the grid could tell: it is an *end*, decided by
-//! exact physics.
+//! A corner that is not lower than c lies across a valley: from there motion comes back. It is replaced by
+//! the corners to which *it* leads, [`CROSSINGS`] times; a return to c itself is removed, which solves the
+//! cycle exactly; corners that are still not lower are then removed too. So every link leads downwards and
+//! the links of all cells are ordered. A cell that keeps less than [`LEAST`] of its weight has no direction
+//! that the grid can resolve: it is an *end*, decided by exact motion.
 
 use crate::contact::Mirror;
 use crate::landscape::{Grid, Patch, Relief};

@@ -1,4 +1,4 @@
-//! Transport: which share of a cell's motion arrives at the mated pose, over a grid in any number of dimensions.
+//! Transport: the share of each cell that arrives at the mated pose, over a grid in any number of dimensions.
 //!
 //! ```text
 //!   u = 1  ·  1  ·  .9 ·  .4 ·  0        every cell takes the mean of the cells that its *exact* direction of
@@ -7,23 +7,26 @@
 //!              mated       border        accepted: u > ½
 //! ```
 //!
-//! The arrival fraction obeys `q̇·∇u = 0`, discretised upwind on Freudenthal's simplices (`links.rs`): monotone, first order,
-//! and, unlike flooding and steepest-neighbour descent, *convergent*, because the direction is exact and not one of
-//! the grid's. Every link leads downwards: valleys that a coarse direction would cross back and forth are solved when
-//! the links are made, so one pass over the cells is all (`solve.rs`).
+//! The arrival fraction obeys `q̇·∇u = 0`, discretised upwind on Freudenthal's simplices (`links.rs`):
+//! monotone, first order, and, unlike flooding and steepest-neighbour descent, *convergent*, because the
+//! direction is exact and not limited to the grid's. Every link leads downwards: valleys that a coarse
+//! direction would cross back and forth are solved when the links are made, so a single pass over the cells
+//! is sufficient (`solve.rs`).
 //!
-//! *Ends* are cells from which no neighbour lies downhill: the mated pose, jams, and the hollows that a grid makes
-//! of a narrow ravine. Exact descent from their centres tells which is which, so that there is nothing to merge and no
-//! tolerance to choose. Where motion leaves the error box, exact descent decides too if the grid's surface has at most
-//! [`Settings::followed_out`] cells; otherwise it counts as missed at a border of x or y, as jammed at one of an
-//! angle, and a warning says so.
+//! *Ends* are cells without a downhill neighbour: the mated pose, jams, and the hollows into which a grid
+//! divides a narrow ravine. Exact descent from their centres distinguishes them, so that nothing must be
+//! merged and no tolerance must be chosen. If motion leaves the error box, exact descent also decides if the
+//! grid's surface has at most [`Settings::followed_out`] cells; on larger grids it counts as missed at a
+//! border of x or y, as jammed at a border of an angle, and a warning reports it.
 //!
-//! **Not guaranteed:** u strictly between 0 and 1 is numerical diffusion, not a probability of docking. At 30 cells per
-//! axis in five dimensions a tenth of the box is ambiguous (0.02 < u < 0.98) and most of what is wrong is among
-//! them; [`Arrival::is_ambiguous`] names them, so that descent can settle them or a sample correct their Sum.
+//! **Not guaranteed:** u strictly between 0 and 1 is numerical diffusion, not a probability of docking. At 30
+//! cells per axis in five dimensions a tenth of the box is ambiguous (0.02 < u < 0.98) and contains most of
+//! the misclassified cells; [`Arrival::is_ambiguous`] identifies them, so that exact descent can decide them
+//! or a sample can correct their Sum.
 //!
-//! Memory: 10 bytes per cell, 2.5 to 5 where the pair is symmetric ([`Relief`]). Sources: upwind membership, Gyulassy,
-//! Bremer and Pascucci 2012; D-infinity, Tarboton 1997; simplices, Freudenthal 1942. Lengths in D, angles in radians.
+//! Memory: 10 bytes per cell, 2.5 to 5 for symmetric pairs ([`Relief`]). Sources: upwind membership,
+//! Gyulassy, Bremer and Pascucci 2012; D-infinity, Tarboton 1997; simplices, Freudenthal 1942. Lengths in D,
+//! angles in radians.
 
 pub mod brute;
 pub(super) mod door;

@@ -5,8 +5,9 @@
 //!                           links lead downwards, so nothing waits for itself
 //! ```
 //!
-//! No order has to be sorted, and none matters: every cell's value is the same whoever computes it and when. Threads work
-//! on different rotations and take each other's values; that two of them compute one cell twice costs time, never a bit.
+//! No sorting is needed, and the order has no effect: every cell's value is the same whichever thread
+//! computes it. Threads work on different rotations and reuse each other's values; if two of them compute the
+//! same cell, that costs time and never a bit.
 
 use super::Judge;
 use super::links::{Link, Links, Scratch, Way};

@@ -1,4 +1,5 @@
-//! The upper envelope of the sheets as convex cells that tile the plane, and who lies across each border.
+//! The upper envelope of the sheets as convex cells that tile the plane, with the neighbours across each
+//! border.
 
 use super::places::Places;
 use super::sheet::{Sheet, area};

@@ -1,4 +1,4 @@
-//! What a circle would accept, bounded through the polygon that stands for it.
+//! Bounds on the accepted offsets of a circle from the polygon that approximates it.
 
 use super::Zraa;
 use crate::design::{ConnectorSpec, Design, FamilySpec};

@@ -1,7 +1,7 @@
-//! Where every point of every cell flows to, exactly.
+//! Exact flow of every point of every cell.
 //!
-//! Inside a cell the motion follows the constant −gradient, so a cell falls into strips that leave it by
-//! different stretches of its border. What becomes of a strip is decided across the border:
+//! Inside a cell the motion follows the constant −gradient, so a cell is divided into strips that leave it
+//! through different segments of its border. The type of the border determines the continuation of a strip:
 //!
 //! ```text
 //!   crossing   the neighbour's flow leads on          → the strip of the neighbour
@@ -12,8 +12,8 @@
 //!   nothing    no contact across the border           → missed
 //! ```
 //!
-//! and at the end of a valley the steepest way on is taken. Heights fall along every path, so the recursion
-//! ends; strips with the same fate are joined, which keeps them few.
+//! and at the end of a valley the steepest continuation is taken. Heights fall along every path, so the
+//! recursion ends; strips with the same outcome are joined, which keeps their number small.
 
 use super::cells::{Border, Cell};
 use super::places::Places;

@@ -1,4 +1,4 @@
-//! The height of first contact over all lateral offsets, as the planes it is made of.
+//! The height of first contact over all lateral offsets, as a set of planes.
 
 use super::sheet::Sheet;
 use super::{MAX_SHEETS, Settings, ZraaError, cells, sheet};

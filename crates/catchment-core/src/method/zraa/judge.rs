@@ -1,8 +1,9 @@
-//! Whether a region is the one that exact motions find.
+//! Check of a region by exact motions.
 //!
-//! A drawing is rounded: faces that were one plane are several, which cross where the last digits say, and a flow that goes by slivers
-//! of them may stop at a place where nothing stops. Nothing in the flow tells. So motions are followed one by one, beside it, from
-//! places of nested boxes around the mated pose, as the region may be any part of the error box:
+//! A drawing is rounded: faces of a single plane become several planes whose intersections depend on the last
+//! digits, and a flow through the resulting slivers may stop wrongly. The flow itself cannot detect this.
+//! Therefore exact motions are followed independently, from positions of nested boxes around the mated pose,
+//! as the region may be any part of the error box:
 //!
 //! ```text
 //!   ┌───────────────┐
@@ -15,8 +16,8 @@
 //!   └───────────────┘
 //! ```
 //!
-//! Places nearer to the region's border than [`MARGIN`] judge nothing. Not promised: a part of the region so small that no place fell
-//! into it is not judged.
+//! Positions closer to the region's border than [`MARGIN`] are ignored. Not promised: parts of the region so
+//! small that they contain no position are not checked.
 
 use super::Zraa;
 use crate::acceptance::{Domain, Outcome, Stream};

@@ -1,4 +1,4 @@
-//! One free translation: the height over a line, and the stretch of it that slides home.
+//! A single free translation: the height over a line, and its segment that slides into the seat.
 
 use super::sheet::Sheet;
 use glam::DVec2;

@@ -1,21 +1,23 @@
-//! Zero-rotation area of acceptance: which lateral offsets contact corrects when no rotation is possible.
+//! Zero-rotation area of acceptance: the lateral offsets that contact corrects while rotations are
+//! impossible.
 //!
 //! ```text
 //!   h(x, y)  is piecewise linear at R = 1: the upper envelope of the contact sheets
 //!   accepted = { (x, y) : the steepest descent of h from there ends in the seat }       (crate::contact::Seat)
 //! ```
 //!
-//! Nothing is sampled: the envelope is cut into convex cells, every cell into the strips of its flow that
+//! Nothing is sampled: the envelope is divided into convex cells, every cell into the strips of its flow that
 //! leave by different borders, and the accepted strips are polygons whose areas add up. In one dimension (one
-//! translation locked) the answer is an interval; for the planar families these are Nilsson's bounds, ±D/3 for
-//! the S-Face, ±D/2 for the V-Face and ±D for the X-Face.
+//! translation locked) the result is an interval; for the planar families these are Nilsson's bounds, ±D/3
+//! for the S-Face, ±D/2 for the V-Face and ±D for the X-Face.
 //!
-//! Beside the region stand some hundreds of exact motions. Where they end otherwise than the region says, rounding of the drawing led
-//! the flow astray, and it is cut again with a coarser seam; where none agrees, there is no answer.
+//! Some hundreds of exact motions check the region. If they contradict it, rounding of the drawing has
+//! disturbed the flow, and the computation is repeated with a coarser seam; if no seam agrees, the result is
+//! an error.
 //!
-//! Exact up to rounding and [`Settings::seam`] for the solids as given; a cone is the polygon that stands for
-//! it. Sets without area (the ridge of a roof) are not decided. Source: the dissertation, section 2.2 (ZRAA);
-//! Nilsson for the bounds of planar faces.
+//! Exact up to rounding and [`Settings::seam`] for the solids as given; a cone is the polygon that
+//! approximates it. Sets without area (the ridge of a roof) are not decided. Source: the dissertation,
+//! section 2.2 (ZRAA); Nilsson for the bounds of planar faces.
 
 mod cells;
 mod circle;

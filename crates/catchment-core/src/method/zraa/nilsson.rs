@@ -1,4 +1,4 @@
-//! Nilsson's bounds: how much lateral offset a planar profile in one piece corrects without rotation.
+//! Nilsson's bounds: the lateral offset that a single-piece planar profile corrects without rotation.
 //!
 //! ```text
 //!      q ╲        ╱             offset s: the moving half's minimum p slides home as long as
@@ -7,24 +7,28 @@
 //!           ╲╱╲╱       climb(s) = max { f(u) − f(v) : u − v = s }   = the height of first contact
 //! ```
 //!
-//! **Rule.** Offset to +x by s the halves touch at height climb(s), and slide home from all s below the first one where climb
-//! stops rising. There the moving half's minimum p stands over the fixed half's maximum q: with p, q among the extrema of the
-//! profile, its ends included, where nothing between them is lower than f(p) or higher than f(q),
+//! **Rule.** At an offset s to +x the halves touch at height climb(s), and slide into the seat from all s
+//! below the first value at which climb stops rising. There the moving half's minimum p stands over the fixed
+//! half's maximum q: with p, q among the extrema of the profile, including its ends, such that nothing
+//! between them is lower than f(p) or higher than f(q),
 //!
 //! `reach₊ = min { q − p : p < q, f(q) − f(p) = climb(q − p), climb rises no further }`,
 //!
-//! and 0 where climb does not rise from 0. To −x the same holds for the profile seen from behind. What is corrected to *both*
-//! sides is the smaller reach. For one minimum m in [0, D], and maxima at the ends, it is min(m, D − m); for a profile that a
-//! half turn maps onto itself, with one maximum at M < D/2, hence its minimum at D − M, it is min(M, D − 2M) (M: the left end's
-//! climb; D − 2M: from the maximum to the minimum).
+//! and 0 if climb does not rise from 0. Towards −x the same holds for the mirrored profile. The offset
+//! corrected to *both* sides is the smaller reach. For a single minimum m in [0, D], and maxima at the ends,
+//! it is min(m, D − m); for a profile that a half turn maps onto itself, with one maximum at M < D/2, hence
+//! its minimum at D − M, it is min(M, D − 2M) (M: the left end's climb; D − 2M: from the maximum to the
+//! minimum).
 //!
-//! **Bounds.** No profile of width D corrects more than D/2 to both sides, and none with both halves alike, f(D − x) = c − f(x),
-//! more than D/3: reached with x(min) = D/2, and with x(max) = D/3, x(min) = 2D/3. A monotone profile corrects nothing to one side.
-//! Source: Nilsson, as the dissertation states it at the beginning of chapter 3. The rule for any extrema is our own; that no
-//! profile is above the bounds is tried on random ones.
+//! **Bounds.** No profile of width D corrects more than D/2 to both sides, and no profile with equal halves,
+//! f(D − x) = c − f(x), more than D/3: reached with x(min) = D/2, and with x(max) = D/3, x(min) = 2D/3. A
+//! monotone profile corrects nothing to one side. Source: Nilsson, as stated in the dissertation at the
+//! beginning of chapter 3. The rule for arbitrary extrema is our own; tests with random profiles confirm that
+//! none exceeds the bounds.
 //!
-//! Not promised: anything for halves in layers, with play, or with steps ([`Profile::of`] finds no profile there), or what
-//! `docked.depth` adds: an offset whose whole climb is no more than that depth is docked as it stands. Lengths in D.
+//! Not promised: results for halves in layers, with play, or with steps ([`Profile::of`] finds no profile
+//! there), or the effect of `docked.depth`: an offset whose whole climb is at most that depth counts as
+//! docked at its start. Lengths in D.
 
 use super::Zraa;
 use super::profile::Profile;

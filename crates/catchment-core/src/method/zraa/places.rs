@@ -1,4 +1,4 @@
-//! Convex polygons of the plane, found by where they lie.
+//! Convex polygons of the plane, indexed by position.
 
 use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};

@@ -1,4 +1,4 @@
-//! The profile of a planar connector in one piece: the curve along which its two halves meet.
+//! The profile of a single-piece planar connector: the curve along which its two halves meet.
 //!
 //! ```text
 //!    ▓▓▓▓▓▓▓▓▓▓▓        moving half, mated: its lower border is the same curve
@@ -8,10 +8,11 @@
 //!    ░░░░░░░░░░░        fixed half
 //! ```
 //!
-//! Lengths in D. A pair has such a profile when both halves are prisms along y, all of one slab, and the upper border of
-//! the fixed half is the lower border of the moving one over the same x, without a vertical step.
+//! Lengths in D. A pair has such a profile if both halves are prisms along y in the same slab, and the upper
+//! border of the fixed half is the lower border of the moving half over the same x, without a vertical step.
 //!
-//! Not promised: a profile for halves in layers (X-Face), with play between them, or with steps: they have none.
+//! Not promised: a profile for halves in layers (X-Face), with play between them, or with steps: they have no
+//! profile.
 
 use super::line::{Segment, Top, envelope};
 use crate::connector::{Half, Surface};

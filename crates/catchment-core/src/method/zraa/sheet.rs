@@ -1,10 +1,10 @@
-//! Every way in which the halves can touch at the aligned rotation, as a plane over a convex polygon.
+//! Every possible contact of the halves at the aligned rotation, as a plane over a convex polygon.
 //!
 //! With the COR at c = (x, y, z), a point q of the moving half (from the COR) touches a point p of the fixed
-//! half with normal n when n·(c + q − p) = 0, which is a plane over (x, y). Its footprint is where the foot of
-//! the contact lies on both features. Features that cannot support the normal lie below others and are left
-//! out, with the slack of heights elsewhere, so that of halves that lie flush some feature always counts; what stays in too much
-//! joins points of both halves all the same and lies below the envelope.
+//! half with normal n if n·(c + q − p) = 0, which is a plane over (x, y). Its footprint is the set of
+//! positions at which the foot of the contact lies on both features. Features that cannot support the normal
+//! lie below others and are removed, with the same slack as for heights, so that for flush halves some
+//! feature always counts; superfluous pairs still connect points of both halves and lie below the envelope.
 
 use crate::connector::{Half, Surface};
 use crate::contact::FLUSH;

@@ -1,4 +1,4 @@
-//! Random points of every awkward kind, and what must hold for every polytope.
+//! Random points of every awkward kind, and invariants of every polytope.
 
 use super::super::{FLAT, MAX_DIMENSION, Point, Polytope, RESOLUTION, dot};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Hulls, sums, shadows and sections against the points they are made of and against brute.
+//! Hulls, sums, shadows and sections compared with their points and with the slow reference.
 
 use super::super::*;
 use super::clouds::{check, cloud, nearly_flat_cloud, real, sums, support};

@@ -1,4 +1,5 @@
-//! Closed forms here; fast against brute, and set algebra, on random input in the modules.
+//! Closed forms here; the fast algorithms compared with the reference, and set algebra on random input, in
+//! the modules.
 
 mod clouds;
 mod hulls;

@@ -1,4 +1,4 @@
-//! The dissertation's flooding with dams on an ordinary error grid: what becomes of every cell.
+//! The dissertation's flooding with dams on an ordinary error grid: the outcome of every cell.
 //!
 //! ```text
 //!   divide ──▶ dams to steepest descent ──▶ basin of the mated pose   aligned

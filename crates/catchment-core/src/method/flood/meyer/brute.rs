@@ -1,5 +1,5 @@
-//! Flooding as it is defined, in plain loops: the judge of the fast path. For small grids only, since every step
-//! looks at every cell.
+//! Flooding by definition, in plain loops: the reference for the fast path. For small grids only, since every
+//! step visits every cell.
 
 use super::Rules;
 use crate::acceptance::Outcome;

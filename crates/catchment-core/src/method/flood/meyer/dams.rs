@@ -1,4 +1,4 @@
-//! Dam cells go to the basin that their steepest descent leads to.
+//! Assigns dam cells to the basin to which their steepest descent leads.
 
 use super::basins::{Height, is_basin};
 use super::neighbourhood::Neighbourhood;

@@ -1,4 +1,4 @@
-//! Meyer's flooding with a priority queue, as the dissertation has it (Meyer 1994; the dissertation's chapter 5).
+//! Meyer's flooding with a priority queue, as in the dissertation (Meyer 1994; the dissertation's chapter 5).
 //!
 //! ```text
 //!    ╲      dam       ╱     water rises from every minimum at once; a cell that two waters reach
@@ -7,22 +7,22 @@
 //!       ╲╱  │  ╲___╱
 //! ```
 //!
-//! 1. Minima: connected sets of equal cells without a lower neighbour, in the full neighbourhood (3ⁿ − 1 cells).
-//!    Cells without contact are one basin of their own, the outside.
-//! 2. Flooding by a priority queue: lowest cell first, first in first out among equals. A cell beside two basins
-//!    becomes a dam and passes no water on.
-//! 3. The shallowest basin below the tolerance joins the basin across its lowest boundary point, again and again.
+//! 1. Minima: connected sets of equal cells without a lower neighbour, in the full neighbourhood (3ⁿ − 1
+//!    cells). Cells without contact form a separate basin, the outside.
+//! 2. Flooding by a priority queue: lowest cell first, first in first out among equals. A cell next to two
+//!    basins becomes a dam and is not flooded through.
+//! 3. The shallowest basin below the tolerance joins the basin across its lowest boundary point, repeatedly.
 //! 4. Dam cells go to the basin of the neighbour of steepest descent.
 //!
-//! [`accept`] does all four on an error grid and says what becomes of every cell; [`divide`] does the first three on
-//! heights over any shape, for whoever has conventions of their own for the fourth.
+//! [`accept`] does all four on an error grid and gives the outcome of every cell; [`divide`] does the first
+//! three on heights over any shape, for callers with their own rule for the fourth.
 //!
-//! **Cost:** every cell is taken from the queue once and looks at all its 3ⁿ − 1 neighbours, two or three times: 8 in the
-//! plane, 242 over five errors. One thread, O(N·(3ⁿ + log N)), some 40 bytes per cell beside the heights, and what the passes
-//! between basins take. [`flood`](super::flood) needs a fraction of both.
+//! **Cost:** every cell is taken from the queue once and visits all its 3ⁿ − 1 neighbours two or three times:
+//! 8 in the plane, 242 over five errors. A single thread, O(N·(3ⁿ + log N)), about 40 bytes per cell besides
+//! the heights, plus the passes between basins. [`flood`](super::flood) needs a fraction of both.
 //!
-//! **Not guaranteed:** that the accepted set converges as the grid refines, see [`super`]; nor that ties (plateaus, equal
-//! cells in the queue) are broken alike when the axes change their order.
+//! **Not guaranteed:** that the accepted set converges as the grid is refined, see [`super`]; nor that ties
+//! (plateaus, equal cells in the queue) are resolved equally for another order of the axes.
 
 mod accept;
 mod basins;

@@ -1,4 +1,4 @@
-//! The fast path against the judge.
+//! The fast path compared with the reference.
 
 use super::super::target;
 use super::*;

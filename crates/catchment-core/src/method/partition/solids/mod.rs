@@ -1,4 +1,4 @@
-//! The shapes behind the method, as bodies that can be looked at: convex pieces with closed boundaries.
+//! The solids behind the method, for display: convex pieces with closed boundaries.
 //!
 //! ```text
 //!   halves      C and C′, each a union of convex pieces, docked                          figures 5.1, 5.2
@@ -6,19 +6,20 @@
 //!   collision   { place of the COR : the halves overlap } = fixed ⊕ (−moving)                  5.3, 5.4
 //!               with a rotation:  fixed ⊕ C_full                                                5.6
 //! ```
+//! Positions are those of the centre of rotation, so the upper side of the collision solid is the height of
+//! first contact: exact without rotations and on every slice; between slices the composites approximate it
+//! (see [`super::Settings::strips`]). Its lower side is that of contact from below.
 //!
-//! Places are those of the centre of rotation, so the upper side of the collision shape is the height of first contact, exactly where
-//! nothing turns and on every slice; between slices it is what the composites make of it (see [`super::Settings::strips`]). Its
-//! lower side is that of contact from below.
+//! Lengths in D, angles in radians. A translation keeps its axis of the file (x, y; z is the approach); the
+//! angle takes y, or x if y is a free error. A flat body lies in a plane: profiles and their sums at the
+//! middle of their layer in y.
 //!
-//! Lengths in D, angles in radians. A translation keeps its axis of the file (x, y; z is the approach); the angle takes y, or x where y
-//! is a free error. A flat body lies in a plane: profiles and their sums at the middle of their layer in y.
+//! Not promised: bodies of a solid overlap as in the dissertation (composites, and sums with different
+//! pieces), so their measures do not add up to that of the union; [`Polytope`] and its collections give that
+//! measure.
 //!
-//! Not promised: bodies of one shape overlap where the dissertation's do (composites, and sums with different pieces), so their measures
-//! do not add up to that of the union; [`Polytope`] and its collections give that.
-//!
-//! Source: dissertation, section 5.1; the point reflection of its C′ is our mounting half turn. [I] The angle runs over both ends of
-//! the error box and always holds 0.
+//! Source: dissertation, section 5.1; the point reflection of its C′ is our mounting half turn. [I] The angle
+//! covers both ends of the error box and always includes 0.
 
 use super::compose::{self, Compartment};
 use super::pieces::{EVERYWHERE, Piece, PiecePair, Pieces};

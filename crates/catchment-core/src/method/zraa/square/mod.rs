@@ -8,15 +8,18 @@
 //!        ╲╱
 //! ```
 //!
-//! The region is a tiling, its border is what no neighbour covers. The distance to one stretch of the border is convex, and linear in
-//! all but six fans of directions around it. Branch and bound over boxes of p: where every stretch that matters is linear, the box's
-//! best place is a linear programme, solved exactly; other boxes are quartered. So the edge is exact to [`Square::TOLERANCE`] for the
-//! tiling as given, and ridges along which the square may slide cost no more than points.
+//! The region is a tiling; its border consists of the edges without a neighbour. The distance to a segment of
+//! the border is convex, and linear in all but six fans of directions around it. Branch and bound over boxes
+//! of p: if every relevant segment is linear, the optimum of the box is a linear programme, solved exactly;
+//! other boxes are quartered. So the edge is exact to [`Square::TOLERANCE`] for the tiling as given, and
+//! ridges along which the square may slide cost no more than points.
 //!
-//! In one dimension the square is the interval itself. For a cone, [`circle_square`] says between which edges the round one's lies.
+//! In one dimension the square is the interval itself. For a cone, [`circle_square`] gives bounds on the edge
+//! for the round shape.
 //!
-//! Not promised: which of several largest squares is named; the one around zero where it is one of them. Source: the dissertation,
-//! section 2.2.2 (ONAA) and 4.1.2, where the edge is counted in D and not as a share of an error box.
+//! Not promised: which of several largest squares is returned; it is the square around zero if that is among
+//! them. Source: the dissertation, section 2.2.2 (ONAA) and 4.1.2, with the edge in D and not as a share of
+//! an error box.
 
 use super::cells::clip;
 use super::{Zraa, circle_bounds};

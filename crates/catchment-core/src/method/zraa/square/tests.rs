@@ -1,4 +1,4 @@
-//! Closed forms, and the definition by trying places.
+//! Closed forms, and the definition by trial positions.
 
 use super::*;
 use crate::method::zraa::sheet::area;
