@@ -1,4 +1,4 @@
-//! Everything that a run found.
+//! The complete result of a run.
 
 use super::jams::Jams;
 use super::window::{Window, WindowError};

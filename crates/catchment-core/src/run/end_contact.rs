@@ -7,8 +7,10 @@
 //!     ▏▁▁▁▁▁▁▏
 //! ```
 //!
-//! Contacts are those of that state, undersides included, not those of first contact from above at the same error. Bodies of a rigid-body engine overlap where
-//! they press on each other ([`Follow::give`](crate::method::Follow::give)): they are lifted apart by that overlap before contacts are listed.
+//! Contacts are those of that state, including undersides, not those of first contact from above at the same
+//! error. Bodies of a rigid-body engine overlap under contact force
+//! ([`Follow::give`](crate::method::Follow::give)): they are raised by that overlap before contacts are
+//! listed.
 
 use crate::connector::Side;
 use crate::contact::{Contact, Features, Meeting, Nearby};

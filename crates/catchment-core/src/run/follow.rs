@@ -1,4 +1,4 @@
-//! Single poses, followed exactly: what becomes of one, of many, and along which way.
+//! Exact motions of given poses: outcomes and trajectories.
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Reason, Warning};
 use crate::exec::{Cancelled, Exec};

@@ -1,4 +1,4 @@
-//! One run: from a problem to its area of acceptance and what that is worth.
+//! A run: from a problem to its area of acceptance and figures of merit.
 //!
 //! ```text
 //!   Run ──plan──▶ decide ──▶ correct ──▶ settle ──▶ merits ──▶ Answer
@@ -8,14 +8,16 @@
 //!                  method    exactly     exactly
 //! ```
 //!
-//! A [`Run`] is all that changes an answer beside the problem: method, resolution, random poses, errors to expect, requirements. It
-//! is data: written as JSON, read back, compared, sent to another machine. [`Run::on`] computes it; the same run on the
-//! same problem gives the same bits, whatever [`Exec`] says about threads, except where [`Stop::Budget`] lets the clock say how
-//! many poses are drawn, and how far the grid comes.
+//! A [`Run`] contains all settings that change a result besides the problem: method, resolution, samples,
+//! expected errors, requirements. It is data: it can be written as JSON, read back, compared, or sent to
+//! another machine. [`Run::on`] computes it; the same run on the same problem gives the same bits for any
+//! threads in [`Exec`], except with [`Stop::Budget`], for which the clock decides the number of poses and the
+//! progress of the grid.
 //!
-//! A run over listed poses ([`Over::Stream`]) or by a method that decides each pose by itself can be divided over machines: [`part`].
+//! A run over listed poses ([`Over::Stream`]) or by a method that decides each pose separately can be divided
+//! over machines: [`part`].
 //!
-//! Not promised: what the method does not promise. Lengths in D, angles in radians.
+//! Not promised: more than the method promises. Lengths in D, angles in radians.
 //!
 //! [`Stop::Budget`]: crate::method::correction::Stop::Budget
 

@@ -1,4 +1,4 @@
-//! A run divided over machines: each decides a part, and the parts together give the bits of the whole.
+//! A run divided over machines: each decides a part, and the merged parts give the bits of the whole.
 //!
 //! ```text
 //!   cells (or poses)   0 ──────────────────────────────── N
@@ -8,16 +8,18 @@
 //!                                                             Run::merge ──▶ Answer
 //! ```
 //!
-//! Divisible is what decides each pose by itself: a grid by `descent` or `drop`, and any stretch of the random stream
-//! ([`Over::Stream`](super::Over::Stream)), pose k of which depends on the seed and k alone. The correction of a grid's Sum draws
-//! its poses by what the poses before them showed, so it is made where the parts are merged.
+//! A run is divisible if each pose is decided separately: a grid by `descent` or `drop`, and any range of the
+//! random stream ([`Over::Stream`](super::Over::Stream)), pose k of which depends only on the seed and k. The
+//! correction of a grid's Sum chooses its poses by earlier results, so it is computed when the parts are
+//! merged.
 //!
-//! The grid of a method that decides cells from one another is refused. Confluence labels cells by rising height, which runs through the whole
-//! box: every batch reads what all batches before it found anywhere, so a part would have to know the others' labels thousands of
-//! times on its way, and one that knows its own alone would join other cells than the whole does. What works is a stream of
-//! random poses, or the same grid by `descent`, whose outcomes confluence's labels are but for one or two cells in ten thousand.
+//! The grid of a method whose cells depend on each other is rejected. Confluence labels cells by rising
+//! height across the whole box: every batch reads the results of all earlier batches, so a part would need
+//! the others' labels thousands of times, and a part with only its own labels would inherit other outcomes
+//! than the whole. Use a stream of random poses, or the same grid by `descent`; its outcomes equal
+//! confluence's labels except for one or two cells in ten thousand.
 //!
-//! A part carries the digest of its problem and the run it belongs to: parts that do not belong together are refused.
+//! A part stores the digest of its problem and its run: parts that do not belong together are rejected.
 
 use super::{Answer, Plan, Run, RunError, stages};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};

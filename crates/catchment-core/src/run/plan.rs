@@ -1,5 +1,5 @@
-//! What a run will do, known before poses are decided. Where nothing says which poses, two motions per error at most tell whether the default grid
-//! resolves the accepted set.
+//! Plan of a run, made before poses are decided. If no poses are specified, at most two motions per error
+//! test whether the default grid resolves the accepted set.
 
 use super::{Over, Run, RunError, Sample, jams, window};
 use crate::acceptance::{Domain, Outcome};

@@ -1,11 +1,12 @@
-//! A JSON schema of a report as a form: which places it has, and what is there.
+//! Access to the JSON schema of a report: its paths, and their types.
 //!
 //! ```text
 //!   #/$defs/window ──properties.window──▶ ──$ref──▶ #/$defs/HalfWidths ──properties.yaw──▶ { "type": "number" }
 //! ```
 //!
-//! It knows the parts of JSON Schema that `schemars` writes for results: `$ref`, `anyOf`, `oneOf`, `allOf`, `properties`, `patternProperties`,
-//! `additionalProperties`, `items`, `prefixItems`, `type`, `const` and `enum`. A schema without any of them holds everything.
+//! Supports the parts of JSON Schema that `schemars` writes for results: `$ref`, `anyOf`, `oneOf`, `allOf`,
+//! `properties`, `patternProperties`, `additionalProperties`, `items`, `prefixItems`, `type`, `const` and
+//! `enum`. A schema without any of them accepts everything.
 
 use serde_json::{Map, Value};
 

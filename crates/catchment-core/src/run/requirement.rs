@@ -1,4 +1,4 @@
-//! A demand on a report: `onaa.edge >= 0.3`.
+//! A requirement on a report: `onaa.edge >= 0.3`.
 //!
 //! ```text
 //!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; lists by number from 0, or by the name of

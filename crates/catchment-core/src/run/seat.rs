@@ -1,11 +1,12 @@
-//! What the seat is like, and how far off docked halves come to rest: the repeatability that engineers ask for.
+//! The seat, and the residual misalignment of docked halves: the repeatability of the connector.
 //!
 //! ```text
 //!   play       how far off a half may rest and lie as deep, per error      [`crate::contact::play`]
 //!   residual   how far off accepted poses do come to rest, per error       random accepted poses, followed to their end
 //! ```
 //!
-//! Not promised: the poses are drawn evenly from the accepted set, not from the errors that a robot makes. Lengths in D, angles in radians.
+//! Not promised: the poses are sampled uniformly from the accepted set, not from the errors of a robot.
+//! Lengths in D, angles in radians.
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::contact::display_unit::DisplayUnit;

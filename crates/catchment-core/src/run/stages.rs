@@ -1,4 +1,4 @@
-//! The stages of a run, each once.
+//! The names of the stages of a run.
 
 use super::plan::{Afterwards, GRID_PART};
 use super::window::WindowError;

@@ -1,4 +1,4 @@
-//! The tolerances of a connector that cannot tilt: x, y and yaw free, roll and pitch locked.
+//! Tolerances of a connector that cannot tilt: x, y and yaw free, roll and pitch locked.
 //!
 //! ```text
 //!   all five errors free          roll and pitch locked
@@ -7,9 +7,11 @@
 //!        ╲╱  │                        └────┘
 //! ```
 //!
-//! The window has the proportions of the single-axis limits, so that its corners say what these limits are worth together.
+//! The window has the proportions of the single-axis limits, so that its corners show the share of these
+//! limits that holds simultaneously.
 //!
-//! Not promised: more than [`window`](super::window) promises of as many random poses. Lengths in D, angles in radians.
+//! Not promised: more than [`window`](super::window) promises for the same number of samples. Lengths in D,
+//! angles in radians.
 
 use super::RunError;
 use super::window::{Effort, Settings, window_of, within};

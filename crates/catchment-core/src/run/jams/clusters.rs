@@ -1,8 +1,10 @@
-//! Rests that are one jam: on the same features, and near each other up to the symmetries of the halves.
+//! Clusters of rests that form a single jam: on the same features, and close to each other up to the
+//! symmetries of the halves.
 //!
-//! Of rests on the same classes of features those nearer than [`NEAR`] to a chain of others are one jam. Level ones, which lie anywhere on
-//! what carries them, are one jam whatever the gaps that chance leaves between them; so are those at more than [`MOST_PLACES`] places. Rests at one place
-//! are one jam also where what touches is told differently.
+//! Rests on the same classes of features belong to one jam if they are closer than [`NEAR`] to a chain of
+//! others. Almost level rests, which may lie anywhere on their supporting features, belong to one jam
+//! whatever the random gaps between them; so do rests at more than [`MOST_PLACES`] positions. Rests at the
+//! same position belong to one jam even if their contacts are described differently.
 
 use super::firmness::{self, Firmness, Held};
 use super::images::Images;

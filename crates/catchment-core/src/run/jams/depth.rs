@@ -1,7 +1,10 @@
-//! Depths beside that of the way out which was found: by the merge tree of a grid, and at least, by boxes of poses.
+//! Further bounds on escape heights: from the merge tree of a grid, and certified lower bounds from boxes of
+//! poses.
 //!
-//! On a grid: how high water must stand above a rest to run over into any other basin. Passes go from centre to centre of neighbouring cells, so that such a depth is a
-//! bound from neither side: it comes near as the grid becomes finer, and sees every way, also bent ones. By boxes ([`crate::method::certified`]): a bound that holds for all ways.
+//! On a grid: the height that water must rise above a rest to overflow into any other basin. Passes connect
+//! centres of neighbouring cells, so this value is neither an upper nor a lower bound: it improves as the
+//! grid is refined, and includes all paths, also curved ones. By boxes ([`crate::method::certified`]): a
+//! bound that holds for all paths.
 
 use super::RestGroup;
 use crate::exec::Exec;

@@ -1,4 +1,4 @@
-//! Poses drawn from the errors that a robot makes: pose k depends on the seed and k alone.
+//! Poses sampled from the errors of a robot: pose k depends only on the seed and k.
 
 use super::JamsError;
 use super::firmness::normal;

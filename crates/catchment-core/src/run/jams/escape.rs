@@ -1,4 +1,4 @@
-//! The way out of a jam that climbs least, of those that are tried.
+//! The lowest escape path from a jam among the paths tried.
 //!
 //! ```text
 //!        ╭─╮
@@ -7,8 +7,10 @@
 //!     ↑ rest  ▼
 //! ```
 //!
-//! Ways are straight in position and turn: along every error, towards the mated pose, at random, and then about the best. Each is looked at
-//! every [`STEP`]; the best is looked at [`FINER`] times as closely, and so again about its highest place. The climb is that of a way that exists, so the lowest way out of all climbs no more.
+//! Paths are straight in position and rotation: along every error, towards the mated pose, at random, and
+//! then around the best. Each is evaluated every [`STEP`]; the best is evaluated [`FINER`] times as densely,
+//! and again around its highest point. The climb belongs to an existing path, so it is an upper bound on the
+//! escape height.
 
 use super::firmness::{Ground, STEEPEST, Space, ground, moved};
 use super::rests::Rested;

@@ -1,4 +1,4 @@
-//! How firmly a half rests: by how much it rises when it is pushed aside.
+//! Stability of a rest: the rise of the half when it is displaced.
 //!
 //! ```text
 //!   sharp      ╲  ╱     it rises in proportion to the push           held by contacts on all sides
@@ -7,7 +7,8 @@
 //!   ridge      ╱  ╲     it falls                                     motion ended there by chance
 //! ```
 //!
-//! The least rise over all directions is searched for: random directions, then moves about the best of them. The true least may be lower.
+//! The smallest rise over all directions is found by search: random directions, then variations of the best.
+//! The true minimum may be lower.
 
 use super::PUSH;
 use super::rests::Rested;

@@ -1,7 +1,8 @@
-//! Poses that are images of each other: the halves' own symmetries, each by itself.
+//! Symmetric images of poses, by the symmetries of each half.
 //!
-//! A fixed half that is itself after a turn or reflection A about the approach axis, and a moving one that is itself after B, make
-//! a pose (v, R) of the COR the image of (A v, A R B⁻¹), if both are turns or both are reflections. What is locked must stay where it is.
+//! If the fixed half is invariant under a rotation or reflection A about the approach axis, and the moving
+//! half under B, then the pose (v, R) of the COR has the image (A v, A R B⁻¹), if both are rotations or both
+//! are reflections. Locked errors must keep their values.
 
 use crate::connector::Side;
 use crate::contact::Features;

@@ -1,4 +1,4 @@
-//! Why it jams: every other place where motions come to rest, and the features that hold the half there.
+//! Jams: all rests outside the seat, and the features that hold the half there.
 //!
 //! ```text
 //!   follow      N random poses of the error box, each by exact motion            aligned, missed, or a place of rest
@@ -7,17 +7,19 @@
 //!   examine     how firmly it holds, how far it must be lifted to get out, whether it comes back when it is pushed
 //! ```
 //!
-//! A jam is represented by one of its rests: the one in its middle. Its contacts are named by the features of both halves
-//! ([`crate::contact::Features`]), with their places in the coordinates in which each half was drawn.
+//! A jam is represented by its central rest. Its contacts are named by the features of both halves
+//! ([`crate::contact::Features`]), with their positions in the coordinates in which each half was drawn.
 //!
-//! - **Rise**: how much the COR rises at least when the half is pushed [`PUSH`] aside, in the metric of the motion. Nothing: the rest is *level*, and
-//!   friction or chance decides where on it a half stays.
-//! - **Order**: how its contacts hold it, to first or second order ([`crate::method::descent::immobility()`]).
-//! - **Way out**: by how much it must be lifted, at most, to get to where motion leads lower: the least climb of all ways that were tried, each
-//!   straight. A bent way may be lower, so this is a bound from above. [`Settings::certified`] adds one from below.
+//! - **Rise**: smallest rise of the COR when the half is displaced by [`PUSH`] in the metric of the motion.
+//!   If it is zero, the rest is *level*, and friction or chance decides the final position on it.
+//! - **Order**: first- or second-order immobility by its contacts ([`crate::method::descent::immobility()`]).
+//! - **Escape path**: upper bound on the escape height, up to a point from which motion leads lower: the
+//!   smallest climb of all straight paths tried. A curved path may be lower. [`Settings::certified`] adds a
+//!   lower bound.
 //!
-//! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Rise is that of the height alone:
-//! with friction a half may stay where it would fall. Lengths in D, angles in radians.
+//! Not promised: rests with fewer than about one in N sampled poses, and the true minimum of any search. Rise
+//! uses the height alone: with friction a half may stay although the height falls. Lengths in D, angles in
+//! radians.
 
 pub(super) mod clusters;
 pub(super) mod depth;

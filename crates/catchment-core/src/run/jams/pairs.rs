@@ -1,4 +1,4 @@
-//! Pairs of features that touch in many rests, by their names: what a person would change.
+//! Pairs of features in contact in many rests, by name: the features to redesign.
 
 use super::rests::{Follow, Rested, Which};
 use super::{FeatureContact, NamedFeature};

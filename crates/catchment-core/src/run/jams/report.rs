@@ -1,4 +1,4 @@
-//! What people read of jams.
+//! Text form of jams.
 
 use super::words::{Places, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};

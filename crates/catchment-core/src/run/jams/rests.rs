@@ -1,4 +1,4 @@
-//! Poses followed to where they rest, with the features that touch there.
+//! Poses followed to their rests, with the features in contact there.
 
 use super::escape::Leaving;
 use super::firmness::{Firmness, Space};

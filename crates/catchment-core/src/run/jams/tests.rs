@@ -1,4 +1,4 @@
-//! Jams of pairs whose jams are known.
+//! Jams of pairs with known jams.
 
 use super::*;
 use crate::design::read;

@@ -1,4 +1,4 @@
-//! Places of rest in words: where they are, how they are held, how high the way out is, what touches.
+//! Description of rests in words: position, stability, escape height, contacts.
 
 use super::{Examined, Extent, FeatureContact, Firmness, NamedFeature};
 use crate::design::Design;

@@ -1,4 +1,4 @@
-//! Where a half rests under its load: all equilibria of a pair, how each is held, and what it takes to leave.
+//! Rests of a half under its load: all equilibria of a pair, their stability, and their escape heights.
 //!
 //! ```text
 //!      h
@@ -8,16 +8,20 @@
 //!      └──────────────── q
 //! ```
 //!
-//! The same search as [`crate::run::jams`], where a mated pose is one rest among others: a hand and what it grasps, a fixture and its part, the ground and
-//! what stands on it. The load acts along −z through the centre of rotation, so that z of that point is the energy per unit of weight; another direction is another `approach` of the
-//! design.
+//! The search is that of [`crate::run::jams`], with the mated pose as one rest among others: a hand and its
+//! object, a fixture and its part, the ground and an object on it. The load acts along −z through the centre
+//! of rotation, so that z of that point is the energy per unit of weight; for another direction use another
+//! `approach` of the design.
 //!
 //! - **Immobility**: [`crate::method::descent::immobility()`], to first or second order.
-//! - **Depth**: the climb of the lowest way out that was found, to a lower rest, to another one, or off: at most so much is needed. A half whose rest nothing
-//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid gives a depth, too. Rests that are shallower than a cage's energy do not hold it.
+//! - **Escape height**: the climb of the lowest escape path that was found, to a lower rest, to another one,
+//!   or off the connector: an upper bound. A half without cover may be lifted straight over an obstacle; a
+//!   half beneath an overhang moves only along paths on which it can slide. With a resolution the merge tree
+//!   of a grid gives an escape height, too. A rest whose escape height is below the energy of a disturbance
+//!   does not hold the half.
 //!
-//! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
-//! in radians.
+//! Not promised: rests with fewer than about one in N sampled poses, and the true minimum of any search.
+//! Friction is neglected. Lengths in D, angles in radians.
 
 mod report;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What people read of rests.
+//! Text form of rests.
 
 use super::super::jams::words::Places;
 use super::super::jams::{contacts_in_words, lifted};

@@ -1,4 +1,4 @@
-//! Rests of pairs whose rests are known.
+//! Rests of pairs with known rests.
 
 use super::*;
 use crate::design::read;

@@ -1,4 +1,5 @@
-//! The largest cubes of a run, by exact motions: the centred one, and the largest one wherever it lies (ONAA).
+//! The largest cubes of a run, by exact motions: the centred cube, and the largest cube at any position
+//! (ONAA).
 //!
 //! ```text
 //!      cells            motions
@@ -9,11 +10,12 @@
 //!    └─┴─┴─┴─┴─┘
 //! ```
 //!
-//! A cube of cells ends on their borders, and in five dimensions its corners are coarse: of the 3-D X-Face 12⁵ cells claim 0.167 where
-//! poses fail from 0.148 on.
+//! A cube of cells ends on their borders, and in five dimensions its corners are coarse: for the 3-D X-Face
+//! 12⁵ cells give 0.167, while poses fail from 0.148 on.
 //!
-//! Not promised: that no pose in it fails, only that none of so many random ones did ([`Effort::random`]), and none of about twice as many that looked for one.
-//! Nor that no larger cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
+//! Not promised: that no pose in it fails; no failure was found among the sampled poses ([`Effort::random`])
+//! and about twice as many poses of a search for failures. Nor that no larger cube exists elsewhere. Its
+//! centre is that of the largest cube of cells, or zero if the cube there is larger.
 
 use super::Settings;
 use super::search::Search;

@@ -1,4 +1,5 @@
-//! The window: the largest box of pose errors around zero, all of which dock. What a datasheet may say.
+//! The tolerance window: the largest box of pose errors around zero in which every pose docks. The tolerance
+//! for a datasheet.
 //!
 //! ```text
 //!        ░░░░░░░░░          1  search    exact motions on the surface of the box: all directions of {−1, 0, 1}ⁿ, then
@@ -8,17 +9,19 @@
 //!          ░░░░░
 //! ```
 //!
-//! Half-widths are s·pᵢ, with the proportions pᵢ of the error box or of one's own; some may be given (x, y ±2 mm: how much yaw?), and
-//! then only the others grow. No grid is involved: every answer is that of exact motions. Beside the window stands, per error, how far it
-//! may go alone (all others 0) and with all others anywhere within their half-widths: where that is hardly more than the window, it is the
-//! tight one. Beyond the window random poses are drawn there as well, a twentieth as many as in it.
+//! Half-widths are s·pᵢ, with the proportions pᵢ of the error box or of the caller; some may be given (x, y
+//! ±2 mm: how much yaw?), and then only the others grow. No grid is involved: every result is that of exact
+//! motions. For each error the window also reports the single-axis limit (all others 0) and the limit with
+//! all others anywhere within their half-widths: if the latter hardly exceeds the window, this error limits
+//! it. Poses are also sampled between the window and these limits, a twentieth as many as in the window.
 //!
-//! The certificate is that of the rule of three: if none of N independent poses fails, at most ln(1/α)/N of the window does, but for a chance of α. The
-//! first window has α₁ = 0.0498, which is 3/N; the k-th, drawn because those before it failed, 0.0002/(k(k − 1)): all of them together 0.05, however many there
-//! are. (The same 0.05/k each would add up to more.)
+//! The certificate follows the rule of three: if none of N independent poses fails, at most ln(1/α)/N of the
+//! window fails, with confidence 1 − α. The first window has α₁ = 0.0498, which gives 3/N; the k-th, drawn
+//! because earlier ones failed, 0.0002/(k(k − 1)): together 0.05, for any number of windows. (0.05/k for each
+//! would add up to more.)
 //!
-//! Not promised: that no pose of the window fails, only how few. The window ends at the error box. Undecided poses count as failures.
-//! Lengths in D, angles in radians.
+//! Not promised: that no pose of the window fails; only an upper bound on the failing share. The window ends
+//! at the error box. Undecided poses count as failures. Lengths in D, angles in radians.
 
 mod cube;
 mod report;

@@ -1,4 +1,4 @@
-//! What people read of a window.
+//! Text form of a window.
 
 use super::{Certificate, Window, WindowDetails};
 use crate::acceptance::Outcome;

@@ -1,9 +1,10 @@
-//! The search for the pose nearest to zero that does not dock.
+//! Search for the nearest failure: the failing pose nearest to zero.
 //!
-//! A probe is a direction u in [−1, 1]ⁿ; at scale s it is the pose whose given errors are uᵢ·wᵢ and whose others are s·uᵢ·pᵢ. The largest
-//! of the latter is 1 or −1, so that at scale s it lies on the surface of the box, given errors anywhere.
+//! A probe is a direction u in [−1, 1]ⁿ; at scale s it is the pose with the given errors uᵢ·wᵢ and the others
+//! s·uᵢ·pᵢ. The largest of the latter uᵢ is 1 or −1, so that at scale s the pose lies on the surface of the
+//! box, with the given errors anywhere.
 //!
-//! All motions of a batch are followed at the scale that was known before it, whatever the threads.
+//! All motions of a batch use the scale that was known before it, for any number of threads.
 
 use super::Reach;
 use super::space::{Direction, Space};

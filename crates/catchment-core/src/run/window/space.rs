@@ -1,4 +1,4 @@
-//! The boxes among which a window is sought: half-widths that are given, and others that grow with a scale.
+//! The family of boxes in which a window is sought: given half-widths, and others that grow with a scale.
 
 use super::{Settings, WindowError};
 use crate::pose::{Dof, PoseError};
