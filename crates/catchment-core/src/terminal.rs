@@ -1,6 +1,6 @@
-//! What may reach a terminal of text that came from elsewhere: names of files, of processes and of columns, and messages that
-//! repeat them. Control characters move the cursor, clear the screen or begin a line that looks like one of the program's own;
-//! marks of direction show a name in another order than it is written.
+//! Safe output of external text on a terminal: names of files, of processes and of columns, and messages that
+//! repeat them. Control characters can move the cursor, clear the screen or imitate a line of the program;
+//! marks of direction can show a name in another order than it is written.
 //!
 //! | | for | a line break becomes |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! The scales below which two lengths, or two directions, count as one.
+//! Tolerances: the scales below which two lengths, or two directions, count as equal.
 //!
 //! ```text
 //!    1e-16      1e-12          1e-9            1e-6             1e-4          2e-3             1
@@ -8,12 +8,13 @@
 //!             coordinates    without a normal  mesh files     motions     (default)
 //! ```
 //!
-//! Lengths are in D: a design is scaled to D = 1 before any of them applies, and coordinates stay within a thousand D, so that each scale is a thousand times
-//! the one below it, or nearly. Lengths of a part that has no D yet are relative to its largest coordinate. A room that needs another number states why
-//! beside it: a share of a step, a digit of a table, a search that ends.
+//! Lengths are in D: a design is scaled to D = 1 before any of them applies, and coordinates stay within a
+//! thousand D, so that each scale is about a thousand times the scale below it. Lengths of a part whose D is
+//! not known yet are relative to its largest coordinate. A module that needs another number states the reason
+//! beside it: a share of a step, a digit of a table, the end of a search.
 //!
-//! ρ, which converts radians to lengths, enters where a motion is measured ([`crate::pose`]); a turn by α moves a face by up to α D, so angles have the same
-//! numbers.
+//! The characteristic length ρ, which converts radians to lengths, enters the measure of a motion
+//! ([`crate::pose`]); a rotation by α moves a face by up to α D, so angles have the same numbers.
 
 /// Sums of a few thousand coordinates in double precision, in D: cracks between neighbouring facets are narrower, and nothing that matters is as small.
 pub const ROUNDING: f64 = 1e-12;

@@ -1,4 +1,4 @@
-//! The five ways in which a docking pose can be wrong, and sets of them.
+//! The five components of a pose error, and sets of them.
 
 use crate::suggest::nearest;
 use serde::{Deserialize, Serialize};

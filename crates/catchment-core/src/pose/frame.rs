@@ -1,4 +1,4 @@
-//! Pose errors, rotations, the mounting half turn, and the centre of rotation that belongs to a pose error.
+//! Pose errors, rotations, the mounting half turn, and the centre of rotation of a pose error.
 
 use super::{Dof, DofSet};
 use glam::{DMat3, DQuat, DVec2, DVec3};

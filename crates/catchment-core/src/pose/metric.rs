@@ -1,4 +1,4 @@
-//! Turning in Euler angles, and the ρ-metric in which a turn has a length.
+//! Rotations in Euler angles, and the ρ-metric in which a rotation has a length.
 //!
 //! ```text
 //!   ω = a_roll·roll˙ + a_pitch·pitch˙ + a_yaw·yaw˙        a_roll = Rz(yaw)·Ry(pitch)·x̂,  a_pitch = Rz(yaw)·ŷ,  a_yaw = ẑ
@@ -16,7 +16,8 @@
 //!   (roll, pitch, yaw)˙         those whose axes make up ω
 //! ```
 //!
-//! Not promised: anything at the pole of the Euler angles, pitch = ±90°, where the axes of roll and yaw are one.
+//! Not promised: results at the pole of the Euler angles, pitch = ±90°, at which the axes of roll and yaw
+//! coincide.
 
 use super::{Dof, DofSet, PoseError, face_from_cor};
 use glam::{DMat3, DVec2, DVec3};

@@ -1,4 +1,4 @@
-//! Frames, axes, units and signs. These conventions live here and nowhere else.
+//! Frames, axes, units and signs: the only place that defines these conventions.
 //!
 //! ```text
 //!            moving half, mounted face down
@@ -16,10 +16,10 @@
 //! - Lengths are in units of the connector's width D, angles in radians.
 //! - The world frame is the fixed half's: origin at its face centre, +z against the approach, towards the
 //!   moving half. Aligned means: face centres coincide and the rotation is the identity.
-//! - The moving half is drawn facing +z like the fixed one and *mounted* by a half turn ([`Mount`]).
+//! - The moving half is drawn facing +z like the fixed half and *mounted* by a half turn ([`Mount`]).
 //! - A rotation is `R = Rz(yaw) · Ry(pitch) · Rx(roll)`.
 //! - The *centre of rotation* (COR) is the body point through which the approach force acts. In the mounted
-//!   body's frame the face centre sits at `(0, 0, +cor)` from it: positive `cor` puts the COR in front.
+//!   body's frame the face centre is at `(0, 0, +cor)` from it: positive `cor` puts the COR in front.
 
 mod dof;
 mod frame;

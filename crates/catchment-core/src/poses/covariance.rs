@@ -1,4 +1,4 @@
-//! Covariances of the five errors: their roots, their principal directions.
+//! Covariances of the five errors: their square roots and principal directions.
 //!
 //! ```text
 //!   covariance = L·Lᵀ          L lower triangular (Cholesky); semidefinite ones too, with rows that are 0

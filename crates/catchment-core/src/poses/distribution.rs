@@ -1,4 +1,4 @@
-//! How pose errors are distributed.
+//! Distributions of pose errors.
 
 use super::terms::terms;
 use super::{Fault, Found};

@@ -1,4 +1,4 @@
-//! Records of a CSV text, and where their fields stand in it.
+//! Records of a CSV text, and the positions of their fields in it.
 
 use csv::StringRecord;
 use std::ops::Range;

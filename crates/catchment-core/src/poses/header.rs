@@ -1,4 +1,4 @@
-//! What the names of a table's columns say: the one reading of a header.
+//! Interpretation of the column names of a table.
 //!
 //! ```text
 //!   x   x_mm   x [mm]   x (mm)     an error, in D and radians or in the unit that is named
@@ -6,15 +6,17 @@
 //!   dx   X_mm   x mm   rol         nearly an error: refused, because carrying it through would make the error 0
 //! ```
 //!
-//! A name is *near* an error if one of its words is the error's. Words end at what is no letter, where letters and digits
-//! meet, and where capitals begin (`deltaX`). A word is the error's also as rx, ry, rz, tx or ty, and with a decoration
-//! glued to it: a d, delta, err, offset or pos before or behind, a unit behind (`dx`, `xerr`, `xpos`, `xmm`). A word for a rotation and
-//! an axis beside or glued to it are an angle (`theta_z`, `rotx`). A name with a single
-//! word beside decorations and units is near as well where one slip turns that word into roll, pitch or yaw (`rol`).
+//! A name is *near* an error if one of its words is the error's. Words end at non-letters, between letters
+//! and digits, and before capitals (`deltaX`). A word is also the error's in the forms rx, ry, rz, tx or ty,
+//! and with a decoration attached: d, delta, err, offset or pos before or behind, a unit behind (`dx`,
+//! `xerr`, `xpos`, `xmm`). A word for a rotation with an axis beside or attached to it is an angle
+//! (`theta_z`, `rotx`). A name with a single word besides decorations and units is also near if one typing
+//! error turns that word into roll, pitch or yaw (`rol`).
 //!
-//! A name is read as it looks: `х` with the Cyrillic letter is near an error as `x` would be one, and the message shows the character.
+//! A name is read by its appearance: `х` with the Cyrillic letter is near an error as `x` would be, and the
+//! message shows the character.
 //!
-//! Names with control characters, or with characters that show nothing (a byte order mark), are refused whatever they say.
+//! Names with control characters, or with invisible characters (a byte order mark), are always rejected.
 
 use super::{Fault, is_hidden, shortened};
 use crate::design::{Design, LengthUnit, Unit, nearest};

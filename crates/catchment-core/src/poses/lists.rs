@@ -1,4 +1,4 @@
-//! Numbers of points, lists of angles and single lengths, as a plan of trials is asked for.
+//! Numbers of points, lists of angles and single lengths, for the settings of a plan of trials.
 //!
 //! ```text
 //!   x=5,y=5,yaw=6          so many points along each error

@@ -1,4 +1,4 @@
-//! Pose errors as people write them: one on a line, tables of them, and how they are distributed.
+//! Pose errors in text form: single lines, tables, and distributions.
 //!
 //! ```text
 //!   x=0.2,pitch=10 deg       one pose error                     parse_pose          ──▶ PoseError
@@ -18,12 +18,12 @@
 //!   [dynamics] speed = …     how fast, heavy, slippery: laws    read_dynamics       ──▶ Dynamics
 //! ```
 //!
-//! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`] says the
-//! centre of rotation. A text is read whole or refused with everything that is wrong with it ([`Findings`]), each
-//! [`Finding`] with its bytes in the text.
+//! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`]
+//! selects the centre of rotation. A text is read completely or rejected with all its errors ([`Findings`]),
+//! each [`Finding`] with its byte range in the text.
 //!
-//! Not promised: that a pose can be reached, or that the halves meet there. Only what the design locks, and what no
-//! sensible unit would give, is refused.
+//! Not promised: that a pose can be reached, or that the halves meet there. Only values of locked errors, and
+//! values outside any sensible unit, are rejected.
 
 pub mod covariance;
 mod distribution;

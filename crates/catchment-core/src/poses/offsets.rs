@@ -6,8 +6,8 @@
 //!                  ○  centre of rotation
 //! ```
 //!
-//! A locked translation is locked at the centre of rotation. The face centre of a half that is tilted about it lies beside
-//! the approach axis all the same.
+//! A locked translation is locked at the centre of rotation. The face centre of a half tilted about it still
+//! lies beside the approach axis.
 
 use crate::design::Alignment;
 use crate::pose::{Dof, PoseError, face_from_cor};

@@ -1,4 +1,4 @@
-//! Pose errors as rows of numbers, which other programs have in memory.
+//! Pose errors as rows of numbers, as other programs hold them in memory.
 
 use super::written::resolve;
 use super::{Fault, Found, OffsetsAt};

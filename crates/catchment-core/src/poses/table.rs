@@ -1,4 +1,4 @@
-//! A table of pose errors: CSV with a header, read whole or refused with everything that is wrong with it.
+//! A table of pose errors: CSV with a header, read completely or rejected with all its errors.
 
 use super::fields::{records, spans};
 use super::written::{Written, from_d, resolve};

@@ -1,4 +1,4 @@
-//! Errors on one line: `x=0.2,pitch=10 deg`.
+//! Errors on a line: `x=0.2,pitch=10 deg`.
 
 use super::written::{Written, resolve};
 use super::{Fault, Found, OffsetsAt, shortened};

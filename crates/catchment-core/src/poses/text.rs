@@ -1,4 +1,4 @@
-//! The text of a table, from wherever it comes.
+//! The text of a table, from any source.
 
 use std::io::{self, Read};
 

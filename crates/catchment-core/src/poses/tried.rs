@@ -1,12 +1,13 @@
-//! A table of trials that a robot made: a table of pose errors with a column that says what was seen.
+//! A table of robot trials: a table of pose errors with a column of observed outcomes.
 //!
 //! ```text
 //!   trial, line, x_mm, yaw_deg, predicted, …, outcome           aligned, jammed, missed, aligned-elsewhere, or nothing where
 //!   17,    3,    12.5, 6,       aligned,   …, jammed            the trial was not made
 //! ```
 //!
-//! Every error that the design leaves free has a column: one that was forgotten would be taken as 0. `trial` numbers the rows, each once;
-//! rows of one `line` are read as one way outwards. Both may be missing. What the plan said is not read: predictions are made anew.
+//! Every free error of the design needs a column: a missing one would be taken as 0. `trial` numbers the rows
+//! uniquely; rows of the same `line` are read as one line outwards. Both columns are optional. The
+//! predictions in the table are not used: they are recomputed.
 
 use super::fields::{records, spans};
 use super::{Fault, Found, OffsetsAt, PoseTable, shortened};

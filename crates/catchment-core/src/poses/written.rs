@@ -1,4 +1,4 @@
-//! A pose error as written, and what its units and the design allow.
+//! A pose error as written, with the checks of its units and of the design.
 
 use super::{Fault, OffsetsAt};
 use crate::design::{Design, Quantity, Unit};

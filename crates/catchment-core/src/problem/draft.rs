@@ -1,4 +1,5 @@
-//! A design that was read and not built yet: it can still be changed, and knows where its file says what.
+//! A design that was read but not built yet: it can still be changed, and it knows the places of its values
+//! in the file.
 
 use super::{Problem, ProblemError, measure, misfit, places};
 use crate::connector::Connector;

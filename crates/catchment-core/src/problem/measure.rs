@@ -1,14 +1,16 @@
-//! D of a design that leaves it out: measured from its halves, before its lengths mean anything in D.
+//! Default D of a design: measured from its halves, before any length in D can be resolved.
 //!
 //! ```text
 //!   text ──read, lengths in the unit──▶ halves, mated ──width──▶ D ──read again──▶ the design, as if D were written
 //!              └── once more with D about known, where parts are round: how finely they are drawn depends on it
 //! ```
 //!
-//! D is the larger lateral extent of the facets that can touch where the halves first touch without any error ([`width`]), at least what the size
-//! of the halves demands, rounded to 10⁻⁸ of itself. Lengths that draw or place the halves cannot be in D then, which the reader refuses.
+//! D is the larger lateral extent of the facets that can touch when the halves are at first contact at zero
+//! error ([`width`]), at least the minimum for the size of the halves, rounded to 10⁻⁸ of itself. Lengths
+//! that draw or place the halves cannot be in D then; the reader rejects them.
 //!
-//! Not promised: that D stays where halves are moved: it is measured of what the file says, also in every design of a sweep.
+//! Not promised: that D is unchanged if halves are moved: it is measured from the content of the file, also
+//! in every design of a sweep.
 
 use super::{Draft, ProblemError};
 use crate::connector::Connector;

@@ -1,5 +1,5 @@
-//! What helps against halves that do not mate as they are drawn: where they touch, in the coordinates of each part, and whether a mirror
-//! image would fit.
+//! Advice for halves that do not mate as drawn: the contact point, in the coordinates of each part, and
+//! whether a mirror image would fit.
 //!
 //! ```text
 //!      ┌─────┐            first contact of the halves without any error: a web in the way, a rim beside its hole
@@ -7,9 +7,11 @@
 //!   ───┘   └─     └───
 //! ```
 //!
-//! Where something narrow alone holds one half off the other, a web or a pin, that is said instead.
+//! If only a narrow feature separates the halves, such as a web or a pin, the advice names that feature
+//! instead.
 //!
-//! Not promised: that the place is the only one in the way, or that halves which fit mirrored were meant to.
+//! Not promised: that this place is the only obstacle, or that halves which fit mirrored were meant to be
+//! mirrored.
 
 use crate::connector::{Connector, Half, Side};
 use crate::contact::display_unit::{DisplayUnit, number};

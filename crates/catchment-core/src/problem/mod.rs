@@ -1,4 +1,4 @@
-//! The alignment problem as one owned value: what every front end starts from.
+//! The alignment problem as an owned value: the input of every front end.
 //!
 //! ```text
 //!   design file ──▶ Draft ──(meshes loaded, halves built, mated pose checked once)──▶ Problem
@@ -6,15 +6,17 @@
 //!                                                     geometry · alignment · mirrors · doubts · digest
 //! ```
 //!
-//! A [`Problem`] holds everything that an answer depends on but the method and its settings. It is cheap to clone, can be
-//! sent to any thread, and never changes: whoever wants another centre of rotation makes another problem. Its
-//! [`digest`](Problem::digest) is a SHA-256 of all that may change an answer, the contents of meshes included and names, units and paths left out,
-//! so that two problems with equal digests have equal answers.
+//! A [`Problem`] holds everything that determines a result besides the method and its settings. It is cheap
+//! to clone, can be sent to any thread, and is immutable: another centre of rotation needs another problem.
+//! Its [`digest`](Problem::digest) is a SHA-256 of all inputs that may change a result, including the
+//! contents of meshes and excluding names, units and paths, so that two problems with equal digests have
+//! equal results.
 //!
-//! What keeps a problem from being built is one error type with every place in the file ([`ProblemError`]).
+//! All reasons why a problem cannot be built share an error type with the places in the file
+//! ([`ProblemError`]).
 //!
-//! Not promised: that the mated pose holds against errors larger than the probes of [`crate::contact::mated`]. Lengths in D,
-//! angles in radians.
+//! Not promised: that the mated pose is stable against errors larger than the probes of
+//! [`crate::contact::mated`]. Lengths in D, angles in radians.
 
 mod draft;
 mod measure;

@@ -1,4 +1,4 @@
-//! Which key of a design file a complaint of a later room is about.
+//! The key of a design file to which an error of a later module belongs.
 
 use crate::connector::{MeshProblem, PartError, Problem, Side};
 use crate::contact::display_unit::{DisplayUnit, number};

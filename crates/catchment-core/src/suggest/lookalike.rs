@@ -1,8 +1,8 @@
-//! Characters that look like those of a name and are others: `х` (U+0445, Cyrillic) beside `x`, `１` beside `1`, `−` beside `-`. A
-//! keyboard, a spreadsheet or a paste puts them there, and no eye finds them.
+//! Lookalike characters in names: `х` (U+0445, Cyrillic) for `x`, `１` for `1`, `−` for `-`. Keyboards,
+//! spreadsheets and copied text insert them, and they are invisible to a reader.
 //!
-//! *Not promised:* all of them. Unicode lists thousands (UTS 39, confusables); here are the scripts on people's keyboards, and the
-//! blocks of letters in other clothes.
+//! *Not promised:* completeness. Unicode lists thousands (UTS 39, confusables); this table has the scripts of
+//! common keyboards, and the blocks of styled letters.
 
 /// Characters that look alike, the one of ASCII first.
 const ALIKE: [(char, &str); 46] = [

@@ -1,5 +1,5 @@
-//! "Did you mean …?": the known word nearest to a misspelt one; the character in a name that only looks like another
-//! ([`odd`]); what to write instead of a text that is no number ([`number_help`]).
+//! "Did you mean …?": the known word nearest to a misspelt word; the lookalike character in a name ([`odd`]);
+//! the correct form of a malformed number ([`number_help`]).
 
 mod lookalike;
 mod number;

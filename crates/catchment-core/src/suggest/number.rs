@@ -1,4 +1,4 @@
-//! What to write instead of a text that is meant as a number and is none.
+//! Advice for a text that is meant as a number but is not one.
 
 use super::{as_it_looks, odd};
 

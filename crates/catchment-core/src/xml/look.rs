@@ -1,4 +1,5 @@
-//! One element of a picture: what it inherits, whether it is drawn, and what of it would change the picture and is not read.
+//! An element of a picture: its inherited properties, its visibility, and its unsupported features that would
+//! change the picture.
 
 use super::style::{Declaration, Sheet};
 use super::svg::{HOLDERS, INTO_PATHS, LARGEST, NAMESPACE, NOT_DRAWN, Refusal, SHAPES};

@@ -1,13 +1,15 @@
-//! XML in one pass: tags and texts, one at a time, within limits; and what of an SVG picture is drawn ([`svg`]).
+//! A streaming XML reader: tags and texts, one at a time, within limits; and the visible shapes of an SVG
+//! picture ([`svg`]).
 //!
 //! ```text
 //! bytes ──▶ <a x="1"> ──▶ text ──▶ </a>      one tokenizer; attributes, depth, elements and bytes of a piece are counted on its own tokens
 //! ```
 //!
-//! Nothing is kept but the piece at hand, so that a document of any size takes no more memory than its longest piece. Document types are refused, and
-//! with them entities that expand.
+//! Only the current piece is kept, so that a document of any size needs no more memory than its longest
+//! piece. Document types are rejected, and with them entities that expand.
 //!
-//! Not promised: namespaces are not resolved, and of what is not well-formed only what would change the tags is refused.
+//! Not promised: namespaces are not resolved, and malformed text is rejected only if it would change the
+//! tags.
 
 mod look;
 mod style;

@@ -1,12 +1,13 @@
-//! The part of CSS that decides whether a shape of a picture is drawn: which properties an element has, from its attributes, its `style`, and the
-//! rules of `<style>` elements.
+//! The part of CSS that decides whether a shape of a picture is drawn: the properties of an element from its
+//! attributes, its `style`, and the rules of `<style>` elements.
 //!
 //! ```text
 //! attribute < rules, by specificity and order < style="…"        of an element; what is inherited comes from the element around it
 //! ```
 //!
-//! Selectors are lists of a name, `*`, `.class` and `#id`, joined as in `path.hole`. A rule with another selector, `!important`, or a rule that depends on
-//! the medium is refused where it has a property that decides about shapes, and is of no consequence otherwise.
+//! Selectors are lists of a name, `*`, `.class` and `#id`, joined as in `path.hole`. A rule with another
+//! selector, with `!important`, or for a specific medium is rejected if it has a property that affects
+//! shapes, and is ignored if not.
 
 use super::Tag;
 use super::svg::Refusal;

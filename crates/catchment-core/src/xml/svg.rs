@@ -1,14 +1,17 @@
-//! The shapes of an SVG picture that are drawn, one after the other, with the map that leads from their coordinates to those of the picture.
+//! The visible shapes of an SVG picture, one after the other, with the transform from their coordinates to
+//! those of the picture.
 //!
 //! ```text
 //! <g transform="A"> <path transform="B" d="…"/> ──▶ shape, A·B        display, visibility, class and layer hide it: it is counted, and no shape
 //! ```
 //!
-//! Whatever changes what is drawn is honoured or refused with its place: a hidden shape is left out, and what clips, masks, filters, animates or moves
-//! shapes by style is refused, and so are texts, references and pictures, elements that nothing is known of, and shapes that nothing paints. Elements of
-//! other namespaces (metadata of drawing programs) draw nothing.
+//! Every feature that changes the drawn shapes is supported or rejected with its place: hidden shapes are
+//! skipped; clips, masks, filters, animations and movement by style are rejected, as are texts, references
+//! and pictures, unknown elements, and shapes without paint. Elements of other namespaces (metadata of
+//! drawing programs) draw nothing.
 //!
-//! Not promised: fills, strokes and fill rules are read only as far as they hide, so that the line of a shape is where its path is.
+//! Not promised: fills, strokes and fill rules are read only to detect hidden shapes, so that the line of a
+//! shape is its path.
 
 use super::look::{Entered, Open, Prefixes, entered};
 use super::style::Sheet;

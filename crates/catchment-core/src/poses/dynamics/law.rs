@@ -1,4 +1,4 @@
-//! The law of a number.
+//! The distribution of a number.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};

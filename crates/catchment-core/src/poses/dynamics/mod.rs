@@ -1,4 +1,4 @@
-//! How fast, how heavy, how slippery: the circumstances of a docking, each as a law that it is drawn from.
+//! The dynamic parameters of a docking (speed, mass, friction …), each with its distribution.
 //!
 //! ```toml
 //!   [dynamics]
@@ -13,8 +13,9 @@
 //!
 //! On one line: `50 mm/s`, `50 ± 10 mm/s` (or `+-`), `40..60 mm/s`, `0.2 */ 1.3`. Bare numbers are in D, radians, seconds and kg.
 //!
-//! A law that leaves the range of what it describes (a negative mass) is cut: values outside are drawn again. One of which more than half
-//! lies outside is refused. Everything that is wrong with a file comes at once, each with its bytes in the text.
+//! A distribution that exceeds the possible range of its parameter (a negative mass) is truncated: values
+//! outside are drawn again. It is rejected if more than half lies outside. All errors of a file are reported
+//! at once, each with its byte range in the text.
 
 mod law;
 mod read;

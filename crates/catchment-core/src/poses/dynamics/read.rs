@@ -1,4 +1,4 @@
-//! Laws as people write them: a file of them, or one on a line.
+//! Parser of distributions: from a file, or a line.
 
 use super::super::{Fault, Found, shortened};
 use super::{Circumstance, Dynamics, Law};

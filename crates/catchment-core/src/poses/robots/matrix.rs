@@ -1,4 +1,4 @@
-//! Correlations and covariances of a file of robots: axes, units, a matrix, and what makes it one.
+//! Correlations and covariances in a file of robots: axes, units, matrix, and its validity.
 
 use super::super::covariance::{IDENTITY, Matrix, cholesky, least_eigenvalue};
 use super::super::distribution::size;

@@ -1,4 +1,4 @@
-//! Robots, and the errors that are expected of each: a file of them, and what it means.
+//! Robots and their expected errors: the file format and its meaning.
 //!
 //! ```toml
 //!   [[robot]]
@@ -24,8 +24,8 @@
 //!   measured = "errors.csv"                                # a table of poses: header with units, a row per trial
 //! ```
 //!
-//! Errors that are not named do not occur. Everything that is wrong comes at once, each with its bytes in the text. It reads text:
-//! whoever calls fetches the tables.
+//! Errors that are not named do not occur. All errors of a file are reported at once, each with its byte
+//! range in the text. This module reads text only: the caller loads the tables.
 //!
 //! Lengths in D, angles in radians.
 

@@ -1,4 +1,4 @@
-//! The reader of a file of robots.
+//! The parser of a file of robots.
 
 use super::super::covariance::IDENTITY;
 use super::super::distribution::size;
