@@ -1,4 +1,4 @@
-//! Studies: many computations of one design, and what they say together.
+//! Studies: evaluations that combine many computations of a design.
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes

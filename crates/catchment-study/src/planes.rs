@@ -1,16 +1,18 @@
-//! Planes through the mated pose, beside a grid over three or more errors: what pictures and pages show of it at zero.
+//! Planes through the mated pose, in addition to a grid over three or more errors: the sections at zero in
+//! pictures and pages.
 //!
 //! ```text
 //!   grid, 30 cells per axis:   no cell is centred on 0     ──▶  the plane of the grid "at 0" is half a cell beside it
 //!   plane, yaw = 0 exactly:    each (x, pitch) is followed ──▶  symmetric halves give a symmetric plane
 //! ```
 //!
-//! For every pair of axes of the grid the two errors vary and the others start at exactly 0; all free errors take part in the motion. All planes have
-//! one resolution: an odd number, at least 25 cells per axis, and together about as many cells as one plane of 71 × 71; fewer where motions of the pair
-//! are slow, but never fewer than the grid.
+//! For every pair of axes of the grid the two errors vary and the others start at exactly 0; all free errors
+//! take part in the motion. All planes have the same resolution: an odd number, at least 25 cells per axis,
+//! and together about as many cells as a plane of 71 × 71; fewer if motions of the pair are slow, but never
+//! fewer than the grid.
 //!
-//! Not promised: that a plane is part of the grid. It is computed by exact motions, whatever method decided the grid. Lengths in D, angles in
-//! radians.
+//! Not promised: that a plane is part of the grid. It is computed by exact motions, whatever method decided
+//! the grid. Lengths in D, angles in radians.
 
 use super::pose_bytes;
 use catchment_core::acceptance::{Acceptance, Domain};

@@ -1,5 +1,5 @@
-//! Two errors at a time, with everything free: slices of the whole acceptance at a resolution that the whole could
-//! never be computed at.
+//! Slices over two errors at a time, with all errors free: at a resolution that is not feasible for the whole
+//! acceptance.
 //!
 //! ```text
 //!   error box of 5 axes ──  yaw ▲ ░░░░          every cell of the plane is followed, by descent or drop,
@@ -7,12 +7,13 @@
 //!                               └──────▶ x      n (n − 1)/2 planes of n free errors
 //! ```
 //!
-//! A *slice* varies two errors and leaves all free in the motion; a *restricted* acceptance locks the others too
-//! (`free` in the design). They are not the same set.
+//! A *slice* varies two errors and leaves all free in the motion; a *restricted* acceptance locks the others
+//! too (`free` in the design). The two sets differ.
 //!
-//! With the x-y slice and those of x with every rotation, [`Estimate`] guesses the ONAA edge of the whole.
+//! With the x-y slice and those of x with every rotation, [`Estimate`] estimates the full-dimensional ONAA
+//! edge.
 //!
-//! Not promised: anything about errors off these planes. Lengths in D, angles in radians.
+//! Not promised: results for errors off these planes. Lengths in D, angles in radians.
 
 use super::pose_bytes;
 use catchment_core::acceptance::{Acceptance, Domain, Warning};

@@ -1,4 +1,4 @@
-//! Every method that applies to a problem, on one grid, and how each two of them agree.
+//! Comparison of all methods that apply to a problem, on a common grid, with the agreement of each pair.
 //!
 //! ```text
 //!                transport  descent  flood  …
@@ -6,9 +6,10 @@
 //!   descent         .98        1      .94
 //! ```
 //!
-//! Each method has its own time; one that does not apply, does not fit or takes too long is left out, with the reason.
+//! Each method has its own time limit; a method that does not apply, does not fit into memory or takes too
+//! long is skipped, with the reason.
 //!
-//! Not promised: that methods which agree are right. Only descent is exact at every pose.
+//! Not promised: that methods which agree are correct. Only descent is exact at every pose.
 
 mod report;
 

@@ -1,4 +1,4 @@
-//! What people and programs read of all methods of a design.
+//! Text and table form of the comparison of all methods.
 
 use super::{Agreement, PairAgreement};
 use catchment_core::design::Design;

@@ -1,4 +1,4 @@
-//! Poses and maps: so many trials of each, and the share that docks.
+//! Poses and maps: a number of trials of each, and the share that docks.
 
 use super::found::{Chance, Declared, Map, PoseChance, PresetOpen};
 use super::spread;

@@ -1,5 +1,5 @@
-//! Dynamics as a probability: how likely a half docks that comes with some speed, drift, spin, mass, friction, bounce and height, each of
-//! them drawn from a declared law.
+//! Docking probability under dynamics: speed, drift, spin, mass, friction, bounce and height of each trial
+//! are sampled from declared distributions.
 //!
 //! ```text
 //!   [dynamics]            one trial                                   asked
@@ -10,21 +10,23 @@
 //!                                                                     P with every velocity times t, t → 0: quasi-static
 //! ```
 //!
-//! **What drives it.** With *held* speed the half is let go at its approach speed v, and pushed as damping balances at v: by
-//! F = m·γ·v. Where contact stops it, it has γ⁻¹ of time to lose what it came with: it coasts λ = v/γ, and λ against D is all that speed is
-//! in the geometry. As v → 0 the force of inertia vanishes beside that of damping, and what is left is the motion of
-//! [`descent`](catchment_core::method::descent), whose metric is that of damping. Time is counted so that the half approaches at the engine's own
-//! pace, whatever its speed: trials of any speed take as many steps. With a *given* push (a force, or gravity) nothing is scaled, and t → 0
-//! is a half let go at rest: no quasi-static motion.
+//! **Drive.** With *held* speed the half is released at its approach speed v, and pushed with the force that
+//! damping balances at v: F = m·γ·v. When contact stops it, it loses its momentum within a time of about γ⁻¹:
+//! it coasts λ = v/γ, and speed enters the geometry only through λ/D. As v → 0 inertial forces vanish
+//! compared with damping, and the motion converges to that of [`descent`](catchment_core::method::descent),
+//! whose metric is that of damping. Time is scaled so that the half approaches at the engine's own pace:
+//! trials of any speed take equally many steps. With a *given* push (a force, or gravity) nothing is scaled,
+//! and t → 0 is a half released at rest: not a quasi-static motion.
 //!
-//! **Mass** declared as a law changes inertia and weight; the friction with the surroundings stays that of the mean mass, so that a heavy half coasts
-//! farther.
+//! A distribution of the **mass** changes inertia and weight; the damping by the surroundings stays that of
+//! the mean mass, so that a heavy half coasts farther.
 //!
-//! Draw k of pose e is a function of the seed, e and k alone: threads, the order of poses and what else is asked change no bit. Curves use
-//! the same draws at every speed.
+//! Draw k of pose e is a function only of the seed, e and k: threads, the order of poses and other requests
+//! change no bit. Curves use the same draws at every speed.
 //!
-//! Not promised: that the laws are true, or independent of each other, as they are taken to be. Undecided trials count as failures and widen intervals upwards. The engine's
-//! own errors are in the shares. Units: D, s, kg, radians. The wish is that of the dissertation, section 7.2.
+//! Not promised: that the distributions are true, or independent of each other as assumed. Undecided trials
+//! count as failures and widen intervals upwards. The shares include the engine's own errors. Units: D, s,
+//! kg, radians. The study follows the outlook of the dissertation, section 7.2.
 
 mod ask;
 mod found;

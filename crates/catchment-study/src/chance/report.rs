@@ -1,4 +1,4 @@
-//! What people and tables read of drop tests.
+//! Text and table form of drop tests.
 
 use super::found::place;
 use super::{Chance, Map, Overall, PoseChance};

@@ -1,11 +1,12 @@
-//! The probability under errors that are expected, and its curve against speed.
+//! The probability under the expected errors, and its curve over speed.
 //!
 //! ```text
 //!   errors drawn, none tried ──▶ strata by a quasi-static grid ──▶ one trial each of some of them, most where there is doubt
 //!                                ░░░▒▓█  near its border           P = Σ W_s·p_s with the interval of both samplings
 //! ```
 //!
-//! The sampling is that of [`success`](crate::success): errors number k, and the trials of them, are the same at every speed.
+//! The sampling is that of [`success`](crate::success): the errors with number k, and their trials, are the
+//! same at every speed.
 
 use super::ChanceError;
 use super::ask::{OF_ERRORS, Trials};

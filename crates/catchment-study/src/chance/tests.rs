@@ -1,4 +1,4 @@
-//! Closed forms, the quasi-static limit, and what must not change a bit.
+//! Closed forms, the quasi-static limit, and inputs that must not change a bit.
 
 use super::*;
 use crate::testing::problem;

@@ -1,4 +1,4 @@
-//! One trial: what is drawn for it, and the settings that this makes.
+//! A trial: its random draw, and the resulting settings.
 
 use super::{ChanceError, Settings};
 use catchment_core::acceptance::Stream;

@@ -1,4 +1,4 @@
-//! Does the answer still move when the grid is refined? Every method, side by side.
+//! Convergence of all methods as the grid is refined.
 //!
 //! ```text
 //!   Sum ▲   ○                       cells per axis n, n·√2, n·2, … (odd: a cell is centred on the mated pose)
@@ -7,9 +7,10 @@
 //!       └──────────────▶ n          or when the next one would not fit into the time or the memory allowed
 //! ```
 //!
-//! Not promised: that a stable answer is a true one. Flooding becomes stable at a wrong value: beside each finest Sum
-//! stands the one that exact descents correct it to, with its 95 % interval. Two small changes in a row may be luck. Where time stops a method, the number of
-//! its refinements differs from run to run; what is computed at each resolution does not.
+//! Not promised: that a stable result is correct. Flooding becomes stable at a wrong value: each finest Sum
+//! is reported together with its correction by exact motions, with the 95 % interval. Two small changes in a
+//! row may be luck. If the time limit stops a method, the number of its refinements differs from run to run;
+//! the results at each resolution do not.
 
 mod report;
 

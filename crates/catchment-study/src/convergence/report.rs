@@ -1,4 +1,4 @@
-//! What people and programs read of a convergence study.
+//! Text and table form of a convergence study.
 
 use super::{Convergence, CorrectedSum, Sequence, StopReason};
 use catchment_core::design::Design;

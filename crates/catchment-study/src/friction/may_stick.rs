@@ -1,4 +1,4 @@
-//! Whether motions with friction pass states in which Coulomb's law admits sticking as well.
+//! Test whether motions with friction pass states in which Coulomb's law also permits stiction.
 
 use catchment_core::method::descent::{self, Follower};
 use catchment_core::method::{Follow, Method};

@@ -1,4 +1,5 @@
-//! Friction: what docks at each, from which on poses no longer do, and what sticks first.
+//! Effect of friction: the poses that dock at each coefficient, the critical friction, and the contacts that
+//! stick first.
 //!
 //! ```text
 //!   docks │▔▔▔▔▔╲
@@ -6,18 +7,23 @@
 //!         └───┬───┬──▶ μ     between two frictions of the ladder, where a pose is lost is found by bisection
 //! ```
 //!
-//! Friction bends the way of a half and may even help, so poses are lost and gained, and what happens at one friction says nothing certain of another: every
-//! pose is followed at every friction. The *critical friction* of a pose that docks without any is where it first no longer does; of a
-//! design it is that of a stated share of these poses: up to it 95 % of what docks without friction docks still. (The smallest of all would be
-//! nothing: right beside the border any friction tells.)
+//! Friction changes the path of a half and may even help, so poses are lost and gained, and the outcomes at
+//! one coefficient do not determine those at another: every pose is followed at every coefficient. The
+//! *critical friction* of a pose that docks without friction is the smallest coefficient at which it fails.
+//! For a design it is defined by a stated share: up to it 95 % of the poses that dock without friction still
+//! dock. (The minimum over all poses would be zero: arbitrarily close to the border any friction has an
+//! effect.)
 //!
-//! Beside it stands the static test along the frictionless way: from which friction on some force would hold the half somewhere on the way it takes
-//! without friction ([`Follower::follow_holding`]). It needs one motion for all frictions, and is wrong on as many poses as is told.
+//! The study also applies a static test to the frictionless motion: the coefficient from which on some
+//! contact forces would hold the half at some point of that motion ([`Follower::follow_holding`]). It needs a
+//! single motion for all coefficients, and the report states how many poses it misclassifies.
 //!
-//! Where rigid halves under Coulomb's law and those that give a little, as real ones and those of engines do, may part is counted, too: poses that are
-//! *hardly held*, which dock with a tenth less friction, and those that *wedge* where they jam ([`Doubt::wedges`]).
+//! Rigid halves under Coulomb's law and slightly compliant halves, as real ones and those of engines are, may
+//! differ at some poses. Two kinds of such poses are counted: those that dock with a tenth less friction
+//! (`hardly_held`), and those that *wedge* in a jam ([`Doubt::wedges`]).
 //!
-//! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
+//! Not promised: that a pose which is lost at one coefficient is lost at all larger ones; coefficients
+//! between the given ones are not tested.
 
 mod may_stick;
 mod report;

@@ -1,4 +1,4 @@
-//! What people read of the effect of friction.
+//! Text and table form of the effect of friction.
 
 use super::{Friction, Kept, Rung, SticksFirst};
 use catchment_core::acceptance::Warning;

@@ -1,4 +1,4 @@
-//! Hold: what a docked half withstands, in every direction.
+//! Holding forces and torques of a docked half, in every direction.
 //!
 //! ```text
 //!          │ preload                        y  ╭───╮
@@ -8,18 +8,21 @@
 //!                                              ╰───╯
 //! ```
 //!
-//! The half rests in its mated pose, or where another one comes to rest, pressed on by a preload along −z through its centre of rotation. Sideways forces
-//! act through the face centre of the moving half or [`Settings::lever`] above it, torques about the centre of rotation. Each is found twice
+//! The half rests in its mated pose, or in the rest that a given pose reaches, with a preload along −z
+//! through its centre of rotation. Lateral forces act through the face centre of the moving half or
+//! [`Settings::lever`] above it, torques about the centre of rotation. Each is computed in two ways
 //! ([`catchment_core::method::descent::Holding`]):
 //!
-//! - **guided**: it can move the way it is pushed and up, nothing else. This is the preload times the slope of the height of first contact that way.
-//! - **free**: it can move in all errors that are free, and up. Tilting may be easier: this is never more.
+//! - **guided**: the half can move only in the direction of the load and up. This is the preload times the
+//!   slope of the height of first contact in that direction.
+//! - **free**: the half can move in all free errors and up. Tilting may be easier, so this value is never
+//!   larger.
 //!
-//! All numbers are shares of the preload, torques of the preload times D; `None`: no load of that kind moves it. What it withstands without friction is the least
-//! of what it withstands with any.
+//! All numbers are shares of the preload, torques of the preload times D; `None`: no load of that kind moves
+//! the half. The frictionless value is a lower bound on the value with any friction.
 //!
-//! Not promised: anything beyond rigid halves and Coulomb's law, see [`Holding`]. The weakest direction is looked for near the weakest of those that are tried: a
-//! notch between two of them that is narrower is not seen.
+//! Not promised: effects beyond rigid halves and Coulomb's law, see [`Holding`]. The weakest direction is
+//! searched near the weakest of the tried directions: a narrower notch between two of them is missed.
 
 mod report;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What people and tables read of what a half withstands.
+//! Text and table form of holding forces.
 
 use super::{Both, COLUMNS, Hold};
 use catchment_core::acceptance::Outcome;

@@ -1,4 +1,4 @@
-//! What whole faces withstand: closed forms, symmetries, refusals.
+//! Holding forces of whole faces: closed forms, symmetries, errors.
 
 use super::*;
 use catchment_core::design::read;

@@ -1,4 +1,4 @@
-//! How far a pose is from the border of what docks, by exact motions.
+//! Distance of a pose from the border of the accepted set, by exact motions.
 //!
 //! ```text
 //!     docks  ░░░░│                1  towards the nearest known pose that fares otherwise, along ± every error, along random directions:
@@ -6,10 +6,11 @@
 //!       ╲    ░░░░│                2  directions beside the best one, each only where it would be nearer
 //! ```
 //!
-//! Distances are measured in units of an accuracy per error: √Σ(Δₖ/σₖ)². Errors without accuracy are exact and are not moved along.
+//! Distances are in standard deviations per error: √Σ(Δₖ/σₖ)². Errors without a standard deviation are exact
+//! and are not varied.
 //!
-//! Not promised: that no nearer pose fares otherwise. What is found is a pose that does, so the distance is *at most* so much. Beyond the error
-//! box nothing is looked for.
+//! Not promised: that no nearer pose has another outcome. The search finds a pose with another outcome, so
+//! the distance is an *upper bound*. Poses beyond the error box are not tried.
 
 use crate::success::normals;
 use catchment_core::acceptance::{Outcome, Stream};

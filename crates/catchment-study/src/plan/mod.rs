@@ -1,4 +1,4 @@
-//! Plans of bench tests: at which poses a robot should try a connector, so that the trials decide something.
+//! Plans of bench tests: poses at which a robot should try a connector, so that the trials are decisive.
 //!
 //! ```text
 //!   pattern  ──▶  poses  ──▶  what becomes of each, exactly  ──▶  trials in random order, in blocks, repeated
@@ -8,10 +8,12 @@
 //!   bracket
 //! ```
 //!
-//! The accuracy is a standard deviation per error, of x and y at the face centre; errors without one are exact. The distance to the border is that
-//! to the nearest pose found that fares otherwise (`border`): *at most* so much.
+//! The accuracy is a standard deviation per error, for x and y at the face centre; errors without a standard
+//! deviation are exact. The distance to the border is the distance to the nearest pose found with another
+//! outcome (`border`): an *upper bound*.
 //!
-//! Not promised: friction, unless it is given; speed; that the robot can reach a pose. Lengths in D, angles in radians.
+//! Not promised: friction, unless it is given; speed; that the robot can reach a pose. Lengths in D, angles
+//! in radians.
 
 mod border;
 mod pattern;

@@ -1,4 +1,4 @@
-//! Where trials are made: patterns of poses.
+//! Patterns of trial poses.
 //!
 //! ```text
 //!   grid            lattice, along the border      arc, about a joint        bracket
@@ -7,8 +7,8 @@
 //!   · · · · ·              ○ · ·                    │  ╰──● x = −L·sin pitch     ·
 //! ```
 //!
-//! A point belongs to a line, along which outcomes are read outwards: of a grid and a lattice along their first error, of an arc for each yaw, of a
-//! bracket from zero.
+//! A point belongs to a line, along which outcomes are read outwards: for a grid and a lattice along their
+//! first error, for an arc at each yaw, for a bracket from zero.
 
 use super::border::{Judge, Search, random_direction};
 use super::prediction::for_each;

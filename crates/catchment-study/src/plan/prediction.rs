@@ -1,4 +1,4 @@
-//! What becomes of the poses of a plan, and how far each is from the border.
+//! Predicted outcomes of the poses of a plan, and their distances from the border.
 
 use super::border::{Border, Judge, Search};
 use catchment_core::acceptance::Stream;

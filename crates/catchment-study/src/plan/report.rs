@@ -1,4 +1,4 @@
-//! What people and robots read of a plan.
+//! Text and table form of a plan, for people and robots.
 
 use super::{Counts, Pattern, Plan, PoseColumns, Prediction, accuracy_words};
 use crate::validate::{FEWEST, LIMIT};

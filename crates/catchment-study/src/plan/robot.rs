@@ -1,4 +1,4 @@
-//! What bench tests share: the accuracy of a robot in words, and the columns of a table that a robot reads.
+//! Parts common to bench tests: the accuracy of a robot in words, and the columns of a table for a robot.
 
 use super::Prediction;
 use catchment_core::design::Design;

@@ -1,4 +1,4 @@
-//! Slices of what docks, for the poses of a plan to be seen in.
+//! Slices of the accepted set, as the background of a plan's poses.
 //!
 //! ```text
 //!   two errors across a panel, the others as the poses have them:  yaw 0°      yaw 6°      yaw 12°
@@ -6,9 +6,10 @@
 //!                                                                  ·•·│o       ·•·│o       ·•│o
 //! ```
 //!
-//! The errors across are the first two that vary. Poses whose other errors agree within the accuracy of the robot share a slice, which lies at the
-//! middle of them. Where that takes too many slices, the poses are projected along their other errors, over every pair of errors that vary, and
-//! no region is drawn under them: that of any slice would be the wrong one for most of them.
+//! The horizontal and vertical errors are the first two that vary. Poses whose other errors agree within the
+//! accuracy of the robot share a slice, which lies at their mean. If that needs too many slices, the poses
+//! are projected along their other errors, over every pair of errors that vary, and no region is drawn under
+//! them: the region of any slice would be wrong for most of them.
 
 use super::border::Judge;
 use super::prediction::for_each;

@@ -1,4 +1,4 @@
-//! Distances against closed forms, and the published tests.
+//! Distances compared with closed forms, and the published tests.
 
 use super::*;
 use catchment_core::design::read;

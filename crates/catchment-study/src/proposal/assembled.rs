@@ -1,4 +1,5 @@
-//! Parts that are drawn docked, in one frame: along which approach they hold, near the pose in which they are drawn.
+//! Parts that are drawn docked, in a common frame: the approaches along which they hold, near the pose in
+//! which they are drawn.
 //!
 //! ```text
 //!   6 approaches, and common diagonals ──▶ a lattice near the drawn pose ──▶ exact contact of those that hold

@@ -1,4 +1,4 @@
-//! One way in which two parts may dock, as a person sees it.
+//! A candidate: a relative orientation in which two parts may dock, in terms for the user.
 
 use super::judge::{Judged, Seat};
 use super::way::Lie;

@@ -1,4 +1,5 @@
-//! Why parts do not dock, as a person would say it: what comes of each approach as drawn, and mistakes in the files.
+//! Causes why parts do not dock, in the user's terms: the result of each approach as drawn, and errors in the
+//! files.
 //!
 //! ```text
 //!   meets nothing            ──▶ passes through: a stop is missing
@@ -6,7 +7,7 @@
 //!   blocked all ways         ──▶ interlock: a thread of this lead; a snap, an undercut or an interference of so many mm; something else
 //! ```
 //!
-//! Not promised: that the cause is the only one.
+//! Not promised: that the cause is unique.
 
 use super::halves::file_unit;
 use super::sink::{self, Drawn, Grain, Triangles, together};

@@ -1,4 +1,5 @@
-//! What a person should look at in a proposal, in words: another way that is nearly as good, a seat that is shallow or settles, a size that rather has another unit.
+//! Warnings about a proposal, in words: another candidate of similar score, a shallow or settling seat, a
+//! size that suggests another unit.
 
 use super::halves::design_unit;
 use super::{Candidate, Frames, Held, Lie, NEARLY, Settings, file};

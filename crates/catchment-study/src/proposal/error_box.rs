@@ -1,11 +1,11 @@
-//! The error box of a proposal: four times what each error alone tolerates, by exact motions.
+//! The error box of a proposal: four times the single-axis limits, by exact motions.
 //!
 //! ```text
 //!   tolerance  ├──┤            range = 4 · 2^(−k/2) · R/4 with the least k whose quarter docks on this side,
 //!   range      ├──────────┤    R = 1 D or 90 degrees, k = 0 … 8: between 2.8 and 4 times the tolerance
 //! ```
 //!
-//! Not promised: that nothing docks beyond, together with other errors.
+//! Not promised: that no pose beyond it docks in combination with other errors.
 
 use super::judge::{Judged, Seat};
 use super::{PartFile, ProposalError, Settings, file};

@@ -1,4 +1,4 @@
-//! The design file of a proposal: what every line is, and why it says what it says.
+//! The design file of a proposal: the meaning of every line, and the reason for its value.
 
 use super::halves::{design_unit, file_unit, says_its_unit};
 use super::judge::{Judged, Seat};

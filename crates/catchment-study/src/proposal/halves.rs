@@ -1,4 +1,4 @@
-//! The halves of a proposal: a file each, and what belongs to it, in the unit of the design.
+//! The halves of a proposal: a file for each, with its settings, in the unit of the design.
 
 use super::candidate::shown_unit;
 use super::{Beside, PartFile, ProposalError, Settings, file};

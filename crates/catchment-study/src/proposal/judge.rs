@@ -1,13 +1,15 @@
-//! Whether a place is a seat, by exact heights: where it is, how wide, what it holds.
+//! Evaluation of a place as a seat, by exact heights: its position, its width, and the errors that it
+//! constrains.
 //!
 //! ```text
 //!   place ──▶ D ──▶ moved to where it lies deepest, in the middle of its play ──▶ which errors it holds ──▶ settled, if it must be
 //!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
 //! ```
 //!
-//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free: locked, but for the yaw of what lies as deep
-//! all round, which does not matter; where walls stop them, but later than a seat's
-//! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
+//! Errors that the seat leaves free (along a groove, the yaw of a round part) are removed from the free
+//! errors: they are locked, except for a yaw with equal depth all around, which is a don't-care rotation. If
+//! walls stop an error, but later than the play that a seat may have without a statement in the design
+//! ([`Docked::MOST_PLAY`]), the play becomes the docking tolerance.
 
 use super::sink::Sunk;
 use super::way::Lie;

@@ -1,4 +1,5 @@
-//! Two parts as they come from CAD, and the design that docks them: how they lie, where they seat, how wide they are.
+//! A proposal: from two parts in CAD files to the design that docks them, with their orientation, seat and
+//! width.
 //!
 //! ```text
 //!   two files ──▶ drawn docked, in one frame?   6 approaches on a lattice near the drawn pose ──▶ exact contact of those that hold
@@ -6,18 +7,23 @@
 //!                        └──▶ ranked by how steep the seat is ──▶ a design file
 //! ```
 //!
-//! steep = climb / (e + play): how far the moving half climbs before it leaves the seat, and how far it moves to each side at half of that;
-//! e is half a millimetre for parts of a few centimetres. The score of a candidate is steep / (steep + 3.5). What holds x and y not both counts less,
-//! what is no seat a tenth. A candidate that no lattice found (a shallow groove) scores climb · shared as exact contact has them: how much a half
-//! climbs that is 0.1 D and 0.3 D off, and the area that can touch as a share of the broadest side of the smaller part's box.
+//! steep = climb / (e + play): how high the moving half climbs before it leaves the seat, relative to its
+//! play to each side at half of that height; e is half a millimetre for parts of a few centimetres. The score
+//! of a candidate is steep / (steep + 3.5). A candidate that does not constrain both x and y counts less; one
+//! without a seat counts a tenth. A candidate that no lattice found (a shallow groove) scores climb · shared
+//! from exact contact: the climb of a half at offsets of 0.1 D and 0.3 D, and the area that can touch as a
+//! share of the broadest side of the smaller part's box.
 //!
-//! Parts that are drawn in one frame, near each other and without overlap, are an assembly: they dock as drawn or are refused with the cause.
+//! Parts that are drawn in a common frame, close to each other and without overlap, are an assembly: they
+//! dock as drawn or are rejected with the cause.
 //!
-//! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is put into the face
-//! centre, which no geometry says better. The design is read back and checked as any other before it is given.
+//! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is
+//! placed at the face centre, because no geometry determines it better. The design is read back and checked
+//! like any other before it is returned.
 //!
-//! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes which is not 45 degrees,
-//! need a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
+//! Not promised: that parts dock as their designer intended. Parts that dock in several ways, or that are
+//! drawn at an angle to their axes other than 45 degrees, need additional input. A proposal with a weak
+//! score, or a runner-up with 0.4 of its steepness, is marked as "in doubt".
 
 mod assembled;
 mod candidate;

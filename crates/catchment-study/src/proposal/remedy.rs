@@ -1,11 +1,12 @@
-//! What would let parts dock that do not: the mirror image of one of them, or something narrow left out.
+//! Remedies for parts that do not dock: the mirror image of a part, or the removal of a narrow feature.
 //!
 //! ```text
 //!   no seat ──▶ the moving part reflected: does it seat?  ──▶ "was one of the two exported mirrored?"
 //!          └──▶ what is narrower than three cells left out, of one part, then of the other: does one sink in?  ──▶ "in the way: at (…)"
 //! ```
 //!
-//! Not promised: that parts which dock mirrored were meant to, or that what is in the way is all that is.
+//! Not promised: that parts which dock mirrored were meant to be mirrored, or that the reported obstacle is
+//! the only one.
 
 use super::{Parts, Settings, is_seat, rank, search, sunk, ways};
 use catchment_core::connector::Half;

@@ -1,12 +1,13 @@
-//! Where parts of separate files may dock: all ways in which they may face, all lateral offsets.
+//! Search for possible seats of parts from separate files: all relative facings, all lateral offsets.
 //!
 //! ```text
 //!   6 × 6 facings × 4 quarter turns ──▶ heights over all offsets ──▶ hollows: offsets around which the heights rise
 //!        the best of them on finer and finer lattices ──▶ places, for exact heights to judge
 //! ```
 //!
-//! A hollow counts by how much the half has to climb to leave it, and by how much of the parts lies over each other. Found in the unit
-//! of the smaller part's middle extent. Not promised: seats that are finer than a twentieth of that, turns that are no quarter turns.
+//! A hollow is scored by the height that the half must climb to leave it, and by the overlap of the parts in
+//! plan view. Lengths are in units of the smaller part's middle extent. Not promised: seats finer than a
+//! twentieth of that, and rotations other than quarter turns, are not found.
 
 use super::way::{Lie, Way};
 use catchment_core::connector::{Half, Side};

@@ -1,4 +1,4 @@
-//! The directions in which parts face and approach, and how two parts may lie to each other.
+//! Facing and approach directions of parts, and relative orientations of two parts.
 
 use catchment_core::connector::turn_between;
 use catchment_core::pose::Mount;

@@ -1,4 +1,4 @@
-//! How the Sum moves with what a design declares: ρ, the centre of rotation, the aspect ratio.
+//! Sensitivity of the Sum to the parameters of a design: ρ, the centre of rotation, the aspect ratio.
 //!
 //! ```text
 //!   the same N random poses, followed exactly at p − h and at p + h
@@ -8,14 +8,15 @@
 //!    dp     2h         N
 //! ```
 //!
-//! V is the measure of the error box. Poses that fare alike on both sides cancel, so the noise is that of the few that
-//! change sides and not of the Sum. The interval is that of Agresti and Min for paired proportions (Statistics in
-//! Medicine 24, 2005, 729): half a pose is added to each way of faring.
+//! V is the measure of the error box. Poses with equal outcomes on both sides cancel, so the noise is that of
+//! the few poses that change sides and not of the Sum. The interval is that of Agresti and Min for paired
+//! proportions (Statistics in Medicine 24, 2005, 729): half a pose is added to each outcome.
 //!
-//! ρ is an input that nobody measures easily, so the spread of the Sum over ρ = 0.25 … 2 stands beside the slopes.
+//! ρ is an input that is hard to measure, so the spread of the Sum over ρ = 0.25 … 2 is reported with the
+//! slopes.
 //!
-//! Not promised: that the Sum is smooth; a slope is the mean one between p − h and p + h, which are reported. Undecided
-//! poses count as rejected on both sides. Lengths in D, the Sum in Dᵃ·radᵇ.
+//! Not promised: that the Sum is smooth; a slope is the mean slope between p − h and p + h, which are
+//! reported. Undecided poses count as rejected on both sides. Lengths in D, the Sum in Dᵃ·radᵇ.
 
 mod report;
 

@@ -1,4 +1,4 @@
-//! What people and programs read of a sensitivity.
+//! Text and table form of a sensitivity.
 
 use super::{AtRho, Parameter, Sensitivity};
 use catchment_core::design::Design;

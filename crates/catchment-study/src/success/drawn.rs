@@ -1,4 +1,4 @@
-//! Errors that were drawn, those of them that were followed, and what both say.
+//! The sampled errors, the motions followed for some of them, and the combined estimate.
 
 use super::Stratum;
 use super::estimate::{Followed, Sample};

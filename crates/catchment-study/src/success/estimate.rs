@@ -10,11 +10,12 @@
 //!   dP/dσ_k = E[(1_docks − P)·s_k]                      s_k  d log(density)/dσ_k: the same motions, no more of them
 //! ```
 //!
-//! The interval of the strata is that of [`catchment_core::method::correction`], which draws batches the same way: 0 of n failures leave the stratum
-//! 3.8/n of doubt. Undecided motions count as failures; they widen the interval upwards.
+//! The interval of the strata is that of [`catchment_core::method::correction`], which draws batches in the
+//! same way: 0 failures of n leave an uncertainty of 3.8/n of the stratum. Undecided motions count as
+//! failures; they widen the interval upwards.
 //!
-//! Slopes have normal intervals; in every stratum the share that docks is drawn towards a half by two poses of either kind, so that one in which nothing
-//! failed still has its doubt.
+//! Slopes have normal intervals; in every stratum the share that docks is shifted towards a half by two poses
+//! of either outcome, so that a stratum without failures still has an uncertainty.
 
 use super::drawn::Drawn;
 use super::source::{SAME, Source};

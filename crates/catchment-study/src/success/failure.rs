@@ -1,4 +1,4 @@
-//! What fails, and what fails first.
+//! Failures: their shares, their dominant error, and the nearest failure.
 //!
 //! ```text
 //!   shares       of the failures, jammed and missed; weighted as the sample is
@@ -10,9 +10,11 @@
 //!        ·  ·  ✕         then moves about the nearest of all; each nearer one is bisected again
 //! ```
 //!
-//! Where nothing failed it is looked further out, up to 8 σ (3 half-widths): such an error says how far away failure is, not how likely.
+//! Without a failure in the sample the search goes farther out, up to 8 σ (3 half-widths): such an error
+//! shows the distance of failure, not its probability.
 //!
-//! Not promised: that no failing error lies nearer. Failures thinner than what random errors hit are found by luck.
+//! Not promised: that no failing error is nearer. Failures in regions too thin for the random errors are
+//! found only by luck.
 
 use super::estimate::{Followed, Sample};
 use super::source::{SAME, Source, normals};

@@ -1,4 +1,4 @@
-//! Whether measured errors are normal: a fit, and what speaks against it.
+//! Test of measured errors for normality: a fit, and the evidence against it.
 //!
 //! ```text
 //!   each error    Anderson and Darling   A² = −n − (1/n)·Σ (2i − 1)·(ln Φ(yᵢ) + ln(1 − Φ(yₙ₊₁₋ᵢ)))    y standardised and sorted
@@ -7,10 +7,11 @@
 //!   one by one    neighbouring rows      their correlation r: near 0, variance 1/n, where rows are independent
 //! ```
 //!
-//! Sources: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730; p-values of D'Agostino and Stephens, Goodness-of-Fit Techniques (1986), table
-//! 4.9. K. V. Mardia, Biometrika 57 (1970) 519. The fit is rejected where the smallest of all p-values, times their number, is below 0.05.
+//! Sources: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730; p-values of D'Agostino and Stephens,
+//! Goodness-of-Fit Techniques (1986), table 4.9. K. V. Mardia, Biometrika 57 (1970) 519. The fit is rejected
+//! if the smallest of all p-values, times their number, is below 0.05.
 //!
-//! Not promised: that a fit which is not rejected is right: few rows reject nothing.
+//! Not promised: that a fit which is not rejected is correct: a few rows reject no fit.
 
 use super::{AxisFit, Fit};
 use catchment_core::pose::{Dof, PoseError};

@@ -1,4 +1,5 @@
-//! What it helps to improve one error: the slope of the probability by its σ, and the probability with that σ halved.
+//! Effect of an improvement of one error: the slope of the probability by its σ, and the probability with
+//! that σ halved.
 //!
 //! ```text
 //!   normal     dP/dσₖ = E[(1_docks − P)·sₖ]              the score of the density: the same motions

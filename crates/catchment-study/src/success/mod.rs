@@ -1,4 +1,5 @@
-//! Will it dock? The probability that a robot's errors are corrected, by exact motions; what fails, and which error to improve.
+//! Success probability: the probability that a robot's errors dock, by exact motions; with the failures, and
+//! the error to improve first.
 //!
 //! ```text
 //!   robot  ──▶  random errors, none followed   ──▶  n of them followed exactly, most where there is doubt
@@ -10,16 +11,20 @@
 //!                                                        └─▶  P(t), every σ times t            how large they may be
 //! ```
 //!
-//! - The *probability* is that of exact quasi-static motions, not of cells: the grid only says where to look, and whatever it says, the
-//!   interval holds. Errors outside of the error box are followed like all others.
-//! - *Normal* errors may be correlated. *Measured* ones are taken row by row, each once; where there are more rows than motions, any of them. Rows
-//!   count as independent measurements: the interval says what they leave open.
-//! - *Slopes* dP/dσ are of normal errors by the score of the density, of uniform ones by the faces of their box; of measured ones there are none.
-//! - *Gains* are differences of two probabilities, with the σ as it is and halved: new motions, the same random errors.
-//! - The *factor* is by how much all σ together, or one alone, may be multiplied for the success that is required.
+//! - The *probability* is that of exact quasi-static motions, not of cells: the grid only allocates the
+//!   motions, and the interval is valid for any grid. Errors outside of the error box are followed like all
+//!   others.
+//! - *Normal* errors may be correlated. *Measured* errors are taken row by row, each once; if there are more
+//!   rows than motions, rows are sampled. Rows count as independent measurements: the interval includes their
+//!   uncertainty.
+//! - *Slopes* dP/dσ follow for normal errors from the score of the density, for uniform errors from the faces
+//!   of their box; for measured errors they are not available.
+//! - *Gains* are differences of two probabilities, with the σ as given and halved: new motions, the same
+//!   random errors.
+//! - The *factor* is the largest multiple of all σ together, or of a single σ, with the required success.
 //!
-//! Not promised: friction, speed, or that errors are as they are said to be. Undecided motions count as failures. Lengths in D, angles in
-//! radians.
+//! Not promised: friction, speed, or that the errors follow their distribution. Undecided motions count as
+//! failures. Lengths in D, angles in radians.
 
 mod drawn;
 pub(crate) mod estimate;

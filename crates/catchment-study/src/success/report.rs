@@ -1,4 +1,4 @@
-//! What people and tables read of the success of robots.
+//! Text and table form of the success of robots.
 
 use super::{Docking, Factor, First, Fit, Success};
 use catchment_core::acceptance::Warning;

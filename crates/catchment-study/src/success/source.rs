@@ -1,4 +1,4 @@
-//! Random errors of a robot, each found by its number: what is drawn does not depend on who asks, or when.
+//! Random errors of a robot, accessed by number: the samples do not depend on the caller or the order.
 //!
 //! ```text
 //!   normal     z ~ N(0, 1)ⁿ   y = L·z   eₖ = μₖ + fₖ·σₖ·yₖ      L·Lᵀ the correlations, fₖ the factors by which σ are changed
@@ -6,7 +6,8 @@
 //!   measured   a row r                  eₖ = μₖ + fₖ·(rₖ − μₖ)     the rows in their order, or any of them again and again
 //! ```
 //!
-//! With other factors the same number gives the same z: common random errors, whose differences are known better than they are.
+//! With other factors the same number gives the same z: common random numbers, with which differences are
+//! more precise than the values.
 
 use catchment_core::acceptance::Stream;
 use catchment_core::method::descent;

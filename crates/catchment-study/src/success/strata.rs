@@ -1,4 +1,4 @@
-//! Where to look: strata of errors, by a grid that was decided beforehand.
+//! Strata of errors, by a grid that was decided in advance; they guide the sampling.
 //!
 //! ```text
 //!   grid over μ ± 3.5 σ               share of a pose: what its surrounding centres say, weighted by nearness
@@ -9,8 +9,8 @@
 //!   └───────────────┘
 //! ```
 //!
-//! A stratum is nothing but a guess: it says where exact motions tell most. Whatever it says, right or wrong, the estimate is that of
-//! the motions.
+//! A stratum is only a guess: it shows which exact motions are most informative. The estimate is that of the
+//! motions, whether the guess is right or wrong.
 
 use super::source::Source;
 use catchment_core::acceptance::{Domain, Outcome};

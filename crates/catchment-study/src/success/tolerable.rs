@@ -1,4 +1,4 @@
-//! How much larger all errors may be, or one of them, for a success that is required.
+//! Largest factor on all errors, or on one of them, with the required success.
 //!
 //! ```text
 //!   P ▲──╲_                    P(t): every σ multiplied by t; the same random errors at every t
@@ -8,8 +8,9 @@
 //!     └──────────────▶ t
 //! ```
 //!
-//! The crossing is the first one from below: with every smaller factor that was tried the success is at least what is required. Between the last two
-//! factors that were tried around it, some percent apart, log t is taken to run straight in P; the ends of the interval are factors that were tried.
+//! The crossing is the first from below: with every smaller tried factor the success is at least the required
+//! one. Between the two last tried factors around it, some percent apart, log t is interpolated linearly in
+//! P; the ends of the interval are tried factors.
 
 use super::estimate::{Sample, sample};
 use super::source::Source;

@@ -1,4 +1,4 @@
-//! One direction of a sweep: a key of the design file and the values that it takes.
+//! An axis of a sweep: a key of the design file and its values.
 
 use catchment_core::design::{Complaint, Quantity, key_path};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! A sweep: one design with keys of its file replaced, every combination computed by the same run.
+//! A sweep: a design with keys of its file replaced, every combination computed by the same run.
 //!
 //! ```text
 //!   aspect_ratio=0.25,0.5,1  ×  cor=-1..1/5        axes, the last one fastest
@@ -10,10 +10,10 @@
 //!   Sweep: the figures of every design, the largest and the smallest Sum
 //! ```
 //!
-//! A combination whose halves do not build, or do not meet, is told with its reason and does not stop the others. Designs are computed side
-//! by side, each by one thread, where they all fit into memory; the figures do not depend on it.
+//! A combination whose halves do not build, or do not meet, is reported and skipped. Designs are computed
+//! side by side, with one thread each, if they all fit into memory; the results do not depend on it.
 //!
-//! Not promised: that the Sum is smooth between two values, or that the largest of those tried is the largest there is.
+//! Not promised: that the Sum is smooth between two values, or that the largest Sum tried is the maximum.
 
 mod axis;
 mod report;

@@ -1,4 +1,4 @@
-//! What people and programs read of a sweep.
+//! Text and table form of a sweep.
 
 use super::{Figures, Found, Sweep, Trial};
 use catchment_core::design::Design;

@@ -1,4 +1,5 @@
-//! Trials beside the exact region: where a method that follows single poses disagrees with the zero-rotation area of acceptance.
+//! Trials compared with the exact region: the disagreement of a method that follows single poses with the
+//! zero-rotation area of acceptance.
 //!
 //! ```text
 //!   exact (zraa)          trials, one per cell, anywhere in it      disagreeing area = share of trials that
@@ -8,11 +9,13 @@
 //!      ╲╱
 //! ```
 //!
-//! Every cell of an n × n grid over the error box has one trial, at a place drawn uniformly in it, so the share is unbiased. Rotations
-//! are locked, which the dissertation did by inertia. Finer grids narrow the interval; half the time step moves what is in it:
-//! the engine lets halves overlap by what they move in a step.
+//! Every cell of an n × n grid over the error box has one trial, at a position sampled uniformly in it, so
+//! the share is unbiased. Rotations are locked; the dissertation did this by inertia. Finer grids narrow the
+//! interval; half the time step changes the disagreement itself: the engine lets halves overlap by their
+//! motion within a step.
 //!
-//! Not promised: that the exact region is right where trials and it agree; both take the same halves and the same seat.
+//! Not promised: that the exact region is correct if the trials agree; both use the same halves and the same
+//! seat.
 //!
 //! Source: dissertation, section 4.2.2 and figure 4.4.
 

@@ -1,4 +1,4 @@
-//! What people and programs read of trials beside the exact region.
+//! Text and table form of trials compared with the exact region.
 
 use super::Trials;
 use catchment_core::design::Design;

@@ -1,4 +1,4 @@
-//! Which friction explains a table of trials.
+//! Estimate of the friction that explains a table of trials.
 //!
 //! ```text
 //!   disagreements beyond k accuracies
@@ -8,10 +8,11 @@
 //!             [ interval  ]            the coefficients with the fewest, its ends bisected
 //! ```
 //!
-//! Coefficients are tried from 0 upwards, until one leaves clearly more than the best before it. A motion that creeps on and on counts as one that
-//! does not dock.
+//! Coefficients are tried from 0 upwards, until one leaves clearly more disagreements than the best before
+//! it. A motion that creeps without end counts as a failure.
 //!
-//! Not promised: that friction is the reason; only which coefficients are as good as the best, and that none beyond the last one tried is.
+//! Not promised: that friction is the reason; the result lists only the coefficients as good as the best, and
+//! no coefficient beyond the last tried is excluded.
 
 use super::Settings;
 use crate::plan::{Judge, Search, for_each};

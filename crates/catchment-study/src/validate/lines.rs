@@ -1,4 +1,4 @@
-//! Where the border was seen along each line of a plan.
+//! The observed border along each line of a plan.
 
 use super::Judged;
 use crate::plan::outwards;

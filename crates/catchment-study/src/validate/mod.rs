@@ -1,4 +1,4 @@
-//! Verdicts on a prediction: what a robot saw at the poses of a plan, beside what exact motions say of them.
+//! Verdicts on a prediction: the trials of a robot at the poses of a plan, compared with exact motions.
 //!
 //! ```text
 //!                      observed                     how far each disagreement is from the predicted border,
@@ -11,16 +11,18 @@
 //!                 undecided      too few trials are beyond k to decide anything
 //! ```
 //!
-//! A trial m accuracies from the border fares otherwise by the robot's error alone with a chance of at most 2·Φ(−m), a flat border on both sides
-//! of it. Four numbers are held against that: how many trials beyond k disagree, how far the farthest of them is, how many trials failed where docking
-//! was predicted (`early`), and how many docked where it was not (`late`). The smallest of the four chances, times four, is that of the verdict. Trials
-//! that may go either way count in none of them.
+//! The robot's error alone changes the outcome of a trial m standard deviations from the border with a
+//! probability of at most 2·Φ(−m), for a flat border on both sides of it. Four numbers are tested against
+//! this: the number of disagreements beyond k, the distance of the farthest of them, the number of failures
+//! at poses with a predicted success (`early`), and the number of successes at poses with a predicted failure
+//! (`late`). The smallest of the four p-values, times four, is that of the verdict. Trials that may have
+//! either outcome are excluded.
 //!
-//! Failures where docking was predicted are *systematic* where the robot's errors do not explain them: friction makes them, and a border
-//! that is predicted too far out. `early` tests that one side alone.
+//! Failures at poses with a predicted success are *systematic* if the robot's errors do not explain them:
+//! friction causes them, and so does a border that is predicted too far out. `early` tests that side alone.
 //!
-//! Not promised: that a consistent prediction is right where nothing was tried. Distances are at most so much ([`crate::plan`]); trials
-//! count as independent. Lengths in D, angles in radians.
+//! Not promised: that a consistent prediction is correct at untested poses. Distances are upper bounds
+//! ([`crate::plan`]); trials count as independent. Lengths in D, angles in radians.
 
 mod friction;
 mod lines;

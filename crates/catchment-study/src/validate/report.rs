@@ -1,4 +1,4 @@
-//! What people and programs read of a verdict.
+//! Text and table form of a verdict.
 
 use super::{Count, Evidence, FEWEST, FrictionInterval, Judged, LEVEL, Line, Validation, Verdict};
 use crate::plan::{PoseColumns, accuracy_words};

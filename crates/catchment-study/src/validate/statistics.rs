@@ -1,4 +1,4 @@
-//! What counts of trials say.
+//! Statistics of counted trials.
 //!
 //! ```text
 //!   Clopper and Pearson   [p: P(X ≥ k | p) = 2.5 %,  p: P(X ≤ k | p) = 2.5 %]      X binomial

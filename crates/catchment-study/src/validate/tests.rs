@@ -1,4 +1,4 @@
-//! Verdicts on robots that do as predicted, and on robots that do not.
+//! Verdicts on robots that agree with the prediction, and on robots that do not.
 
 use super::*;
 use crate::plan::{self, Pattern};

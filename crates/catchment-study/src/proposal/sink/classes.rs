@@ -1,4 +1,5 @@
-//! Which places are the same: of all places where a part sinks in, the best of each axis, and what differs from it.
+//! Equivalence of places: among all places at which a part sinks in, the best of each axis, and the places
+//! that differ from it.
 //!
 //! ```text
 //!   same axis, same side      turned about the approach: one class          same line, other side up     a twin: turned end for end

@@ -1,4 +1,5 @@
-//! What two parts that are drawn in one frame do as drawn: along each of six approaches, near the pose in which they are drawn.
+//! Behaviour of two parts drawn in a common frame: along each of six approaches, near the pose in which they
+//! are drawn.
 //!
 //! ```text
 //!   h near no offset ──▶ nothing to meet: passes through      h(0) far above or below: blocked, apart

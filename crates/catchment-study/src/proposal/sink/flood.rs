@@ -1,4 +1,4 @@
-//! Basins of heights over a lattice: where something sinks, and how far it has to climb to leave.
+//! Basins of heights over a lattice, with the climb needed to leave each.
 //!
 //! ```text
 //!      ────┐        ┌──── pass           climb of A = pass − height of A: out, or into what is deeper
@@ -6,8 +6,9 @@
 //!          └──┘B └A─┘
 //! ```
 //!
-//! Points are flooded from low to high. Where two basins meet, the shallower one ends: its climb is the level there less its lowest height.
-//! Where nothing is below, and beyond the lattice, everything runs out.
+//! Points are flooded from low to high. If two basins meet, the shallower one ends: its climb is the level of
+//! the meeting minus its lowest height. Points with nothing below, and points beyond the lattice, are
+//! outlets.
 
 use super::height::NOTHING;
 

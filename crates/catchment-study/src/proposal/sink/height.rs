@@ -1,4 +1,4 @@
-//! Heights of a part over a fine lattice in plan view, and the few points of it that decide where it touches first.
+//! Height maps of a part over a fine lattice in plan view, and the few points that decide first contact.
 
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;

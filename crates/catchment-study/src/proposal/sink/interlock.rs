@@ -1,4 +1,5 @@
-//! What keeps parts apart that are drawn docked and come together along no axis: a thread, or walls that would have to give way.
+//! Interlocks of parts that are drawn docked and cannot approach along any axis: a thread, or walls that
+//! would have to yield.
 //!
 //! ```text
 //!   thread   turned by ±90° about the approach, the moving part fits where it is raised by ±lead / 4, and nowhere else
@@ -10,8 +11,8 @@
 //!   snap     the fixed part worn by w on every side lets the moving one in as far as it is drawn; w is the undercut
 //! ```
 //!
-//! Not guaranteed: that a thread whose axis is not the middle of the moving part is seen, or one whose lead is longer than four times [`RAISED`]; that walls which
-//! give way by w would survive it.
+//! Not guaranteed: detection of threads whose axis is not the middle of the moving part, or whose lead is
+//! longer than four times [`RAISED`]; survival of walls that yield by w.
 
 use super::drawn::{columns, common};
 use super::height::HeightMap;

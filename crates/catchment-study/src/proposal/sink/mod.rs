@@ -1,4 +1,5 @@
-//! Where one part sinks into the other: all facings and all lateral offsets, on lattices, before exact contact judges the best of them.
+//! Search for places at which a part sinks into the other: all facings and all lateral offsets, on lattices,
+//! before exact contact evaluates the best of them.
 //!
 //! ```text
 //!   fixed   F(p)  highest z over p            h(o) = max over p of F(p + o) + M(p)     height of first contact at the lateral offset o
@@ -8,13 +9,14 @@
 //!   as drawn, 6 approaches ──▶ h near the origin ──▶ holds, passes through, flat, blocked or apart
 //! ```
 //!
-//! The climb of a basin is how far the moving part has to rise before it leaves it. Its play is half its extent at half that height, and
-//! e ([`Grain::small`]) is half a millimetre for parts of a few centimetres. A deep hole with little play is steep, a lid that lies in a wide tray
-//! is not.
+//! The climb of a basin is the height that the moving part must rise before it leaves it. Its play is half
+//! its extent at half that height, and e ([`Grain::small`]) is half a millimetre for parts of a few
+//! centimetres. A deep hole with little play is steep, a lid that lies in a wide tray is not.
 //!
-//! Diagonal directions are looked at where both parts have walls along them ([`diagonals`]).
+//! Diagonal directions are included if both parts have walls along them ([`diagonals`]).
 //!
-//! Not promised: seats that are narrower than the fine lattice, turns that are no quarter turns, and that what is steep is what was meant.
+//! Not promised: seats narrower than the fine lattice, rotations other than quarter turns, and that a steep
+//! seat is the intended one.
 
 mod classes;
 mod drawn;

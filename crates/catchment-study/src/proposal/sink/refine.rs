@@ -1,4 +1,5 @@
-//! Heights of first contact near one offset, on a fine lattice: the floor of a basin, its middle, its play.
+//! Heights of first contact near a given offset, on a fine lattice: the floor of a basin, its middle, its
+//! play.
 
 use super::height::{HeightMap, NOTHING, deciding};
 use super::{Grain, Sunk, Triangles, UPSIDE_DOWN};

@@ -1,4 +1,4 @@
-//! Pins, plates and holes made of boxes: what lattices say of them beside closed forms.
+//! Pins, plates and holes made of boxes: results of the lattices compared with closed forms.
 
 use super::flood::basins;
 use super::height::NOTHING;
