@@ -1,4 +1,4 @@
-//! The report of an answer, and whether it meets the requirements of its run.
+//! The report of a run's result, and the check of its requirements.
 
 use super::Report;
 use super::envelope::{Body, Envelope};

@@ -1,6 +1,6 @@
-//! Reading files of others: never more than is sensible, and never from what is no file.
+//! Bounded reading of foreign files: within a size limit, and only from regular files.
 //!
-//! A FIFO would wait for ever, a device never ends, and a file of gigabytes would be taken for a report.
+//! A FIFO would block forever, a device never ends, and a file of gigabytes could be mistaken for a report.
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -1,4 +1,4 @@
-//! The cells of a decided grid, or listed poses, as a table: what pandas, a spreadsheet or a database reads.
+//! The cells of a decided grid, or listed poses, as a table for pandas, a spreadsheet or a database.
 
 use super::vtk::ViewError;
 use catchment_core::acceptance::Acceptance;

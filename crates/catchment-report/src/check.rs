@@ -1,4 +1,4 @@
-//! A design file that was checked: the design as it is understood, or everything that is wrong with it.
+//! Result of checking a design file: the resolved design, or all its errors.
 
 use super::document::Printed;
 use super::envelope::{Body, Envelope};

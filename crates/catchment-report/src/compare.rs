@@ -1,4 +1,4 @@
-//! Two acceptances beside each other, wherever they come from.
+//! Comparison of two acceptances from any source.
 //!
 //! ```text
 //!   a stored result ──▶ read ─────────┐

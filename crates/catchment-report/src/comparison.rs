@@ -1,4 +1,4 @@
-//! Two acceptances beside each other: as versioned JSON, and what people and programs read of them.
+//! Comparison of two acceptances: as versioned JSON, text and tables.
 
 use super::document::Printed;
 use super::envelope::{Body, Envelope};

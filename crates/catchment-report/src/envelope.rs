@@ -1,4 +1,4 @@
-//! The one head of every JSON that is printed or stored.
+//! The common head of every JSON report, printed or stored.
 //!
 //! ```text
 //!   { "schema": 3, "catchment": "0.1.0", "kind": "run",     which layout, who wrote it, what it tells
@@ -6,9 +6,9 @@
 //!     "warnings": […], "timing": … }                        doubts; the only part that differs between equal runs
 //! ```
 //!
-//! [`SCHEMA`] rises when a field changes its meaning or goes away, for all kinds together. New fields may appear
-//! under the same number, and new kinds of warnings: a reader ignores fields that it does not know. This program
-//! reads the layouts from [`OLDEST`] on; a newer one is refused.
+//! [`SCHEMA`] increases if a field changes its meaning or is removed, for all kinds together. New fields and
+//! new kinds of warnings may appear under the same number: a reader ignores unknown fields. This program
+//! reads the layouts from [`OLDEST`] on; a newer layout is rejected.
 
 use super::schema::{Timing, WarningReport};
 use super::version::Version;

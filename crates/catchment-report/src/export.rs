@@ -1,4 +1,4 @@
-//! A drop test that was written for other engines: what it was, and where it lies.
+//! Report of a drop test that was exported for other engines: its settings and its files.
 
 use super::document::Printed;
 use super::envelope::{Body, Envelope};

@@ -1,4 +1,4 @@
-//! Several designs side by side by the offsets that they correct without rotation.
+//! Several designs side by side with the offsets that they correct without rotation.
 
 use super::document::Printed;
 use super::envelope::{Body, Envelope};

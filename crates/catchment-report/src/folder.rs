@@ -1,11 +1,11 @@
-//! The folder that a result is written into: complete or not at all, and never over something else.
+//! The folder of a result: complete or absent, and never overwriting other content.
 //!
 //! ```text
 //!   run       report.json, result.zarr (poses.csv of a run without a grid), and every picture as .png and .svg
 //!   a study   report.json, and its table, picture and groups under its own name
 //! ```
 //!
-//! Each holds a manifest of its files beside them; see [`write`](mod@super::write).
+//! Each folder holds a manifest of its files; see [`write`](mod@super::write).
 
 use super::write::{self, WriteError};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};

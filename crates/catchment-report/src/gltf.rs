@@ -7,9 +7,10 @@
 //!                                    └─ contacts        points that touch at the end
 //! ```
 //!
-//! Lengths are in metres as glTF wants them; of a design without a unit, D is one metre. Quasi-static motions take no time: theirs is
-//! shown in [`SECONDS`], path length (ρ-metric) by time; a drop test runs as long as it took. Places between waypoints are
-//! interpolated by who shows it. Positions are in single precision: the last frame is the last pose to 1e-6 D.
+//! Lengths are in metres, as glTF requires; for a design without a unit, D is one metre. Quasi-static motions
+//! have no time: they are shown within [`SECONDS`], with path length (ρ-metric) in place of time; a drop test
+//! is shown in real time. The viewer interpolates between waypoints. Positions are in single precision: the
+//! last frame is the last pose to 1e-6 D.
 
 use super::TraceReport;
 use catchment_core::connector::{Connector, Half};

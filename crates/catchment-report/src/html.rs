@@ -1,4 +1,4 @@
-//! HTML that cannot hold raw text.
+//! HTML that cannot contain raw text.
 //!
 //! ```text
 //!   fixed    &'static str: a fragment from the program's source     as it is
@@ -8,8 +8,9 @@
 //!   number   a whole number                                         digits
 //! ```
 //!
-//! The string inside is private to this file and these five calls are all that extend it: a page is safe because it compiles, not because
-//! every call of it was checked. [`policy`] is the second barrier: a browser runs the scripts whose hashes stand there and no other.
+//! The inner string is private to this file and only these five calls extend it: a page is safe because it
+//! compiles, not because every call was checked. [`policy`] is the second barrier: a browser runs only the
+//! scripts whose hashes it lists.
 
 #[cfg(feature = "page")]
 use base64::Engine as _;

@@ -1,4 +1,4 @@
-//! The JSON schema of every report, derived from the types that are serialised.
+//! The JSON schema of every report, derived from the serialised types.
 //!
 //! ```text
 //!   #[derive(Serialize, JsonSchema)] ──▶ add(generator) ──▶ reports.schema.json ──▶ requirements, the reference of fields, other programs
@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The file is JSON Schema 2020-12; a report of kind `window` matches `#/$defs/window`. It is written by
-//! `UPDATE_SCHEMA=1 cargo test -p catchment-cli --all-features --test cli schema`, and the same test fails where it is stale. Programs
-//! therefore need neither the feature `schema` nor the time to derive it.
+//! `UPDATE_SCHEMA=1 cargo test -p catchment-cli --all-features --test cli schema`, and the same test fails if
+//! the file is stale. Programs therefore need neither the feature `schema` nor the time to derive it.
 
 use catchment_core::run::ReportSchema;
 use serde_json::Value;

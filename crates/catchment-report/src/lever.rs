@@ -1,4 +1,4 @@
-//! The first contact as the kinematic method sees it, and what describes it.
+//! Report of the first contact in the kinematic method.
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;

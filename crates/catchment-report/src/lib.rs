@@ -1,4 +1,4 @@
-//! What a person or another program receives.
+//! Output of results, for people and other programs.
 //!
 //! ```text
 //!                  ┌─ envelope    versioned JSON; json_schema has its schema, derived from the types
@@ -14,8 +14,8 @@
 //!                  what has a report of its own: its JSON and its document
 //! ```
 //!
-//! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
-//! every machine format; for people the design's own unit and degrees stand beside them.
+//! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians
+//! in every machine format; for people they are also given in the design's own unit and degrees.
 
 mod answer;
 #[cfg(feature = "zarr")]

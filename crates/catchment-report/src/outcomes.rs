@@ -1,4 +1,4 @@
-//! What became of listed pose errors: the table as it came with what was found out, or JSON.
+//! Outcomes of listed pose errors: the input table with result columns, or JSON.
 
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;

@@ -1,4 +1,4 @@
-//! Finished designs in a folder beside the result, until that is complete.
+//! Finished designs in a temporary folder beside the result, until the result is complete.
 
 use crate::write;
 use catchment_study::sweep::{Found, Keep};

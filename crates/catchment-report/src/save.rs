@@ -1,4 +1,4 @@
-//! Where an answer goes: complete or not at all.
+//! Output of a result to files: complete or absent.
 //!
 //! ```text
 //!   save           DIR/report.json, DIR/result.zarr, and every picture as .png and .svg

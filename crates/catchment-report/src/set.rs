@@ -1,6 +1,6 @@
-//! The accepted set as one file for another program: which ending stands for what.
+//! The accepted set as a file for another program, by file extension.
 //!
-//! | ending | what | with |
+//! | extension | content | for |
 //! |---|---|---|
 //! | `.vti` | every cell over up to three axes | [`image`], ParaView and `vtk` |
 //! | `.vtp` | the border of the accepted cells over up to three axes | [`border`], ParaView, `vtk`, `pyvista` |

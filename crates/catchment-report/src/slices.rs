@@ -1,4 +1,4 @@
-//! Slices as versioned JSON, and what people and programs read of them.
+//! Slices as versioned JSON, text and tables.
 
 use super::schema::{AcceptanceReport, Axis, OnaaReport, WarningReport, axes};
 use catchment_core::acceptance::Warning;

@@ -1,4 +1,4 @@
-//! The results of a design that are reported, one line each: from it come the type of the report and its JSON schema.
+//! The reported results of a design, a line each: from it come the type of the report and its JSON schema.
 
 use crate::ReportOf;
 

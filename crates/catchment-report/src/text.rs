@@ -1,4 +1,4 @@
-//! What files of text and tables for programs are written with.
+//! Writers of text files and of tables for programs.
 
 use catchment_core::terminal::printable;
 

@@ -1,4 +1,4 @@
-//! The way of one pose from first contact to its end: as versioned JSON, as text, as a table for programs.
+//! The trajectory of a pose from first contact to its end: as versioned JSON, text, and tables for programs.
 
 use super::document::Printed;
 use super::envelope::{Body, Envelope};

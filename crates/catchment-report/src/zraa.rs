@@ -1,4 +1,4 @@
-//! The offsets that are corrected without any rotation, and what describes them.
+//! Report of the offsets that are corrected without rotation.
 
 use super::document::OfDesign;
 use catchment_core::design::Design;

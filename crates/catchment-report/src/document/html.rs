@@ -1,4 +1,4 @@
-//! A document as a page of HTML that needs no other file.
+//! A document as a self-contained page of HTML.
 
 use super::Described;
 use crate::html::Html;

@@ -1,4 +1,5 @@
-//! Renderers of a [`Document`]: one description of a result, read in a terminal, a page, a text file or a spreadsheet.
+//! Renderers of a [`Document`]: from a single description of a result to terminal text, a page, a text file
+//! or a spreadsheet.
 //!
 //! ```text
 //!   Document ──┬─▶ text      names in a column, tables aligned, wrapped to the width of the terminal
@@ -7,7 +8,8 @@
 //!              └─▶ csv       the first table with keys, every digit
 //! ```
 //!
-//! Names of designs and files are foreign text: what could steer a terminal is replaced, what means something in Markdown or HTML is escaped.
+//! Names of designs and files are foreign text: characters that control a terminal are replaced, and
+//! characters with a meaning in Markdown or HTML are escaped.
 
 mod html;
 mod markdown;

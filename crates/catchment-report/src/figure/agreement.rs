@@ -1,4 +1,4 @@
-//! How each two methods of a design agree.
+//! Agreement of each pair of methods for a design.
 
 use super::Picture;
 use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};

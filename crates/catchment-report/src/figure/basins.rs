@@ -1,4 +1,5 @@
-//! The basins of a landscape: how deep and how large every minimum is, and what a depth tolerance would accept.
+//! The basins of a landscape: depth and size of every minimum, and the accepted share for each depth
+//! tolerance.
 //!
 //! ```text
 //!   accepted │   ┌─────────┐               both frames have one scale of depths, logarithmic between a place for 0 and one for ∞: above, the

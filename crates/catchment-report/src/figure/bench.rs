@@ -1,4 +1,4 @@
-//! Trials of a plan over what docks: one panel for each value of the errors that do not lie across.
+//! Trials of a plan over the accepted set: a panel for each combination of the errors off the plane.
 
 use super::super::{PlanReport, ValidationReport};
 use super::Picture;

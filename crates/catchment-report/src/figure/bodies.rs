@@ -1,4 +1,5 @@
-//! The shapes behind the contact space: flat ones as polygons over their axes, solid ones in space, a colour for every piece.
+//! The solids behind the contact space: flat ones as polygons over their axes, others in space, with a colour
+//! for every piece.
 
 use super::super::solids::{bounds, in_words, is_angle};
 use super::draw::axis::{Frame, Scale, Units};

@@ -1,4 +1,4 @@
-//! How likely drop tests dock: over two errors, beside the border of exact motions; and against speed.
+//! Docking probability of drop tests: over two errors, with the border of exact motions; and over speed.
 
 use super::draw::axis::{Frame, Units, short};
 use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};

@@ -1,4 +1,4 @@
-//! Sum and ONAA against resolution and against time, one line per method.
+//! Sum and ONAA against resolution and against time, with a line for each method.
 
 use super::Picture;
 use super::draw::axis::short;

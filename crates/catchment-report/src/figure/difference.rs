@@ -1,4 +1,5 @@
-//! Where two acceptances differ: one map of two errors, or the slices through zero of every pair in a triangle.
+//! Differences of two acceptances: a map of two errors, or the slices through zero of every pair in a
+//! triangle.
 
 use super::draw::axis::{Units, short};
 use super::draw::colour::{Rgb, hex};

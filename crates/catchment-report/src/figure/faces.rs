@@ -1,4 +1,4 @@
-//! Planar designs side by side at one scale: mated, and at the largest offset from which contact brings them home.
+//! Planar designs side by side at a common scale: mated, and at the largest offset that contact corrects.
 //!
 //! ```text
 //!    ▓╲  ╱▓   ▓╱╲  ▓      row 1: mated, with H and D

@@ -1,4 +1,5 @@
-//! What friction takes of what docks without it, and what sticks first.
+//! Share of the frictionless successes that still docks at each friction coefficient, and the contacts that
+//! stick first.
 //!
 //! ```text
 //!   100 % ──●──●           every point is a share of the poses that dock without friction: those that dock still. Poses that dock only

@@ -1,10 +1,11 @@
-//! Text of pictures as the outlines of its glyphs, so that drawing it needs no shaping of text.
+//! Text of pictures as the outlines of its glyphs, so that no text shaping is needed.
 //!
 //! ```text
 //!   <text x= y= font-size= text-anchor=>Sum</text>  ──▶  <path d="M … Z"/>     glyph by glyph: advance of the font, and its kerning of pairs
 //! ```
 //!
-//! Left to right, one line; no ligatures and no joining scripts. A character that the font does not have is its empty box.
+//! Left to right, a single line; no ligatures and no joining scripts. A character that the font lacks is
+//! drawn as its empty box.
 
 use super::FigureError;
 use resvg::usvg::roxmltree::{Document, Node};

@@ -1,4 +1,4 @@
-//! What a half withstands: forces sideways over their direction, torques as bars.
+//! Holding forces: lateral forces over their direction, torques as bars.
 
 use super::draw::colour::{CURVES, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline};

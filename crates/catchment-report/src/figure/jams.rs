@@ -1,4 +1,4 @@
-//! Jams and rests: each cut through what touches, and in space, with the features that hold it.
+//! Jams and rests: each cut through its contacts, and in space, with the features that hold it.
 
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::plane::{Patch, Plane};

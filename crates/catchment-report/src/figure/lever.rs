@@ -1,4 +1,5 @@
-//! The first contact as the kinematic method sees it: rotation points, lever arms and angles on the section of both halves.
+//! The first contact in the kinematic method: rotation points, lever arms and angles on the section of both
+//! halves.
 
 use super::draw::arrow::arrow;
 use super::draw::axis::Frame;

@@ -1,4 +1,4 @@
-//! Maps over two errors: what slices, height maps and the overview share.
+//! Maps over two errors: the common part of slices, height maps and the overview.
 
 use super::draw::axis::{Frame, Units, short};
 use super::draw::colour::{self, Rgb, hex};

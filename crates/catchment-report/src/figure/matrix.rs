@@ -1,4 +1,4 @@
-//! All slices of a design in one picture: a triangle of maps that share their axes.
+//! All slices of a design in a single picture: a triangle of maps with common axes.
 //!
 //! ```text
 //!      y │▒▒▒│              ╱╲   the halves, in the corner that is free

@@ -1,11 +1,11 @@
-//! What pictures take of the memory, known before they are drawn.
+//! Memory needs of pictures, known before they are drawn.
 //!
 //! ```text
 //!   fonts, pixels of a page, its encoder    PAGE_BYTES; the pages of a run RUN_BYTES
 //!   maps                                    MAP_BYTES per cell: colours, their PNG, and that once more as text in the SVG
 //! ```
 //!
-//! Measured, as everything that `tests/memory.py` measures again.
+//! Measured; `tests/memory.py` repeats the measurement.
 
 use catchment_core::acceptance::Domain;
 use catchment_core::advice::Advice;

@@ -31,11 +31,11 @@
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!
-//! Pictures of a run take its report and measure nothing again: their numbers are those of its table, rounded by the
+//! Pictures of a run use its report and compute nothing: their numbers are those of its table, rounded by the
 //! same functions.
 //!
-//! For people: lengths in the design's unit where it has one (else D), angles in degrees. The same input gives the
-//! same bytes. Maps and solids are embedded images, everything else is vector.
+//! For people: lengths in the design's unit if it has a unit (else D), angles in degrees. The same input
+//! gives the same bytes. Maps and solids are embedded images, everything else is vector graphics.
 
 mod agreement;
 mod answer;

@@ -1,4 +1,4 @@
-//! Tables of numbers as maps: every cell in the colour of its number, with the number in it.
+//! Tables of numbers as maps: every cell shows its number, in the colour for that number.
 //!
 //! ```text
 //!            a     b                      a     b

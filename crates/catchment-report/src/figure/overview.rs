@@ -1,4 +1,4 @@
-//! The picture of a design: its halves, its area of acceptance, its heights, side by side.
+//! The overview of a design: its halves, its area of acceptance, its heights, side by side.
 
 use super::draw::axis::Units;
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};

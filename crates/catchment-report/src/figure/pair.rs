@@ -1,5 +1,5 @@
-//! The pair as it was understood: both halves in space, drawn apart, and cut through where they are mated, or where they first touch
-//! if that is no mated pose.
+//! The pair as the program reads it: both halves in space, drawn apart, and in section in the mated pose, or
+//! at first contact if there is no valid mated pose.
 
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use super::section::{Placement, View};

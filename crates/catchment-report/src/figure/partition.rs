@@ -1,5 +1,5 @@
-//! The partition over two errors: every part of the contact space in the colour of its fate, and the exact outline of
-//! what is accepted.
+//! The partition over two errors: every part of the contact space in the colour of its outcome, and the exact
+//! outline of the accepted set.
 
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};

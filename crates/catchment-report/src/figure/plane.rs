@@ -1,4 +1,4 @@
-//! The plane along the approach axis in which halves are cut: where they touch.
+//! The cutting plane along the approach axis, chosen through the contacts of the halves.
 //!
 //! ```text
 //!   seen from above        ↑ normals of the contacts      the plane holds the main direction of their horizontal parts,

@@ -1,4 +1,4 @@
-//! Pixels: PNG images made from cells, and PNG pictures drawn from SVG.
+//! Raster images: PNG from cells, and PNG drawn from SVG.
 
 use super::FigureError;
 use super::draw::colour::Rgb;

@@ -1,4 +1,5 @@
-//! Lateral offsets that contact corrects without any rotation: an area with the largest square in it, or a stretch of one axis.
+//! Lateral offsets that contact corrects without rotation: an area with the largest square in it, or an
+//! interval of a single axis.
 
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};

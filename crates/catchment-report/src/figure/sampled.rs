@@ -1,4 +1,5 @@
-//! Sampled poses by their outcomes: a triangle of scatter plots, one per two errors, with the tolerance window.
+//! Sampled poses by their outcomes: a triangle of scatter plots for all pairs of errors, with the tolerance
+//! window.
 //!
 //! ```text
 //!      y │· ┌┐ ·│            · missed or jammed     ● docked
@@ -6,7 +7,8 @@
 //!          x       y
 //! ```
 //!
-//! A plot shows all poses, whatever their other errors: dots of either outcome lie beside each other.
+//! A plot shows all poses, whatever their other errors: dots of different outcomes may lie next to each
+//! other.
 
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};

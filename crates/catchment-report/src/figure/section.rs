@@ -1,7 +1,8 @@
-//! Both halves cut by a plane along the approach axis: y = constant in the world frame, or through what touches ([`super::plane`]).
+//! Both halves cut by a plane along the approach axis: y = constant in the world frame, or through the
+//! contacts ([`super::plane`]).
 //!
-//! The usual cut runs through y = 0, unless facets lie in that plane or nothing meets it (a connector in two layers): then one cut through the
-//! middle of either side is drawn, the farther one paler behind the nearer one.
+//! The usual cut is y = 0. If facets lie in that plane or no solid meets it (a connector in two layers), a
+//! cut through the middle of either side is drawn, the farther one paler behind the nearer one.
 
 use super::draw::axis::{Frame, Scale, Units, short};
 use super::draw::colour::{self, Rgb, hex, mix};

@@ -1,4 +1,4 @@
-//! Outcomes over pairs of errors, all others fixed.
+//! Outcomes over pairs of errors, with all others fixed.
 
 use super::draw::axis::{Units, short};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, width_of};

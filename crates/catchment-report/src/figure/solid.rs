@@ -1,8 +1,9 @@
 //! Both halves in space: parallel projection, shaded facets, a depth buffer.
 //!
-//! A depth buffer shows halves that touch or overlap as they are, which sorting facets by distance cannot. The image
-//! is drawn three times larger than shown and averaged down; lines mark edges where the surface bends. Of an edge those places are drawn beside
-//! which a facet that it borders is seen: a depth alone would show edges that lie in a facet of another body, and ends of edges that go backwards.
+//! A depth buffer shows touching or overlapping halves correctly, which sorting facets by distance cannot.
+//! The image is drawn three times larger than shown and averaged down; lines mark edges at which the surface
+//! bends. A point of an edge is drawn if an adjacent facet is visible next to it: depth alone would show
+//! edges that lie in a facet of another body, and the ends of receding edges.
 
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};

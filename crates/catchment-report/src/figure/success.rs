@@ -1,4 +1,5 @@
-//! The success of robots against the factor of their standard deviations, and what it gains to halve one of them.
+//! The success of robots against the factor of their standard deviations, and the gain from halving each of
+//! them.
 
 use super::Picture;
 use super::draw::axis::{Units, short};

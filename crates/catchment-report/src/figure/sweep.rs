@@ -1,4 +1,4 @@
-//! A sweep: the Sum of every design in colours, and what each accepts near zero.
+//! A sweep: the Sum of every design in colours, and the accepted set of each near zero.
 //!
 //! ```text
 //!            cor -1    0    1                      cor -1     0      1
@@ -9,7 +9,7 @@
 //!            └─────┴─────┴─────┘
 //! ```
 //!
-//! Rows are the first axis, columns the second; further ones are maps side by side, or further rows.
+//! Rows are the first axis, columns the second; further axes are maps side by side, or further rows.
 
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};

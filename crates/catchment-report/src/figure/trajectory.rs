@@ -1,4 +1,4 @@
-//! One motion: the moving half along its path in section, and the errors it still has.
+//! A motion: the trajectory of the moving half in section, and its remaining errors.
 
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};

@@ -1,5 +1,5 @@
-//! The zero-rotation area of acceptance in theory and by trials, side by side over the error box: a dot for every trial, ringed where it
-//! lies on the wrong side.
+//! The zero-rotation area of acceptance in theory and by trials, side by side over the error box: a dot for
+//! every trial, ringed if it is on the wrong side.
 
 use super::super::TrialsReport;
 use super::Picture;

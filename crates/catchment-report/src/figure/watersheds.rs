@@ -1,8 +1,8 @@
-//! From a connector to its area of acceptance by flooding, in four panels: the halves, the heights, the first labels, what merging
-//! leaves of them.
+//! From a connector to its area of acceptance by flooding, in four panels: the halves, the heights, the first
+//! labels, and the labels after merging.
 //!
-//! Every first watershed has a colour of its own, so that what sampling alone has cut apart shows; after merging it has that of what
-//! becomes of it.
+//! Every first watershed has its own colour, which shows the divisions caused by sampling alone; after
+//! merging it has the colour of its outcome.
 
 use super::draw::axis::Units;
 use super::draw::colour::{self, Rgb, mix};

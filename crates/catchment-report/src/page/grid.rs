@@ -4,8 +4,9 @@
 //!   cells, the first axis fastest ──▶ chunks of whole leading axes ──▶ each cell ⊕ the one a row before ──▶ deflate
 //! ```
 //!
-//! A row is one line of the first axis. Where outcomes do not change from row to row zeros are left, of which deflate leaves
-//! nothing. Every chunk is read without the others, so that a page unpacks what it shows.
+//! A row is a line along the first axis. If outcomes do not change from row to row, the differences are
+//! zeros, which deflate removes. Every chunk can be read separately, so that a page unpacks only the chunks
+//! that it shows.
 
 use super::{PageError, deflated};
 use crate::schema::{Axis, axes};

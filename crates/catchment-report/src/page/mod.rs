@@ -1,4 +1,4 @@
-//! A result as one page to click: a file without a network, for any browser.
+//! A result as an interactive page: a single file without network access, for any browser.
 //!
 //! ```text
 //!   report · jams · window   JSON ──────────────────────────┐
@@ -6,15 +6,16 @@
 //!   halves                   Half::to_bytes, deflate ───────┤      viewer (script, style), motions (WebAssembly)
 //! ```
 //!
-//! What is read from a design or a stored result is never markup: `html` is the only way into the page, and the page's own policy names the one
-//! script that may run by its hash.
+//! Text from a design or a stored result is never markup: `html` is the only way into the page, and the
+//! page's own policy permits only the script with the stated hash.
 //!
-//! The page draws what is here and computes no acceptance. A pose that is clicked is followed in the page, by the same code as
-//! [`Problem::trace`](catchment_core::problem::Problem::trace), compiled to WebAssembly. The viewer is built from `viewer/` of the source tree and lies here
-//! as it is shipped, so that no other tool is needed. The same result gives the same bytes: no time stands in a page.
+//! The page draws the stored results and computes no acceptance. It follows a clicked pose by the same code
+//! as [`Problem::trace`](catchment_core::problem::Problem::trace), compiled to WebAssembly. The viewer is
+//! built from `viewer/` of the source tree and committed here as it is shipped, so that no other tool is
+//! needed. The same result gives the same bytes: a page contains no time.
 //!
-//! Not promised: motions to the last bit, where the browser's machine rounds sines otherwise. Lengths in D, angles in radians; the page shows the
-//! design's own unit and degrees.
+//! Not promised: motions to the last bit, if the browser's machine rounds sines differently. Lengths in D,
+//! angles in radians; the page shows the design's own unit and degrees.
 
 mod grid;
 

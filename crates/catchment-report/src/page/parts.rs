@@ -1,4 +1,4 @@
-//! What a page is made of: a result that was just computed or one that was stored, its halves, and the studies beside it.
+//! The parts of a page: a result, computed or stored, its halves, and its studies.
 
 use super::Page;
 #[cfg(feature = "zarr")]

@@ -1,4 +1,4 @@
-//! The basins: the largest of them, and what the depth tolerance decides.
+//! The basins: the largest of them, and the effect of the depth tolerance.
 
 use crate::schema::{BasinsReport, RunBody};
 use catchment_core::document::{Column, Document, Format, Table, grouped, percent, rounded, significant};

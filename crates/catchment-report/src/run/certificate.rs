@@ -1,4 +1,4 @@
-//! What is certain: the three parts of the error box, and how well the seat holds.
+//! Certified results: the three parts of the error box, and the retention of the seat.
 
 use crate::schema::RunBody;
 use catchment_core::document::{Document, grouped, percent, rounded_down, significant};

@@ -1,4 +1,4 @@
-//! What people read of a run.
+//! Text form of a run.
 
 mod basins;
 mod certificate;

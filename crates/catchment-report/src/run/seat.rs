@@ -1,4 +1,4 @@
-//! The seat: how deep, how much play, how far from zero docked halves rest.
+//! The seat: its depth, its play, and the residual misalignment of docked halves.
 
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Document, Table, Units};

@@ -1,4 +1,4 @@
-//! The basins of a flooded landscape: which equilibria there are, how deep, and what the tolerance decides.
+//! The basins of a flooded landscape: its equilibria, their depths, and the effect of the tolerance.
 
 use super::Report;
 use catchment_core::acceptance::{Acceptance, Outcome};

@@ -1,4 +1,4 @@
-//! The polyhedral partition behind the outcomes: how large it was, and its own exact measure.
+//! The polyhedral partition behind the outcomes: its size, and its exact measure.
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::method::partition::{Counts, Partition};

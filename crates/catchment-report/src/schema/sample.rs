@@ -1,7 +1,7 @@
-//! The Sum corrected by exact descents: an estimate that owes its truth to no grid.
+//! The Sum corrected by exact motions: an estimate that does not depend on the accuracy of the grid.
 //!
-//! A sample turns the report's Sum from the measure of the accepted cells into the unbiased estimate of
-//! [`catchment_core::method::correction`], with its interval. The measure of the cells stays beside it.
+//! A sample changes the report's Sum from the measure of the accepted cells to the unbiased estimate of
+//! [`catchment_core::method::correction`], with its interval. The measure of the cells is still reported.
 
 use super::Report;
 use catchment_core::method::certified::Certificate;

@@ -1,4 +1,4 @@
-//! A design and an acceptance to report on.
+//! A design and an acceptance for report tests.
 
 use super::*;
 use catchment_core::acceptance::{Domain, Outcome};

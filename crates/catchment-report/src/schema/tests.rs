@@ -1,4 +1,4 @@
-//! What is written reads back, and is named as the contract says.
+//! Written reports read back, with the names of the contract.
 
 use super::testing::*;
 use super::*;

@@ -1,4 +1,4 @@
-//! The watersheds behind the outcomes: how many there were before merging and after.
+//! The watersheds behind the outcomes: their numbers before and after merging.
 
 use catchment_core::method::flood::{Counts, Watersheds};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! The shapes behind the contact space: what they are made of, and their files.
+//! The solids behind the contact space: their content, and their files.
 //!
 //! ```text
 //!   Solids ──▶ vtp   VTK's `PolyData` in XML, text: ParaView, pyvista, vtk; numbers per face

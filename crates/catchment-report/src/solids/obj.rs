@@ -1,7 +1,7 @@
 //! Wavefront OBJ: corners, and a group of faces for every convex body.
 //!
-//! Groups are named after what they come from: `body3_fixed0_moving1_slice7`. Faces are polygons, counter-clockwise seen
-//! from outside; corners are not shared between bodies.
+//! Groups are named after their origin: `body3_fixed0_moving1_slice7`. Faces are polygons, counter-clockwise
+//! seen from outside; corners are not shared between bodies.
 
 use super::heading;
 use catchment_core::document::number;

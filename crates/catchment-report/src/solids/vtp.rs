@@ -8,7 +8,7 @@
 //! | `height` | z of the middle of the face, in D |
 //! | `up` | z of its outward normal where it is part of a solid: above 0 it can be met from above |
 //!
-//! Text keeps every digit: what is read back is what was computed. Corners are not shared between bodies.
+//! Text keeps every digit: reading it back gives the computed numbers. Corners are not shared between bodies.
 
 use super::{heading, middle};
 use catchment_core::document::number;

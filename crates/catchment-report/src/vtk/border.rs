@@ -1,4 +1,4 @@
-//! The border of the accepted set as VTK's `PolyData`: the faces of cells that part accepted from not accepted.
+//! The border of the accepted set as VTK's `PolyData`: the faces between accepted and other cells.
 //!
 //! ```text
 //!   three axes   a closed surface, outward; its volume is that of the accepted cells

@@ -6,12 +6,13 @@
 //!   trace, halves ──▶ motion   .vtp, the way, the contacts along it, both halves
 //! ```
 //!
-//! Lengths are in D and angles in radians, as in every machine format. An image holds cells, not points: what a cell says was decided at
-//! its centre, and the number of accepted cells times the measure of one is the measure that the grid gives. The border runs along
-//! the faces of cells, so that what it encloses is exactly that measure; it is no smoother than the grid.
+//! Lengths are in D and angles in radians, as in every machine format. An image holds cells, not points: the
+//! value of a cell was decided at its centre, and the number of accepted cells times the measure of a cell is
+//! the measure of the grid. The border runs along the faces of cells, so that it encloses exactly that
+//! measure; it is no smoother than the grid.
 //!
-//! Not promised: what lies between two centres. Where a grid has more axes than are shown, outcome, border and height are those of one section,
-//! and `share` is about all of it.
+//! Not promised: outcomes between two centres. If a grid has more axes than are shown, outcome, border and
+//! height are those of a single section, and `share` covers the whole grid.
 
 mod border;
 mod image;

@@ -1,4 +1,4 @@
-//! A motion as VTK's `PolyData`: the way of the face centre, the contacts along it, both halves.
+//! A motion as VTK's `PolyData`: the path of the face centre, the contacts along it, both halves.
 //!
 //! | `part` of a cell | what it is |
 //! |---|---|
@@ -6,8 +6,9 @@
 //! | 1 | the way of the moving half's face centre, one line |
 //! | 2, 3, 4 | the fixed half; the moving half at first contact, and at the end |
 //!
-//! Every point carries its `waypoint` (−1 of the halves), the pose error there (`x`, `y` in D, `roll`, `pitch`, `yaw` in rad), the path length
-//! `travelled` (D, in the ρ-metric) and the `normal` of a contact, 0 elsewhere; every cell the `outcome` of the motion.
+//! Every point carries its `waypoint` (−1 for the halves), the pose error there (`x`, `y` in D, `roll`,
+//! `pitch`, `yaw` in rad), the path length `travelled` (D, in the ρ-metric) and the `normal` of a contact, 0
+//! elsewhere; every cell the `outcome` of the motion.
 
 use super::xml::File;
 use crate::TraceReport;

@@ -1,6 +1,7 @@
-//! VTK's XML: a head that says what there is, then all numbers as they lie in memory, least byte first.
+//! VTK's XML: a head that describes the arrays, then all numbers in binary form, little-endian.
 //!
-//! An array is its length in bytes (64 bits) and its bytes. What follows the underscore is no XML, and VTK does not read it as such.
+//! An array is its length in bytes (64 bits) and its bytes. The data after the underscore is not XML, and VTK
+//! does not read it as such.
 
 use std::fmt::Write;
 

@@ -1,11 +1,11 @@
-//! The few calls that change files: one gate in front of them, and in tests a fault in any of them.
+//! The few calls that change files, behind a common gate; tests can inject a fault into any of them.
 //!
 //! ```text
 //!   permit() ──▶ step, step, …      none begins after abandon(); those that have begun end first
 //! ```
 //!
-//! Several steps under one permit, such as an exchange and what must follow it, are not torn apart by [`abandon`]. A
-//! process that is killed is another matter: it stops between any two steps, and the next start sees to it.
+//! [`abandon`] does not separate several steps under the same permit, such as an exchange and its follow-up.
+//! A killed process can stop between any two steps; the next start repairs that.
 
 use std::fs::{self, DirBuilder, File, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Write};

@@ -1,4 +1,4 @@
-//! Why something could not be written: each a fact with what helps, sorted from what the system says.
+//! Errors of writing: each a fact with advice, classified by the error of the system.
 
 use super::disk::is_exhausted;
 use super::lock::Holder;

@@ -1,4 +1,4 @@
-//! Faults in the calls that change files, for tests: in everything below one folder, so that tests do not meet.
+//! Faults in the calls that change files, for tests: limited to a folder, so that tests do not interfere.
 
 use std::io;
 use std::path::{Path, PathBuf};

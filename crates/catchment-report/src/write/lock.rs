@@ -1,4 +1,4 @@
-//! The lock that keeps others away from a folder while it is looked at and exchanged.
+//! The lock that excludes other processes while a folder is inspected and exchanged.
 //!
 //! ```text
 //!   claim ──try──▶ free: ours until it is dropped
@@ -7,10 +7,11 @@
 //!                  └─ tried again until patience is over  ──▶ refused, with the number of the process that holds it
 //! ```
 //!
-//! The system's advisory lock of a whole file (`flock`). Linux says in `/proc/locks` who holds one; no other system does.
+//! It is the system's advisory lock of a whole file (`flock`). Only Linux reports the holder of such a lock,
+//! in `/proc/locks`.
 //!
-//! *Not promised:* that the holder is named where the file system numbers its devices in another way than `stat` does (btrfs,
-//! some overlays), or where it runs on another machine.
+//! *Not promised:* that the holder is named if the file system numbers its devices differently from `stat`
+//! (btrfs, some overlays), or if it runs on another machine.
 
 use super::WriteError;
 use catchment_core::exec::{Exec, Stopwatch};

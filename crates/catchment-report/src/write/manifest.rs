@@ -1,11 +1,11 @@
-//! The manifest of a folder: who wrote it, and exactly what.
+//! The manifest of a folder: its program, and its exact content.
 //!
 //! ```text
 //!   out/.catchment.json   { "catchment": "0.1.0", "kind": "run", "files": { "report.json": "<SHA-256>", … } }
 //! ```
 //!
-//! It is written last, so a folder without it is not complete or not ours. What is in the folder and not in the manifest,
-//! or differs from it, belongs to somebody else. What is missing is nobody's loss.
+//! It is written last, so a folder without it is incomplete or not ours. Files that are not in the manifest,
+//! or differ from it, belong to others. Missing files are ignored.
 
 use super::disk::{Permit, is_exhausted, open_up};
 use catchment_core::design::hex;

@@ -1,21 +1,22 @@
-//! Writing: complete or not at all, and never over what others wrote.
+//! Writing of files and folders: complete or absent, and never over the files of others.
 //!
 //! ```text
 //!   file      .name.PID.MARK.tmp  ──write, fsync──▶  rename to name
 //!   folder    .name.PID.MARK.tmp/ ──fill, manifest, fsync──▶  exchange with name  ──look again──▶  remove the old
 //! ```
 //!
-//! Everything is written beside its place under a temporary name and takes the place when it is on the disk. Whoever
-//! looks at the place sees the old content or the new, and a failed run leaves nothing behind. What a killed run leaves is
-//! put in order by whoever writes to the same place next.
+//! Everything is written beside its place under a temporary name and moved to its place when it is on the
+//! disk. A reader sees the old content or the new, and a failed run leaves nothing behind. Remains of a
+//! killed run are removed by the next writer to the same place.
 //!
-//! A folder holds a manifest of what was written into it ([`MANIFEST`]). Only a folder of the same kind is replaced,
-//! and only if nothing in it was added or changed since; an empty folder may be used. Links are followed: what they
-//! lead to is replaced, and they stay. Permissions of what is replaced stay.
+//! A folder holds a manifest of its files ([`MANIFEST`]). Only a folder of the same kind is replaced, and
+//! only if nothing in it was added or changed since; an empty folder may be used. Links are followed: their
+//! target is replaced, and the link stays. The permissions of replaced files stay.
 //!
-//! *Not promised:* that a folder never vanishes for a moment where the system cannot exchange two (some network disks,
-//! Windows), and that what is put into the old folder in the instant between the last look and its removal is found at
-//! its place again. It is not removed: it stays in the hidden folder beside it, and the next run says so.
+//! *Not promised:* that a folder never vanishes for a moment if the system cannot exchange two folders (some
+//! network disks, Windows), and that a file which is added to the old folder between the last check and its
+//! removal stays at its place. Such a file is not deleted: it stays in the hidden folder beside it, and the
+//! next run reports it.
 
 mod disk;
 mod error;

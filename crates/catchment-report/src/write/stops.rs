@@ -1,4 +1,4 @@
-//! Every writer stopped at every step: the process dies there, or the system refuses it.
+//! Every writer stopped at every step: the process is killed there, or the system call fails.
 
 use super::faults::{self, Fault};
 use super::tests::{KIND, home, names, save, saved};

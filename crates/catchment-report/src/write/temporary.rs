@@ -1,15 +1,17 @@
-//! What is being written, beside its place; and what a killed process left there.
+//! Temporary files and folders beside their final place, and the remains of killed processes.
 //!
 //! ```text
 //!   .NAME.PID.MARK.tmp   new, not complete; after an exchange: old, to be removed
 //!   .NAME.PID.MARK.old   old, stepped aside where the system cannot exchange
 //! ```
 //!
-//! MARK is a digest of what stands before it, which nobody writes by chance: what has it is ours, whatever is in it. What looks alike
-//! without it is another's, unless it holds a manifest, or nothing at all.
+//! MARK is a digest of the text before it, which cannot occur by chance: a name with a valid mark is ours,
+//! whatever its content. A similar name without it belongs to others, unless it holds a manifest, or nothing
+//! at all.
 //!
-//! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
-//! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
+//! A writer holds a lock on its temporary folder, which ends with the process. The next start can therefore
+//! detect abandoned folders, on every machine that shares the disk. On systems without such locks, remains
+//! stay.
 
 use super::disk::{Permit, is_exhausted, permit};
 use super::lock::is_at;

@@ -1,4 +1,4 @@
-//! What is promised of files, one by one.
+//! The guarantees for files, one by one.
 
 use super::faults::{self, Fault};
 use super::*;

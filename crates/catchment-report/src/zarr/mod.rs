@@ -9,8 +9,9 @@
 //!   └── x, y, …        f64, centres of the cells, in D and rad
 //! ```
 //!
-//! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are reversed. The
-//! metadata are consolidated. The same run writes the same bytes but for the report's `timing`.
+//! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are
+//! reversed. The metadata are consolidated. The same run writes the same bytes except for the report's
+//! `timing`.
 
 mod outcomes;
 mod read;

@@ -1,11 +1,12 @@
-//! The outcomes of a group, and its heights, read back: only what this program writes, and never more than the report announces.
+//! Reads the outcomes and heights of a group: only layouts that this program writes, and never more than the
+//! report announces.
 //!
 //! ```text
 //!   outcome/zarr.json   must be what is written: u8 (heights: f32) over the report's cells, its chunks, gzip
 //!   outcome/c/i/j/…     one chunk after the other: whole rows, so each goes on where the one before it ended
 //! ```
 //!
-//! A chunk that unpacks to more than it should hold is refused when the first byte too many arrives.
+//! A chunk that unpacks to more than its expected size is rejected at the first excess byte.
 
 use super::{CHUNK_CELLS, chunk_shape, unravel};
 use crate::bounded;

@@ -1,5 +1,6 @@
-//! Reading a group back: the report and the outcomes, checked against each other. Nothing is believed: a group may come from
-//! anywhere, so files are read up to a limit, numbers are checked before they are used, and only what this program writes is read.
+//! Reads a group: the report and the outcomes, checked against each other. A group is untrusted input: files
+//! are read up to a limit, numbers are checked before use, and only layouts that this program writes are
+//! accepted.
 
 use super::outcomes::{self, Refused};
 use super::{LAYOUT, ZarrError};

@@ -1,4 +1,4 @@
-//! Arrows: directions, and lengths between two places.
+//! Arrows: directions, and distances between two points.
 
 use super::svg::{JOIN, Svg, polyline};
 

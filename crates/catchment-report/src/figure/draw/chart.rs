@@ -1,4 +1,4 @@
-//! Lines over a logarithmic or an even scale, each with its interval as a band.
+//! Lines over a logarithmic or a linear scale, each with its interval as a band.
 
 use super::axis::{Frame, Scale, tick_label};
 use super::colour::{Rgb, hex};

@@ -1,4 +1,4 @@
-//! Colours that also colour-blind readers tell apart: blue and orange by hue, grey and purple by lightness.
+//! Colours that colour-blind readers can distinguish: blue and orange by hue, grey and purple by lightness.
 
 use catchment_core::acceptance::Outcome;
 

@@ -1,6 +1,6 @@
-//! What pictures are drawn with: a thin writer of SVG, frames with round ticks, charts, colours.
+//! Drawing primitives: a thin writer of SVG, frames with round ticks, charts, colours.
 //!
-//! Public so that a picture of something else looks like those of this crate:
+//! The module is public, so that other pictures can have the style of this crate:
 //!
 //! ```
 //! use catchment_report::figure::Picture;

@@ -1,4 +1,5 @@
-//! A thin writer of SVG: just what the pictures need, numbers to a hundredth of a unit.
+//! A thin writer of SVG with only the elements that the pictures need; numbers have a resolution of a
+//! hundredth of a unit.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

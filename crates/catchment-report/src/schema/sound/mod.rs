@@ -1,4 +1,5 @@
-//! What must hold of a report that is read back, beyond its form: numbers in their ranges and intervals in their order.
+//! Validity of a report that is read back, beyond its form: numbers within their ranges and intervals in
+//! order.
 
 mod parts;
 

@@ -1,4 +1,4 @@
-//! The same of the parts that only some methods have: basins, a partition, a sample.
+//! Validity of the parts that only some methods have: basins, a partition, a sample.
 
 use super::{UnsoundError, hold, not_negative, share};
 use crate::schema::{BasinsReport, RunBody, WindowSection};
