@@ -1,4 +1,5 @@
-//! A filled-in form: a TOML file of lengths, angles and choices, read whole, with every problem in its place.
+//! A filled-in form: a TOML file of lengths, angles and choices, read completely, with the place of every
+//! error.
 //!
 //! ```
 //! use catchment::design::SourceText;
@@ -24,9 +25,9 @@
 //! assert!(refused.to_string().contains("arm.toml:2:1: unknown key `lenght` in [arm]; did you mean `length`?"));
 //! ```
 //!
-//! Lengths are in millimetres, bare or with a unit; angles are in radians, bare or with a unit. A key that is absent takes its
-//! default, and one without a default is asked for. A getter returns its default, or the end of its range, also where the value
-//! is wrong: the problem is on the list then, and [`Form::read`] returns the list.
+//! Lengths are in millimetres, bare or with a unit; angles are in radians, bare or with a unit. An absent key
+//! has its default; a key without a default is required. A getter also returns its default, or the end of its
+//! range, if the value is wrong: the error is then on the list, and [`Form::read`] returns the list.
 
 use catchment::design::{Complaint, Finding, Findings, LengthUnit, Quantity, SourceText, Unit, nearest};
 use catchment::suggest::{odd, value_help};

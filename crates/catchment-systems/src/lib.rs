@@ -1,7 +1,7 @@
-//! What stands on a connector's area of acceptance.
+//! Systems built on a connector's area of acceptance.
 //!
-//! The crate `catchment` knows one pair of halves and the errors that their contact corrects. Here is what engineers build with
-//! such a pair:
+//! The crate `catchment` describes a pair of halves and the errors that their contact corrects. This crate
+//! adds systems that engineers build with such a pair:
 //!
 //! ```text
 //!   catalog   published docking systems, their areas of acceptance, and where a design stands among them
@@ -11,7 +11,7 @@
 //!   invert    wanted heights and one half give the other
 //! ```
 //!
-//! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
+//! Each depends only on `catchment`, which depends on none of them. [`form`] reads their files.
 
 pub mod catalog;
 pub mod chain;

@@ -1,4 +1,4 @@
-//! The eleven attributes of table 1.1, and the values of it that the text does not define.
+//! The eleven attributes of table 1.1, and their values that the text does not define.
 
 use serde::Serialize;
 

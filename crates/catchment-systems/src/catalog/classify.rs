@@ -1,4 +1,4 @@
-//! A design among the published systems: what of a row of the catalogue its geometry decides.
+//! A design among the published systems: the catalogue entries that follow from its geometry.
 
 use super::attribute::Attribute;
 use super::data::{Catalog, Source, System};

@@ -1,4 +1,4 @@
-//! Which rows of the catalogue, and in which order.
+//! Selection and order of the catalogue's rows.
 
 use super::attribute::Attribute;
 use super::data::{Catalog, Source, System};

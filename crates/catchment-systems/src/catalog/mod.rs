@@ -1,4 +1,5 @@
-//! Published docking systems, what is known of their areas of acceptance, and where a design stands among them.
+//! Published docking systems with the facts about their areas of acceptance, and the rank of a design among
+//! them.
 //!
 //! ```text
 //!   table 1.1   27 systems × 11 attributes ─┐ joined by a list of names,
@@ -8,13 +9,14 @@
 //!   a design ──▶ classify ── degree, gendering ────┘ a row of its own
 //! ```
 //!
-//! Areas are in D², D the characteristic length of the face, edges in D. What the tables print stays as it is: where a value is none of
-//! those that the text defines, a normal form stands beside it with its reason ([`Oddity`]). Every number says where it comes from
-//! ([`Provenance`]): stated by the dissertation, computed here from what it states, or our reading.
+//! Areas are in D², D the characteristic length of the face, edges in D. Printed values are kept unchanged:
+//! if a value is not among those that the text defines, a normal form is added with its reason ([`Oddity`]).
+//! Every number has its provenance ([`Provenance`]): stated by the dissertation, computed here from stated
+//! numbers, or our reading.
 //!
-//! Not promised: that an area computed here is that of the system that was built. Three geometries are given well enough to compute
-//! ([`GEOMETRY`]); for all others the printed number is all there is. Source: the dissertation, sections 1.1 (table 1.1), 2.1.1
-//! (table 2.1, figure 2.1) and 4.1 (figure 4.2).
+//! Not promised: that an area computed here is that of the built system. Three geometries are specified well
+//! enough to compute ([`GEOMETRY`]); for all others only the printed number exists. Source: the dissertation,
+//! sections 1.1 (table 1.1), 2.1.1 (table 2.1, figure 2.1) and 4.1 (figure 4.2).
 
 mod attribute;
 mod classify;

@@ -1,4 +1,4 @@
-//! The degree of self-alignment as a rule that can be computed.
+//! The degree of self-alignment as a computable rule.
 //!
 //! ```text
 //!            y
@@ -9,11 +9,12 @@
 //!   High  more than 0.20 D along the better of x and y      Low  less, but something      None  nothing
 //! ```
 //!
-//! The text says "approximately greater than 20 %" of the face's characteristic size "in one offset direction", and not whether that is the way
-//! to one side or from side to side. From side to side is our reading: then five of the six systems that have both a published area and a
-//! degree of High or Low come out as printed (taken as squares of their areas), and CONRO, an estimate, is just over; with the way to one
-//! side Vacuubes would be Low where High is printed. M-TRAN III and I-Cubes have areas and the degree None: what corrects them acts, and
-//! the degree counts what needs no action. Source: section 1.1.
+//! The text states "approximately greater than 20 %" of the face's characteristic size "in one offset
+//! direction", and leaves open whether this is the distance to one side or the total extent. The total extent
+//! is our reading: then five of the six systems with both a published area and a degree of High or Low agree
+//! with the printed degree (taken as squares of their areas), and CONRO, an estimate, is just over; with the
+//! distance to one side Vacuubes would be Low, although High is printed. M-TRAN III and I-Cubes have areas
+//! and the degree None: their correction needs an action, which the degree excludes. Source: section 1.1.
 
 use catchment::method::zraa::Zraa;
 use catchment::pose::Dof;

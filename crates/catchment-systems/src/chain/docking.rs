@@ -1,16 +1,16 @@
-//! Whether the errors of a chain lie in a connector's area of acceptance, by exact motions.
+//! Probability that the errors of a chain lie in a connector's area of acceptance, by exact motions.
 //!
 //! ```text
 //!   x = −lateral / D,  pitch = angle          the arriving half seen by the one that waits
 //!   center_of_rotation = −b / D               the last rotor, behind the face
 //! ```
 //!
-//! Every random chain is a pose error, and every pose error is followed by [`Problem::follow_many`] until it rests. The share that
-//! docks is the probability, with Wilson's 95 % interval. The normal error is a gap; it is not in the area of acceptance and is
-//! told apart.
+//! Every random chain is a pose error, and [`Problem::follow_many`] follows every pose error until it rests.
+//! The share that docks is the probability, with Wilson's 95 % interval. The normal error is a gap; it is not
+//! in the area of acceptance and is reported separately.
 //!
-//! Not promised: that the chain can push straight along the approach axis; the motion is that of one half guided by its
-//! centre of rotation, without the springs of the chain.
+//! Not promised: that the chain can push straight along the approach axis; the motion is that of a half
+//! guided by its centre of rotation, without the springs of the chain.
 
 use super::accumulation::Covariance;
 use super::kinematics::Body;

@@ -1,4 +1,4 @@
-//! Where rotors and faces are, exactly.
+//! Exact positions of rotors and faces.
 //!
 //! ```text
 //!   h_k = h_0 + q_1 + … + q_k            heading behind joint k

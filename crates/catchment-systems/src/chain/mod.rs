@@ -1,4 +1,4 @@
-//! Chains of modules: where the last face ends up, whether it docks, and how a chain folds into a lattice.
+//! Chains of modules: the error of the last face, its docking, and the folding of a chain into a lattice.
 //!
 //! ```text
 //!    base                                            module n
@@ -11,28 +11,31 @@
 //!   heading  θ   = Σ δ_k                    σ_θ = σ √n
 //! ```
 //!
-//! A module has one revolute joint; its *rotor* is the axis of the joint, its *pitch* the distance from one rotor to the next.
-//! Modules are numbered from the control computer, which holds the base: 1 is nearest. A positive joint angle turns left.
-//! A module's latching faces are its front and its two sides, all behind the joint; the first module's back is before it.
+//! A module has one revolute joint; its *rotor* is the axis of the joint, its *pitch* the distance from one
+//! rotor to the next. Modules are numbered from the control computer, which holds the base: 1 is nearest. A
+//! positive joint angle turns left. A module's latching faces are its front and its two sides, all behind the
+//! joint; the first module's back is before it.
 //!
 //! - [`kinematics`]: poses of rotors and faces, exactly.
-//! - [`shape`]: the shapes P, Block and O: cells of a lattice, which joints turn, which faces latch.
-//! - [`accumulation`]: how joint errors add up at a face: first order, closed forms, and exactly by random chains.
-//! - [`docking`]: whether those errors lie in a connector's area of acceptance, by exact motions.
+//! - [`shape`]: the shapes P, Block and O: cells of a lattice, rotating joints, latching faces.
+//! - [`accumulation`]: accumulation of joint errors at a face: first order, closed forms, and exactly by
+//!   random chains.
+//! - [`docking`]: probability that those errors lie in a connector's area of acceptance, by exact motions.
 //! - [`ring`]: the corners of the O, ranked by error and by force.
-//! - [`sequence`]: commands over time, those of the dissertation's table 6.2 among them.
+//! - [`sequence`]: commands over time, including those of the dissertation's table 6.2.
 //! - [`fold`]: a chain with springs that follows such commands: contact, latches, collisions.
-//! - [`file`](mod@file), [`study`], [`report`], [`figure`]: from a chain file to its answer.
+//! - [`file`](mod@file), [`study`], [`report`], [`figure`]: from a chain file to its results.
 //!
 //! # Units
 //!
-//! Millimetres, radians, newtons, newton metres. Where a connector is concerned, lengths are in its width D.
+//! Millimetres, radians, newtons, newton metres. Lengths of a connector are in its width D.
 //!
 //! # The sign
 //!
-//! Seen from the fixed half, a chain that bends by +h moves its face to −x while its pitch is +h. An area of acceptance is
-//! symmetric only under (x, pitch) → (−x, −pitch), so the sign decides. The centre of rotation is the last rotor, which lies
-//! behind the face: `center_of_rotation = −b/D`, −0.725 for the published module. It replaces what the design says.
+//! Seen from the fixed half, a chain that bends by +h moves its face to −x while its pitch is +h. An area of
+//! acceptance is symmetric only under (x, pitch) → (−x, −pitch), so the sign matters. The centre of rotation
+//! is the last rotor, which lies behind the face: `center_of_rotation = −b/D`, −0.725 for the published
+//! module. It replaces the value of the design.
 //!
 //! # Source
 //!
@@ -42,9 +45,9 @@
 //!
 //! # Not promised
 //!
-//! Friction, speed, mass and play of joints are left out. Gravity does not act in the plane. The folding is quasi-static, its
-//! contact two springs per face, its latches thresholds; only table 6.2 is the dissertation's, all other commands and the
-//! readings of its lost pictures are ours, and reports say so.
+//! Friction, speed, mass and play of joints are neglected. Gravity does not act in the plane. The folding is
+//! quasi-static, its contact two springs per face, its latches thresholds; only table 6.2 is the
+//! dissertation's, all other commands and the readings of its lost pictures are ours, and reports state this.
 
 pub mod accumulation;
 pub mod docking;

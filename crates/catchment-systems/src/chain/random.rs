@@ -1,5 +1,5 @@
-//! Random numbers by counting: the number of a chain and the name of an error give the draw, so that neither threads nor the
-//! order of chains nor their length change a bit.
+//! Counter-based random numbers: the number of a chain and the name of an error determine the draw, so that
+//! threads, the order of chains and their length do not change a bit.
 //!
 //! ```text
 //!   word = mix(mix(seed + γ·chain) + γ·term)          mix is the finaliser of SplitMix64, γ its odd constant

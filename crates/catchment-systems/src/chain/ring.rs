@@ -1,4 +1,4 @@
-//! The corners of the O, ranked by what they do to the closing link: error and pressing force.
+//! The corners of the O, ranked by their effect on the closing link: error and pressing force.
 //!
 //! ```text
 //!   push  = torque / distance of the nearest corner from the docking face     a short lever, but across the approach where
@@ -6,9 +6,9 @@
 //!   press = torque / longest lever along the normal                           what every joint can hold against a pressing force
 //! ```
 //!
-//! The dissertation selects "kinematic arrangement" for a large torque at the connection and does not say which (section 6.3, p. 102);
-//! the first measure is the plain reading of it. Statics adds: all three choices have joints 3 pitches away from the approach
-//! axis, so none can press harder along it than the others.
+//! The dissertation selects a "kinematic arrangement" for a large torque at the connection, without further
+//! definition (section 6.3, p. 102); the first measure is the plain reading of it. Statics adds: all three
+//! choices have joints 3 pitches away from the approach axis, so all press equally hard along it.
 
 use super::accumulation::{Closing, Covariance, Errors};
 use super::kinematics::Body;

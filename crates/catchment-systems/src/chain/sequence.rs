@@ -1,4 +1,4 @@
-//! Commands over time: what every joint is told, and when.
+//! Commands over time, for every joint.
 //!
 //! ```text
 //!   t (s)   joint 4    joint 5         the dissertation's table 6.2, for the P
@@ -10,9 +10,10 @@
 //!     6     slack      slack           realigned, no power
 //! ```
 //!
-//! Seconds, radians. A joint that is not named keeps its command; at first all hold 0. The row for 2 s does not exist. The text calls
-//! the L "slightly less than π/2", which holds of its inner angle, 84.3°: the command is 95.7°. "The same sequence was repeated" for
-//! the Block and "a similar procedure" used for the O without numbers: their commands here are ours.
+//! Seconds, radians. A joint that is not named keeps its command; at first all hold 0. The row for 2 s does
+//! not exist. The text calls the L "slightly less than π/2", which is true of its inner angle, 84.3°: the
+//! command is 95.7°. The text gives no numbers for "the same sequence was repeated" for the Block and "a
+//! similar procedure" for the O: their commands here are ours.
 
 use super::kinematics::nearest_quarter;
 use super::shape::{Latch, Reading, Shape, latches};

@@ -1,4 +1,5 @@
-//! The shapes that chains fold into: cells of a lattice of one pitch, joints that turn, faces that latch.
+//! The shapes into which chains fold: cells of a lattice with the spacing of one pitch, rotating joints,
+//! latching faces.
 //!
 //! ```text
 //!    P            Block, middle    Block, tail       O
@@ -9,13 +10,15 @@
 //!                                  5─4          ┊      ┊
 //! ```
 //!
-//! A joint of a lattice turns by quarters, here by −90° each. Two modules in neighbouring cells that are no link of the chain
-//! latch (◆) where both have a face there: front and sides lie behind the joint, and the first module has a back.
+//! A joint of a lattice rotates by quarter turns, here by −90° each. Two modules in neighbouring cells that
+//! are not joined by a link latch (◆) if both have a face there: front and sides lie behind the joint, and
+//! the first module has a back.
 //!
-//! The dissertation names P, Block and O (section 6.3, figure 6.5) and its picture is lost: which joints turn is given for P alone.
-//! Both readings of the Block give a cluster of 3 × 2 with two latches; the one folded in the middle is preferred because the text
-//! tells of latching in mid chain, from a straight chain, like a zipper. The corners of the O are chosen so that the closing link
-//! lies in the middle of a side.
+//! The dissertation names P, Block and O (section 6.3, figure 6.5) and its picture is lost: the rotating
+//! joints are given for P alone. Both readings of the Block give a cluster of 3 × 2 with two latches; the
+//! reading that is folded in the middle is preferred because the text describes latching in mid chain, from a
+//! straight chain, like a zipper. The corners of the O are chosen so that the closing link lies in the middle
+//! of a side.
 
 use super::kinematics::{Body, Frame, rotors, wrapped};
 use serde::{Deserialize, Serialize};

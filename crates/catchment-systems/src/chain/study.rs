@@ -1,4 +1,4 @@
-//! From a chain file to its answer.
+//! From a chain file to its results.
 //!
 //! ```text
 //!   straight chain ─▶ error of its last face ─▶ does it dock?
@@ -6,8 +6,8 @@
 //!   2..20 modules × joint errors ─▶ the same for each, and how many modules still dock
 //! ```
 //!
-//! The same chains are drawn for every number of modules and every size of error, so that rows differ by what they say and not by
-//! luck. A chain that folds docks if it docks at every latch.
+//! The same chains are drawn for every number of modules and every size of error, so that rows differ by
+//! their parameters and not by chance. A chain that folds docks if it docks at every latch.
 
 use super::accumulation::{Closing, Covariance, Errors};
 use super::docking::{Probability, as_chain_uses_it, docks, lateral_probability, offsets_without_rotation};

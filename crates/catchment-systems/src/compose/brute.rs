@@ -1,4 +1,4 @@
-//! The definition in plain loops: judges of [`super::minkowski_sum`].
+//! The definition in plain loops: the reference for [`super::minkowski_sum`].
 //!
 //! A ⊕ B is the union of
 //!
@@ -8,9 +8,10 @@
 //!   B + a, for a corner a of every outline of A    (an outline of A lies within −B + d)
 //! ```
 //!
-//! Why: d is in the sum where A meets C = d − B. If their outlines touch, it is the first line. If they do not and no outline of C
-//! lies in A, C has no border in A; then a part of A that meets C lies within it, and with it its outlines: the third line.
-//! Otherwise an outline of C touches none of A's and has a point in A, so it lies within A, and its corner does: the second.
+//! Proof: d is in the sum if A meets C = d − B. If their outlines touch, the first line applies. If they do
+//! not and no outline of C lies in A, C has no border in A; then a part of A that meets C lies within it, and
+//! with it its outlines: the third line. In the remaining case an outline of C touches none of A's and has a
+//! point in A, so it lies within A, and its corner does: the second.
 
 use super::region::{Node, Region, sides};
 use super::sum::convex_sum;

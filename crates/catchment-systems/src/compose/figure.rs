@@ -1,4 +1,4 @@
-//! Three panels: what A sweeps, what B sweeps, where they meet.
+//! Three panels: the swept region of A, the swept region of B, and the approach region.
 
 use super::report::bracket;
 use super::{Composition, Frames, Map, Region};

@@ -1,8 +1,9 @@
-//! What a region is worth to someone who aims: the largest square in it, and how far each axis may be off.
+//! Tolerances of a region: the largest square in it, and the tolerance along each axis.
 //!
-//! The distance of a point from the outside, with the larger coordinate as length, is half the side of the largest square
-//! about it. It changes no faster than the point moves, so the plane is searched by halving cells and leaving out those whose
-//! bound is below what was found (branch and bound): the square is inside, and no other is larger by more than the stated slack.
+//! The distance of a point from the outside, in the maximum norm, is half the side of the largest square
+//! about it. It changes no faster than the point moves, so the plane is searched by halving cells and
+//! discarding those whose bound is below the best found (branch and bound): the square is inside, and no
+//! other is larger by more than the stated slack.
 
 use super::region::{Region, place, sides};
 use glam::DVec2;

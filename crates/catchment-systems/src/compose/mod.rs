@@ -1,4 +1,4 @@
-//! Two halves that both move: the region over which they meet.
+//! Two moving halves: the approach region, over which they meet.
 //!
 //! ```text
 //!      B's reach, turned to face A              A ⊕ B: where B's robot may be
@@ -11,36 +11,39 @@
 //!
 //! # Definition
 //!
-//! A and B are what the two halves sweep by their own motion, each in the frame of its robot. With B's robot at d from A's, they can
-//! dock if the two swept regions meet: A ∩ (B' + d) ≠ ∅, which is **d ∈ A ⊕ (−B')**, the Minkowski sum with one
-//! region reflected; B' is B as mounted.
+//! A and B are the swept regions of the two halves, each in the frame of its robot. With B's robot at d from
+//! A's, they can dock if the two swept regions meet: A ∩ (B' + d) ≠ ∅, which is **d ∈ A ⊕ (−B')**, the
+//! Minkowski sum with one region reflected; B' is B as mounted.
 //!
-//! - [`Frames::Own`]: both are drawn facing +y, and B is mounted by a half turn, as everywhere in catchment: B' = −B, turned
-//!   by the heading, and the answer is **A ⊕ B**: nothing is left to reflect.
-//! - [`Frames::World`]: B is drawn as it stands before A: B' = B, and the answer is **A ⊕ (−B)**.
+//! - [`Frames::Own`]: both are drawn facing +y, and B is mounted by a half turn, as everywhere in catchment:
+//!   B' = −B, rotated by the heading, and the result is **A ⊕ B**, without a reflection.
+//! - [`Frames::World`]: B is drawn in its position before A: B' = B, and the result is **A ⊕ (−B)**.
 //!
-//! The plane is the one the robots move in: lateral offset *and gap*. It is not the (x, y) of a pose error, because the
-//! approach is inside the region. With a relative heading ψ, B' is turned by ψ; over a range of headings the answer is a stack
-//! of regions, and its volume is their area integrated over ψ.
+//! The plane is the plane of motion of the robots: lateral offset *and gap*. It is not the (x, y) of a pose
+//! error, because the approach is inside the region. With a relative heading ψ, B' is rotated by ψ; over a
+//! range of headings the result is a stack of regions, and its volume is their area integrated over ψ.
 //!
-//! **Bodies.** Where the robots' bodies overlap there is no docking: the interior of A's body ⊕ (−B's body) is taken away.
+//! **Bodies.** If the robots' bodies overlap they cannot dock: the interior of A's body ⊕ (−B's body) is
+//! removed.
 //!
 //! **Quality.** The area of A ∩ (B' + d) is the convolution proper: 0 on the border of the region, and its integral over all d
 //! is area(A)·area(B). See [`Overlap`]; its largest value lies between two bounds ([`peak`]).
 //!
 //! # Units
 //!
-//! Millimetres, or D where both regions come from connectors without a unit; areas mm² or D², volumes times rad.
+//! Millimetres, or D if both regions come from connectors without a unit; areas mm² or D², volumes times rad.
 //!
-//! # What is not promised
+//! # Not promised
 //!
-//! One point in common counts as met: nothing is said of whether the halves then hold. Both motions are taken as swept
-//! completely, one after another: nothing is said of timing, nor of the bodies pushing each other away. Corners
-//! are rounded to 2⁻³² mm ([`UNIT`]); arcs lie between an inner and an outer polygon, and areas are given with both.
+//! A single common point counts as meeting: the halves need not hold together. Both motions are treated as
+//! swept completely, one after another: timing, and bodies that push each other away, are neglected. Corners
+//! are rounded to 2⁻³² mm ([`UNIT`]); arcs lie between an inner and an outer polygon, and areas are given
+//! with both.
 //!
-//! Source: the dissertation, section 2.5 (p. 20–22) and figures 2.4–2.6: a hook that swings and a loop of string between two
-//! boats, the acceptance region as the convolution of the two regions. It gives no length, angle or area; the
-//! departures of its experiment it puts down to further constraints of the boats, and to their hulls.
+//! Source: the dissertation, section 2.5 (p. 20–22) and figures 2.4–2.6: a swinging hook and a loop of string
+//! between two boats, the acceptance region as the convolution of the two regions. It gives no length, angle
+//! or area, and attributes the departures of its experiment to further constraints of the boats, and to their
+//! hulls.
 
 pub mod brute;
 mod figure;

@@ -1,4 +1,5 @@
-//! The overlap of two regions over the place of the second, and a bound of it around a place.
+//! The overlap of two regions as a function of the position of the second, and a bound on it around a
+//! position.
 //!
 //! ```text
 //!   O(d) = Σ O_ij(d)        over pairs of convex polygons, O_ij = area of their intersection
@@ -9,9 +10,10 @@
 //!   O_ij(d + δ) ≤ area of A_i ∩ (B_j + d, its sides moved outwards by what a square of side 2·max|δ| about any point needs)
 //! ```
 //!
-//! The gradient is the sum of the sides of the intersection that belong to the second polygon, each as its length along its outer normal. Where
-//! sides of both polygons fall together `O_ij` has a kink, and either choice bounds it. Linear terms of pairs add up with their signs, so that they cancel near
-//! the maximum; the second bound serves pairs that overlap by little or nothing.
+//! The gradient is the sum of the sides of the intersection that belong to the second polygon, each as its
+//! length along its outer normal. If sides of both polygons coincide `O_ij` has a kink, and either choice
+//! bounds it. Linear terms of pairs add up with their signs, so that they cancel near the maximum; the second
+//! bound serves pairs with little or no overlap.
 
 use super::region::{Node, Region, place};
 use super::sum::convex_parts;

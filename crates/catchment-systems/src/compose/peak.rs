@@ -1,14 +1,16 @@
 //! The largest overlap of two regions, between two bounds.
 //!
-//! Branch and bound over places of the second region: the overlap at the middle of a square cell bounds the overlap in all of it
-//! ([`super::overlap`]), and so do the areas of the two regions. The cell with the highest bound is divided until that bound is no more than
-//! [`SLACK`] above the largest value, or the work is spent. Either way no place has a larger overlap than the bound that is returned.
+//! Branch and bound over positions of the second region: the overlap at the centre of a square cell bounds
+//! the overlap in all of it ([`super::overlap`]), and so do the areas of the two regions. The cell with the
+//! highest bound is divided until that bound is at most [`SLACK`] above the largest value, or the work budget
+//! is spent. In both cases the returned bound holds for every position.
 //!
-//! Of regions known between an inner and an outer polygon the bound is that of the outer pair, and the value that of the inner pair at the
-//! place found, so the true maximum lies between the two. Without area in one of them both are 0.
+//! For regions known between an inner and an outer polygon the bound is that of the outer pair, and the value
+//! that of the inner pair at the position found, so the true maximum lies between the two. If a region has no
+//! area both are 0.
 //!
-//! Not promised: that the place is the only one. Where one region fits into the other with room to spare, every such place has the
-//! same overlap, and the first one found is returned.
+//! Not promised: that the position is unique. If one region fits into the other with room to spare, every
+//! such position has the same overlap, and the first one found is returned.
 
 use super::overlap::Overlap;
 use super::sweep::Bracket;

@@ -7,9 +7,10 @@
 //!   └──────────┘
 //! ```
 //!
-//! Corners are whole multiples of [`UNIT`], 2⁻³² of the unit of length, and sums of such points are again such points, exactly.
-//! Whether outlines cross is decided in whole numbers (`i_overlay`), so regions that only touch stay that way; where
-//! two sides cross, the crossing is rounded to the lattice. A region may also have parts without area, points and segments.
+//! Corners are integer multiples of [`UNIT`], 2⁻³² of the unit of length, and sums of such points are exactly
+//! such points. Crossings of outlines are decided in integers (`i_overlay`), so regions that only touch stay
+//! that way; a crossing of two sides is rounded to the lattice. A region may also have parts without area,
+//! points and segments.
 
 use glam::DVec2;
 use i_triangle::i_overlay::core::fill_rule::FillRule;

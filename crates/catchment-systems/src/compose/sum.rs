@@ -1,12 +1,12 @@
-//! Minkowski sums: where two regions can meet.
+//! Minkowski sums of regions.
 //!
 //! ```text
 //!   A ⊕ B = { a + b },   d ∈ A ⊕ (−B)  ⇔  A meets B + d
 //! ```
 //!
-//! Both regions are cut into convex polygons without new corners; the sum of two convex polygons merges their sides by direction,
-//! exactly on the lattice; the union of all of them is the answer (`i_triangle`, which is `i_overlay`'s own room for
-//! this). [`super::brute`] is an independent judge that cuts nothing.
+//! Both regions are divided into convex polygons without new corners; the sum of two convex polygons merges
+//! their sides by direction, exactly on the lattice; the union of all of them is the result (`i_triangle`,
+//! the crate of `i_overlay` for this). [`super::brute`] is an independent reference without any division.
 
 use super::region::{Node, Region, turn};
 use catchment::polytope::planar_hull;

@@ -1,4 +1,4 @@
-//! What a moving part sweeps, between an inner and an outer polygon.
+//! The swept region of a moving part, between an inner and an outer polygon.
 //!
 //! ```text
 //!    hook: a segment that turns        loop: an outline that grows        lug: a polygon that slides
@@ -7,13 +7,15 @@
 //!      ╱ ╱   ·   ╲ ╲  ·: pivot             │ │ · │ │                          
 //! ```
 //!
-//! The union of a shape over all positions of one actuator. Growing and sliding give polygons again, exactly. Turning gives arcs.
-//! With the distance r from the pivot and the angle θ, a turn adds to θ alone, so what a stretch of outline sweeps, along which r
-//! grows, is { (r, θ(r) + turn) : r from r₀ to r₁ } with turn in [from, to]: the stretch twice, and two arcs. On the inner
-//! polygon the far arc is made of chords and the near one of tangents, on the outer polygon the other way round, and no
-//! point of either is farther from the arc than the chord error. So **inner ⊆ swept ⊆ outer**, up to the lattice of [`super::Region`].
+//! It is the union of a shape over all positions of one actuator. Growing and sliding give polygons again,
+//! exactly. Turning gives arcs. In polar coordinates (r, θ) about the pivot, a turn adds to θ alone. A
+//! segment of the outline along which r grows therefore sweeps { (r, θ(r) + turn) : r from r₀ to r₁ } with
+//! turn in [from, to]: bounded by the segment twice, and two arcs. On the inner polygon the far arc is made
+//! of chords and the near arc of tangents, on the outer polygon the other way round, and no point of either
+//! is farther from the arc than the chord error. So **inner ⊆ swept ⊆ outer**, up to the lattice of
+//! [`super::Region`].
 //!
-//! Sums, unions and sweeps keep that order, and areas are given as brackets from end to end.
+//! Sums, unions and sweeps preserve that order, and areas are given as brackets throughout.
 
 use super::region::{Node, Region, node, place, sides};
 use super::sum::{SumError, minkowski_sum};

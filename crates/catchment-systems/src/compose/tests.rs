@@ -1,4 +1,4 @@
-//! Closed forms, judges and properties of sums.
+//! Closed forms, references and properties of sums.
 
 use super::read::{Measure, Read, read};
 use super::sweep::{Bracket, Shape};

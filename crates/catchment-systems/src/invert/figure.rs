@@ -1,4 +1,4 @@
-//! The pair, and its heights beside those that were wanted.
+//! The pair, and its heights compared with the wanted heights.
 //!
 //! ```text
 //!   ┌──────────┐   height │╲      ┄┄╱      wanted h* (dashed) and reached h (full) along x through y = 0;

@@ -1,4 +1,4 @@
-//! Heights over the plane as pieces of planes, and the solids under and over them.
+//! Heights over the plane as pieces of planes, and the solids below and above them.
 
 use super::{NARROW, ROUNDED};
 use catchment::connector::{Half, Surface};

@@ -1,4 +1,4 @@
-//! What a new half is like: where it falls short of what was wanted, and where it touches.
+//! Properties of a new half: its shortfall from the wanted heights, and its contacts.
 
 use super::heights::{Heights, apart, common, width};
 use super::tidy::steepness;

@@ -1,4 +1,4 @@
-//! Wanted heights and one half give the other: the Minkowski sum undone.
+//! The inverse problem: a half from the wanted heights and the other half, by inversion of the Minkowski sum.
 //!
 //! ```text
 //!   h(x) = max over u of  f(x + u) − g(u)        how high the moving half g stops over the fixed half f
@@ -7,17 +7,20 @@
 //!
 //! # Definition
 //!
-//! f is the upper surface of the fixed half, g the lower surface of the moving one as mounted, u the place in the moving half, x the
-//! lateral offset, h* the wanted height of the moving face centre at first contact. The two lines are an adjunction: g is the
-//! smallest function with h ≤ h*, and h = h* exactly where h* can be reached at all with this f. What
-//! remains, h* − h ≥ 0, is **unattainable**: no moving half reaches it without stopping higher than wanted somewhere else.
+//! f is the upper surface of the fixed half, g the lower surface of the moving half as mounted, u the
+//! position in the moving half, x the lateral offset, h* the wanted height of the moving face centre at first
+//! contact. The two lines are an adjunction: g is the smallest function with h ≤ h*, and h = h* exactly where
+//! h* is attainable with this f. The remainder, h* − h ≥ 0, is **unattainable**: every moving half that
+//! reaches it stops higher than wanted somewhere else.
 //!
-//! The second line is itself a height of first contact: that of a body with the lower surface h* over f, at the offset u. So the
-//! exact envelope of [`catchment::method::zraa`] computes both lines, as planes over convex polygons; nothing is sampled.
+//! The second line is itself a height of first contact: that of a body with the lower surface h* over f, at
+//! the offset u. So the exact envelope of [`catchment::method::zraa`] computes both lines, as planes over
+//! convex polygons; nothing is sampled.
 //!
-//! **Rotations.** With rotations free, g must also stay out of f at the other rotations R of the pair. The heights are wanted at every
-//! combination of the rolls, pitches and yaws of a list, and g is the largest over them of what the fixed half, turned by R⁻¹, asks:
-//! exact at the rotations of the list; between them the excess has a bound, and is computed midway ([`Between`]).
+//! **Rotations.** With rotations free, g must also stay out of f at the other rotations R of the pair. The
+//! heights are wanted at every combination of the rolls, pitches and yaws of a list, and g is the largest
+//! over them of the heights that the fixed half, rotated by R⁻¹, requires: exact at the rotations of the
+//! list; between them the excess is bounded, and is computed midway ([`Between`]).
 //!
 //! **Planar designs** are extruded solids with y locked: h* is taken along x, over a strip that is narrower than the gap of layers.
 //!
@@ -25,17 +28,20 @@
 //!
 //! D and radians, as in the library; the mated face centres at the origin.
 //!
-//! # What is not promised
+//! # Not promised
 //!
-//! The given half of a pair comes back from its own heights, at any rotations, where it is solid above its lower surface; a fixed half that
-//! reaches over its back when tilted makes g higher at the rim, as the new half is taken without a back. Sides of pieces are known
-//! to [`SIDEWAYS`], walls of a mesh to [`NARROW`]; what is wanted in a strip narrower than that is not asked for, and pieces that are no more than rounding are taken out.
+//! The moving half of a pair is recovered from its own heights, at any rotations, if it is solid above its
+//! lower surface; a fixed half that reaches over its back when tilted makes g higher at the rim, because the
+//! new half is assumed to have no back. Sides of pieces are known to [`SIDEWAYS`], walls of a mesh to
+//! [`NARROW`]; wanted heights in a strip narrower than that are ignored, and pieces due to rounding are
+//! removed.
 //!
-//! g is a surface without undercuts, on the plan of the design's own moving half. It is the lowest surface, not a
-//! good part: slopes, widths and what the result accepts are reported, not improved. Where nothing is wanted, nothing is kept.
+//! g is a surface without undercuts, on the plan of the design's own moving half. It is the lowest surface,
+//! not necessarily a good part: slopes, widths and the acceptance of the result are reported, not improved.
+//! Regions without wanted heights are empty.
 //!
-//! Source: the dissertation, section 7.2 (p. 108–109), which wishes for this and gives no formula: the adjunction, and all that
-//! follows from it, is ours.
+//! Source: the dissertation, section 7.2 (p. 108–109), which proposes this and gives no formula: the
+//! adjunction, and all that follows from it, is ours.
 
 mod figure;
 mod file;

@@ -1,4 +1,4 @@
-//! Wanted heights as a table `x,y,height`, in D, over a grid; planes over triangles between its places.
+//! Wanted heights as a table `x,y,height`, in D, over a grid; planes over triangles between its points.
 
 use super::Heights;
 use catchment::design::{Finding, Findings, Found, SourceText};

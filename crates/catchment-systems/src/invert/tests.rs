@@ -1,4 +1,4 @@
-//! Round trips, and what cannot be reached.
+//! Round trips, and unattainable heights.
 
 use super::heights::common;
 use super::*;

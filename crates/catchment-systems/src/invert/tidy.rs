@@ -1,4 +1,4 @@
-//! Pieces that rounding made, taken out again.
+//! Removal of pieces caused by rounding.
 //!
 //! ```text
 //!   ┌───────┬┬──────┐        ┌────────┬──────┐      two contacts with nearly one plane cross where rounding says: what lies between
@@ -6,21 +6,24 @@
 //!   └───────┴┴──────┘        └────────┴──────┘
 //! ```
 //!
-//! A mesh has many facets that were one plane before its corners were rounded, and upright walls that lean. Where two nearly
-//! equal planes cross is then decided by the last digits, and the pieces of an envelope come out with slivers and corners
-//! 10⁻⁸ D apart, which no reader takes for a solid. Three steps:
+//! A mesh has many facets that were coplanar before its corners were rounded, and upright walls that lean.
+//! The last digits then decide at which line two nearly equal planes intersect, and the pieces of an envelope
+//! have slivers and corners 10⁻⁸ D apart, which no reader accepts as a solid. Three steps:
 //!
-//! 1. Neighbours of one plane become one where that is convex.
-//! 2. A sliver, narrower than [`NARROW`], goes to the neighbours along it, whose sides move over it: those whose planes differ there by
-//!    no more than [`ROUNDED`]; where they do not cover it, those that are higher, too; and at the rim nothing may be left.
-//! 3. A side that ends before it begins goes, where its neighbours meet just beyond it; where they would cover something higher, a side
-//!    shorter than [`POINT`] closes to its middle.
+//! 1. Coplanar neighbours are merged if the union is convex.
+//! 2. A sliver, narrower than [`NARROW`], is given to the neighbours along it, whose sides move over it:
+//!    first those whose planes differ there by at most [`ROUNDED`]; if they do not cover it, also those that
+//!    are higher; at the rim it may be dropped.
+//! 3. A side that ends before it begins is removed, if its neighbours meet just beyond it; if they would
+//!    cover something higher, a side shorter than [`POINT`] collapses to its middle.
 //!
-//! So the function changes by no more than [`ROUNDED`] in height or [`SIDEWAYS`] to the side, but for slivers of another height than all
-//! around them, such as leaning walls: there it rises, in a strip narrower than [`NARROW`], and what rises stops no higher.
+//! So the function changes by at most [`ROUNDED`] in height or [`SIDEWAYS`] sideways, except at slivers of
+//! another height than all around them, such as leaning walls: there it rises, in a strip narrower than
+//! [`NARROW`], and a higher surface of the moving half does not stop it higher.
 //!
-//! Sides move outward only: the columns over the pieces overlap by as little as they moved, and no gap opens. Where columns overlap
-//! the lower one counts, so a side moves over another piece only where that is not higher.
+//! Sides move outward only: the columns over the pieces overlap by as little as they moved, and no gap opens.
+//! The lower of overlapping columns counts, so a side moves over another piece only if that piece is not
+//! higher.
 
 use super::heights::{Heights, apart, common, width};
 use super::{NARROW, ROUNDED, SIDEWAYS};

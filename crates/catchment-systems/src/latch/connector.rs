@@ -4,17 +4,19 @@
 //!   z = g(x) = f(x) − f(L/2)        left of the middle, turned by 180° about it on the right; the second layer mirrored
 //! ```
 //!
-//! Arms are rigid and hooks are left out: a rigid hook lets nothing pass. What is left is the part of the docking that aligns, from
-//! first contact until the hooks meet; its seat is where they do, 2·f(L/2) above the latched pose. Left of the middle g is the
-//! profile itself, lowered, so that the slopes that slide are those of the part.
+//! Arms are rigid and hooks are omitted, because a rigid hook would block. The remainder is the aligning part
+//! of the docking, from first contact until the hooks meet; its seat is the pose at which they meet, 2·f(L/2)
+//! above the latched pose. Left of the middle g is the profile itself, lowered, so that the sliding slopes
+//! are those of the part.
 //!
-//! Curves become facets, whose corners lie on the curve. The hill on the left is convex. The valley on the right is the union of what lies
-//! below each of its facets' lines, as no line of a valley comes above it: pieces that reach across the valley, and overlap. The library unites them into
-//! one surface.
+//! Curves become facets, whose corners lie on the curve. The hill on the left is convex. The valley on the
+//! right is the union of the half-planes below each of its facets' lines, as no line of a valley rises above
+//! it: pieces that reach across the valley, and overlap. The library unites them into a single surface.
 //!
-//! Sliding alone the face corrects a whole width either way, exactly, as every X-Face does. With pitch free its area of acceptance does not
-//! depend on the number of facets any more (`docs/latch.md` has the figures). The dissertation says that hand trials, with arms that
-//! give, showed no significant change against the X-Face.
+//! In sliding alone the face corrects a whole width either way, exactly, as every X-Face does. With pitch
+//! free its area of acceptance no longer depends on the number of facets (`docs/latch.md` has the figures).
+//! The dissertation states that hand trials, with compliant arms, showed no significant change against the
+//! X-Face.
 
 use super::{Geometry, Latch};
 use glam::DVec2;

@@ -1,4 +1,4 @@
-//! What a laser cutter takes: DXF and SVG of every sheet, true to scale, in mm.
+//! Drawings for a laser cutter: DXF and SVG of every sheet, true to scale, in mm.
 //!
 //! ```text
 //!   front, back      the two layers, mirror images          NAME.dxf       the part as it should come out

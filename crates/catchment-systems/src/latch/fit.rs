@@ -1,6 +1,7 @@
-//! Fits to the nine measured designs, with what each is off by where it has not looked.
+//! Fits to the nine measured designs, with their errors for designs outside the fit.
 //!
-//! Residuals are natural logarithms of measured over fitted, so that a quarter too much counts the same at 6 and at 46 N.
+//! Residuals are natural logarithms of measured over fitted, so that a relative error counts the same at 6
+//! and at 46 N.
 //!
 //! ```text
 //!   constant + prbm    F = F₀ + c·o·t³       a constant, and the torsion spring pressed aside by o
@@ -9,8 +10,8 @@
 //!   square             F = c·o·t²
 //! ```
 //!
-//! *Leave-one-out*: each design predicted by a fit to the other eight. That is the error to expect of a tenth design of the
-//! same kind, and it is larger than what the fit leaves over.
+//! *Leave-one-out*: each design is predicted by a fit to the other eight. That is the expected error for a
+//! tenth design of the same kind, and it is larger than the residuals of the fit.
 
 use super::measured::{Measured, Mode};
 use serde::Serialize;

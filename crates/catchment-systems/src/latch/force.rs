@@ -1,4 +1,4 @@
-//! What it takes to latch, and what it takes to break.
+//! Force to latch, and force to break.
 //!
 //! ```text
 //!   latch    F = F₀ + c·s·o·t³       fit to table 6.1, s = k / k of the tested sheet and neck
@@ -6,9 +6,10 @@
 //!   break    F = min( 213.6 N/mm · t , tip(o, t) )
 //! ```
 //!
-//! Source: section 6.2. The spring alone gives less than half of what was measured, and t³ where the measurements show t^1.5 to t^2.2: it is
-//! refuted by the data, and reported beside the fit. The tip of the overhang is known at o = 2.5 only; there its force falls
-//! with t, because a stiff neck keeps the tip from turning into the partner's trench.
+//! Source: section 6.2. The spring alone gives less than half of the measured force, and t³ instead of the
+//! measured t^1.5 to t^2.2: the data refute it, and it is reported beside the fit. The tip of the overhang is
+//! known only at o = 2.5; there its force falls with t, because a stiff neck keeps the tip from turning into
+//! the partner's trench.
 
 use super::fit::{Fit, Law, latching, neck_line};
 use super::measured::{Measured, Mode, table};

@@ -1,11 +1,12 @@
-//! Where the laser's middle must run so that the part comes out right.
+//! Path of the laser's middle that yields the part at its true size.
 //!
 //! ```text
 //!   cut = { points half a kerf outside the part }        every edge moved by kerf/2 along its outer normal, corners mitred
 //! ```
 //!
-//! Exact for edges: whatever lies between two straight sides is cut by a kerf wider on paper and right on the table. Mitred
-//! corners leave corners of the part sharp, where the beam's round end would round inner ones by half a kerf.
+//! Exact for edges: a gap between two straight sides is narrower by a kerf on the path and right on the part.
+//! Mitred corners leave corners of the part sharp, although the beam's round end would round inner corners by
+//! half a kerf.
 
 use super::outline::{Polygon, edges, is_simple};
 use glam::DVec2;

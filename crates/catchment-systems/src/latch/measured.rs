@@ -1,7 +1,8 @@
 //! The nine prototypes that were pressed together and pulled apart: table 6.1.
 //!
-//! One-sided parts with both layers, ABS sheets of 6.35 mm. Forces are the highest recorded, ± 1 N; the spring constants are
-//! those at zero deflection. The text around the table says that six designs were tested, the table has nine.
+//! One-sided parts with both layers, ABS sheets of 6.35 mm. Forces are the highest recorded, ± 1 N; the
+//! spring constants are those at zero deflection. The text around the table mentions six tested designs, the
+//! table has nine.
 
 use serde::{Deserialize, Serialize};
 

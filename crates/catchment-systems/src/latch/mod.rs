@@ -1,4 +1,5 @@
-//! The latching X-Face: two halves of one shape that align, press their arms aside and hook into each other.
+//! The latching X-Face: two halves of the same shape that align, press their arms aside and hook into each
+//! other.
 //!
 //! ```text
 //!   f(0) ●__                       one layer, seen from the side; x right, y up, mm
@@ -14,20 +15,22 @@
 //!   ────────────────────────────┘
 //! ```
 //!
-//! [`Latch`] is what a design file says, [`Geometry`] the outline that follows from it, [`rules()`] what the outline must meet
-//! and why. [`force`] says what it takes to latch and to break, from the nine measured designs of [`measured`]; [`press`]
-//! pushes two halves together. [`drawing`] writes what a laser cutter takes.
+//! [`Latch`] is the content of a design file, [`Geometry`] the outline that follows from it, [`rules()`] the
+//! requirements on the outline with their reasons. [`force`] computes the forces to latch and to break, from
+//! the nine measured designs of [`measured`]; [`press`] simulates the pressing of two halves. [`drawing`]
+//! writes the files for a laser cutter.
 //!
-//! Source: the dissertation, sections 6.1 and 6.2 (pages 91 to 101), table 6.1. Its drawings are lost to us: the outline is
-//! *derived* from its sentences, and whatever is our reading is marked [`Basis::Inferred`].
+//! Source: the dissertation, sections 6.1 and 6.2 (pages 91 to 101), table 6.1. Its drawings are lost to us:
+//! the outline is *derived* from its sentences, and every reading of ours is marked [`Basis::Inferred`].
 //!
 //! Lengths are in mm, angles in rad, forces in N, moduli in `MPa`.
 //!
-//! # What is not promised
+//! # Not promised
 //!
-//! Arms are rigid, necks are springs without mass, hysteresis or damage. The force to latch is a fit to nine prototypes of one
-//! material and one sheet; outside their range it is an extrapolation, and is called one. The force to break at the tip of
-//! the overhang is known at one overhang only. The three-sided part has a cut-out of another shape that is not described.
+//! Arms are rigid, necks are springs without mass, hysteresis or damage. The force to latch is a fit to nine
+//! prototypes of one material and one sheet; outside their range it is an extrapolation, and is marked as
+//! such. The force to break at the tip of the overhang is known at a single overhang. The three-sided part
+//! has a cut-out of another shape that is not described.
 
 pub mod connector;
 pub mod drawing;

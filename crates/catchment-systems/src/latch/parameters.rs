@@ -1,4 +1,4 @@
-//! What a design file says of a latch, with the dissertation's values where it is silent.
+//! Parameters of a latch in a design file, with the dissertation's values as defaults.
 
 use super::outline::Geometry;
 use super::rules::{Verdict, WIDEST_SLIT, rules};

@@ -1,4 +1,4 @@
-//! Two halves pressed together, slowly: how far the arms are open, and what it takes.
+//! Two halves pressed together, slowly: the swing of the arms, and the force.
 //!
 //! ```text
 //!   C = ((L + s)/2, d/2)             the middle between the halves: d above the seat, s off sideways
@@ -7,17 +7,18 @@
 //!   F = N·(n_y + μ·|τ_y|)            per layer
 //! ```
 //!
-//! Why one point decides: the partner is the same part turned by 180° about C, so that it has a point p of the plane where this
-//! half has 2C − p. The upper part of the arm, above the overhang's underside, is convex (its profile has negative
-//! curvature): if two such parts overlap, the middle of p and 2C − p, which is C, lies in both. So they touch where C is on the
-//! hook's border, and the force acts there. A test overlaps the whole outlines instead, arms and bodies.
+//! A single point decides: the partner is the same part rotated by 180° about C, so that it contains a point
+//! p of the plane if this half contains 2C − p. The upper part of the arm, above the overhang's underside, is
+//! convex (its profile has negative curvature): if two such parts overlap, the middle of p and 2C − p, which
+//! is C, lies in both. So they touch if C is on the hook's border, and the force acts there. A test overlaps
+//! the whole outlines instead, arms and bodies.
 //!
-//! Three stretches: C slides down the profile, past the corner, down the wall of the hook; below the wall the arms snap back. An open
-//! arm's hook lies lower than at rest, so that halves are pressed a little beyond the seat before they snap; open arms leave
-//! the room.
+//! Three phases: C slides down the profile, past the corner, down the wall of the hook; below the wall the
+//! arms snap back. An open arm's hook lies lower than at rest, so that halves are pressed slightly beyond the
+//! seat before they snap; open arms leave the room for this.
 //!
-//! Not computed: the nest of a snapped layer being compressed further (the steep end of the dissertation's record), speed, and the
-//! machine's own give.
+//! Not computed: the further compression of a snapped layer (the steep end of the dissertation's record),
+//! speed, and the compliance of the machine.
 
 use super::outline::Geometry;
 use super::{Latch, stiffness};

@@ -4,9 +4,10 @@
 //!   f(x) = h + ∫ₓ^xₑ tan φ(u) du        φ(x) = φ₀ + (φ₁ − φ₀)·(x/xₑ)ⁿ        0 ≤ x ≤ xₑ = L/2 + o/2
 //! ```
 //!
-//! φ is the angle to the x axis, downward: φ₀ at the outer edge (stated: 35°), φ₁ at the hook, where the tangent passes through
-//! the pivot P (stated). Between them the dissertation has "an interpolated spline" of negative curvature; any increasing φ
-//! is one, and this family is ours. n says how late the curve bends: larger, later, and lower at the outer edge.
+//! φ is the angle to the x axis, downward: φ₀ at the outer edge (stated: 35°), φ₁ at the hook, at which the
+//! tangent passes through the pivot P (stated). Between them the dissertation has "an interpolated spline" of
+//! negative curvature; any increasing φ fulfils this, and this family is ours. The exponent n controls the
+//! bend: the larger n, the later the curve bends, and the lower it is at the outer edge.
 
 use super::Latch;
 

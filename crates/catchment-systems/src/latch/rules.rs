@@ -1,4 +1,4 @@
-//! What an outline must meet, and why: the design principles of section 6.1.1 as checks.
+//! Requirements on an outline, with reasons: the design principles of section 6.1.1 as checks.
 
 use super::kerf::compensated;
 use super::measured::REJECTED_OVERHANG;

@@ -4,9 +4,9 @@
 //!   M = k·θ        k = E·I/l_eq        I = w·t³/12          per layer
 //! ```
 //!
-//! Source: section 6.1.1, page 97. The dissertation states k ≈ 4.99 N·m/rad for o = 5.1, t = 3.0, and neither w nor `l_eq`: with
-//! one layer of w = 6.35 its number asks for `l_eq` = 6.01 mm, and our default of 6.0 is taken from it. That k comes out right
-//! is therefore no confirmation.
+//! Source: section 6.1.1, page 97. The dissertation states k ≈ 4.99 N·m/rad for o = 5.1, t = 3.0, and neither
+//! w nor `l_eq`: with one layer of w = 6.35 its number implies `l_eq` = 6.01 mm, and our default of 6.0 is
+//! derived from this. The agreement of k is therefore no confirmation.
 
 use super::Latch;
 

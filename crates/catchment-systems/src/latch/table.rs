@@ -1,4 +1,4 @@
-//! Table 6.1 beside the model.
+//! Table 6.1 compared with the model.
 
 use super::fit::{Fit, Law, Point, latching};
 use super::force::Forces;

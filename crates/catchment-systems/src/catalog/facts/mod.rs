@@ -1,4 +1,5 @@
-//! What is known of published areas beside the printed number: shapes, our computations, our readings, contradictions.
+//! Facts about published areas besides the printed number: shapes, our computations, our readings,
+//! contradictions.
 
 use super::data::{Source, System};
 use serde::Serialize;

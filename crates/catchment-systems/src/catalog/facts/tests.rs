@@ -1,4 +1,4 @@
-//! Every number of the source that can be computed again, and closed forms beside the program's own.
+//! Every number of the source that can be recomputed, and closed forms compared with the program's results.
 
 use super::super::{Catalog, Table};
 use super::*;

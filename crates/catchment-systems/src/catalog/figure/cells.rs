@@ -1,4 +1,4 @@
-//! What a cell of the figure is drawn with: regions in D, and a face seen along the approach.
+//! Content of the figure's cells: regions in D, and a face seen along the approach.
 
 use super::super::facts::Shape;
 use catchment::connector::Half;

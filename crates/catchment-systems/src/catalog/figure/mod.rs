@@ -6,9 +6,10 @@
 //!   cone_over_x_face     the cone's circle around and inside the unit square, over the diamond of the X-Face
 //! ```
 //!
-//! Which rows the published figure 2.1 had is not known: here are those whose region is known. Regions of families are computed by the
-//! program, that of `PolyBot` is its closed form, and that of DRAGON is the circle of its printed number and says so. Everything is drawn with
-//! width D, but the cone around the unit square, which is √2 D wide.
+//! The rows of the published figure 2.1 are not known: here are the systems with a known region. The program
+//! computes the regions of families; that of `PolyBot` is its closed form, and that of DRAGON is the circle
+//! of its printed number, marked as such. Everything is drawn with width D, except for the cone around the
+//! unit square, which is √2 D wide.
 
 mod cells;
 mod rows;

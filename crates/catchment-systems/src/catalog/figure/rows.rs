@@ -1,4 +1,4 @@
-//! The rows of figure 2.1: connectors whose region is known.
+//! The rows of figure 2.1: connectors with a known region.
 
 use super::super::data::PublishedZraa;
 use super::super::facts::{Fact, Shape};

@@ -1,4 +1,4 @@
-//! Reports of the catalogue, of one of its systems, and of a design among them.
+//! Reports of the catalogue, of a single system, and of a design among them.
 
 use super::attribute::{Attribute, Oddity};
 use super::classify::{Classified, Ratio};

@@ -1,4 +1,4 @@
-//! Lines that fit, normal forms beside printed ones, hostile names.
+//! Lines that fit, normal forms next to printed values, hostile names.
 
 use super::*;
 

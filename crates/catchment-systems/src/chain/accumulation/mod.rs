@@ -1,4 +1,4 @@
-//! How the errors of a chain add up at a face.
+//! Accumulation of the errors of a chain at a face.
 //!
 //! ```text
 //!   (lateral, normal, angle) of the arriving face, seen from the face that waits:
@@ -12,9 +12,10 @@
 //!   exactly       kinematics with the drawn errors in place
 //! ```
 //!
-//! Joint errors are independent and normal; an encoder's step is uniform; links and the base may be off as well; a side force on
-//! the face bends every joint by its compliance, always the same way. What an earlier latch holds cannot be wrong: the joints
-//! between its faces yield and take the angles that the latched pair asks for, so they count no more.
+//! Joint errors are independent and normal; an encoder's step is uniform; links and the base may have errors
+//! as well; a lateral force on the face bends every joint by its compliance, always in the same direction. A
+//! pair that is already latched has no error: the joints between its faces yield and take the angles that the
+//! latched pair requires, so they no longer contribute.
 //!
 //! Millimetres, radians. Source: the dissertation gives no formula; these are elementary.
 

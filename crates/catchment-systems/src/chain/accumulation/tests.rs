@@ -1,4 +1,4 @@
-//! How errors add up, against closed forms, random chains and the published table.
+//! Accumulated errors compared with closed forms, random chains and the published table.
 
 use super::super::shape::{FIRST_CORNERS, Reading, Shape, latches};
 use super::*;

@@ -1,4 +1,4 @@
-//! Errors of random chains at a face, and which of them dock.
+//! Errors of random chains at a face, with the chains that dock.
 
 use super::super::accumulation::Covariance;
 use super::super::report::ChainReport;

@@ -1,4 +1,4 @@
-//! The chain file: modules, errors, what they are told, and the connector at their faces.
+//! The chain file: modules, errors, commands, and the connector at the faces.
 //!
 //! ```toml
 //! name = "CKBot P"

@@ -1,4 +1,4 @@
-//! Chain files: what is read, and everything that is refused.
+//! Chain files: valid input, and all errors.
 
 use super::*;
 

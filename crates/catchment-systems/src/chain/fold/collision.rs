@@ -1,4 +1,4 @@
-//! Which modules would be in one place.
+//! Detection of overlapping modules.
 //!
 //! ```text
 //!        ┌───────┬───────┐
@@ -6,8 +6,8 @@
 //!        └───────┴───────┘
 //! ```
 //!
-//! Halves of one module may overlap (its joint lies there), so may halves that one link joins, and modules that latch with each
-//! other: those press. Faces and their brackets are left out.
+//! Halves of the same module may overlap (its joint is there), as may halves joined by a link, and modules
+//! that latch with each other: those press. Faces and their brackets are ignored.
 
 use super::super::kinematics::{Body, Frame, direction, left};
 use super::super::shape::Latch;

@@ -9,18 +9,20 @@
 //!     └────────────── press, faces centred: both layers at once, twice the force ─────▶
 //! ```
 //!
-//! Quasi-static: commands ramp within a second, and at every sub-step the chain is where its energy has a minimum near to where it
-//! was. Faces that meet farther off-centre than half the overhang engage one layer: the other layer's hook rides beside its
-//! trench, and the pair rests off-centre by up to the overhang, until a joint between the faces goes slack; then the flexures pull
-//! the pair to its aligned pose. The next press latches the second layer.
+//! Quasi-static: commands ramp within a second, and at every sub-step the chain is at the minimum of its
+//! energy nearest to its last state. Faces that meet farther off-centre than half the overhang engage a
+//! single layer: the other layer's hook rides beside its trench, and the pair rests off-centre by up to the
+//! overhang, until a joint between the faces goes slack; then the flexures pull the pair to its aligned pose.
+//! The next press latches the second layer.
 //!
-//! Every step is checked: its commands may not put two modules into one cell, and on the way module bodies, without their faces, may
-//! not overlap; pairs that latch may press.
+//! Every step is checked: its commands may not put two modules into the same cell, and module bodies, without
+//! their faces, may not overlap during the step; pairs that latch may press.
 //!
-//! Source: the dissertation, section 6.3.1 (p. 104–105) tells this order of events; 10.9 N·m (p. 103), 9.61 N (p. 101), stiffnesses of
-//! the design o = 5.1 mm, t = 3.0 mm in table 6.1. Ours are: the servo's stiffness, which is not stated; that 9.61 N, the highest force of
-//! a test with one dip per layer, is the force of one layer; the rule for the riding hook. Not promised: friction, the ramps
-//! of the X-Face before it latches (the faces are flat here), and times: they say in which order things happen.
+//! Source: the dissertation, section 6.3.1 (p. 104–105) gives this order of events; 10.9 N·m (p. 103), 9.61 N
+//! (p. 101), stiffnesses of the design o = 5.1 mm, t = 3.0 mm in table 6.1. Our own assumptions are: the
+//! servo's stiffness, which is not stated; that 9.61 N, the highest force of a test with one dip per layer,
+//! is the force of a single layer; the rule for the riding hook. Not promised: friction, the ramps of the
+//! X-Face before it latches (the faces are flat here), and times: only their order is meaningful.
 
 mod collision;
 mod pair;

@@ -1,4 +1,4 @@
-//! A pair of faces: how they touch, what holds them, when a layer snaps.
+//! A pair of faces: its contact, its latches, and the snapping of a layer.
 
 use super::super::kinematics::{Body, Frame, direction, left, swing, wrapped};
 use super::super::shape::Latch;

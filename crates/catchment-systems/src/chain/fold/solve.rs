@@ -1,11 +1,12 @@
-//! Where a chain with springs rests: a minimum of its energy, by damped Newton steps.
+//! Rest of a chain with springs: a minimum of its energy, by damped Newton steps.
 //!
 //! ```text
 //!   V(q) = Σ servo(q_k − command_k) + Σ ½ k stretch²        servo: quadratic, linear beyond the stall torque
 //!   (Σ k slope·slopeᵀ + λ 1) Δq = −∇V                       Levenberg, Marquardt
 //! ```
 //!
-//! A slack joint that nothing pulls stays where it is: nothing moves without a gradient. Millimetres, newtons: torques in N·mm.
+//! A slack joint without a load keeps its angle: without a gradient nothing moves. Millimetres, newtons:
+//! torques in N·mm.
 
 use super::super::kinematics::{Body, Frame, rotors};
 use super::super::shape::Latch;

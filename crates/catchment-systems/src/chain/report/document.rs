@@ -1,4 +1,4 @@
-//! What people and programs read of a chain: millimetres and degrees, in tables for programs radians.
+//! Text and table form of a chain: millimetres and degrees; in tables for programs radians.
 
 use super::{ChainBody, FoldingReport};
 use crate::chain::accumulation::{heading_sigma, lateral_sigma};

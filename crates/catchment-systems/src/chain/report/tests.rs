@@ -1,4 +1,4 @@
-//! What a report says, and that it reads back.
+//! Content of a report, and its round trip.
 
 use super::super::file::ChainFile;
 use super::super::study::{Settings, run};

@@ -1,4 +1,4 @@
-//! Rings as a table: `x,y` or `x,y,ring`, a corner a line. Lines that begin with `#` are left out.
+//! Rings as a table: `x,y` or `x,y,ring`, a corner per line. Lines that begin with `#` are ignored.
 
 use super::rings::{MOST_CORNERS, Ring, region, too_many};
 use super::{Measure, Read, ReadError};

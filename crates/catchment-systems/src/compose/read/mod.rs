@@ -1,4 +1,4 @@
-//! Regions as people write them.
+//! Text formats of regions.
 //!
 //! | file | what |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | `.toml` with `[sweep]` | a shape and how it moves: see [`sweep`](super::sweep) |
 //! | `.toml` with `[connector]` | a connector design: the offsets that it corrects without rotation (ZRAA) |
 //!
-//! Rings are closed by themselves. What lies inside an odd number of rings belongs to the region, so a ring in a ring is a hole.
-//! Rings may touch; they may not cross.
+//! Rings close automatically. A point inside an odd number of rings belongs to the region, so a ring in a
+//! ring is a hole. Rings may touch; they may not cross.
 
 mod csv;
 mod rings;

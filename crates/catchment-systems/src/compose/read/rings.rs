@@ -1,4 +1,4 @@
-//! Closed rings of corners: what is wrong with them, and the region inside.
+//! Closed rings of corners: their errors, and the region inside.
 
 use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;

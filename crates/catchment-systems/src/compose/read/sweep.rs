@@ -1,4 +1,4 @@
-//! `[sweep]`: a shape and how it moves, as a form.
+//! `[sweep]`: a shape and its motion, as a form.
 
 use super::super::sum::SumError;
 use super::super::sweep::{Bracket, Motion, Shape};

@@ -1,41 +1,46 @@
-//! Rotations at which heights are wanted, as well: what they ask of the moving half, and what holds between them.
+//! Wanted heights at rotations: their requirements on the moving half, and bounds between the rotations.
 //!
-//! # The adjunction for a half that turns
+//! # The adjunction for a half that rotates
 //!
-//! The moving half M turns by R about the centre of rotation; the fixed half F stays. With the face centre at the lateral place x and
-//! the height z, a point m of M (from the face centre) is at (x, z) + R m. Coming down along −ẑ, M first touches F at
+//! The moving half M rotates by R about the centre of rotation; the fixed half F stays. With the face centre
+//! at the lateral position x and the height z, a point m of M (from the face centre) is at (x, z) + R m.
+//! Descending along −ẑ, M first touches F at
 //!
 //! ```text
 //!   h(x, R) = max { f_z − (R m)_z :  f in F,  m in M,  f_xy = x + (R m)_xy }
 //! ```
 //!
-//! `h(x, R) ≤ h*(x, R)` for every x says that no (x, h*(x, R)) + R m lies inside F or below it: with F↓ = F − [0, ∞) ẑ,
+//! `h(x, R) ≤ h*(x, R)` for every x means that no (x, h*(x, R)) + R m lies inside F or below it: with F↓ = F
+//! − [0, ∞) ẑ,
 //!
 //! ```text
 //!   m  is not inside  K(R) = R⁻¹ { F↓ − (x, h*(x, R)) :  all x }                for every m of M
 //!   g(u) = max over R of  max { z : (u, z) in K(R) }                            as M is solid above its lower surface g
 //! ```
 //!
-//! So g is the smallest function that keeps h ≤ h* at every R asked for, by M without undercuts. `F↓ − (x, h*(x, R))` over all x is
-//! F less the solid B above h*(·, R), so the upper side of K(R) is one more height of first contact: of R⁻¹B over R⁻¹F, exact like
-//! those without rotation. It is **the fixed half that appears turned, by R⁻¹**, and the direction of approach with it: the walls
-//! of B, infinite downward in K, lean when R tilts, so B must be tall enough that their lower ends lie below all of g.
+//! So g is the smallest function that keeps h ≤ h* at every given R, by M without undercuts.
+//! `F↓ − (x, h*(x, R))` over all x is F minus the solid B above h*(·, R), so the upper side of K(R) is
+//! another height of first contact: of R⁻¹B over R⁻¹F, exact like those without rotation. **The fixed half
+//! appears rotated by R⁻¹**, and so does the direction of approach: the walls of B, infinite downward in K,
+//! lean when R tilts, so B must be tall enough that their lower ends lie below all of g.
 //!
-//! **The centre of rotation** does not matter. It only says which x belongs to which pose: for a COR c in front of the face, the
-//! place of the COR is x − c·(R ẑ)_xy and its height h − c·(R ẑ)_z. Every x is asked for at every R, so the same set is asked for
-//! whatever c is; heights here are always those of the face centre, at the place of the face centre.
+//! **The centre of rotation** has no effect. It only determines which x belongs to which pose: for a COR c in
+//! front of the face, the position of the COR is x − c·(R ẑ)_xy and its height h − c·(R ẑ)_z. Every x is
+//! required at every R, so the same set is required for any c; heights here are always those of the face
+//! centre, at the position of the face centre.
 //!
-//! # What holds between the rotations
+//! # Bounds between the rotations
 //!
-//! A point at the distance r from the face centre moves by at most 2 r sin(δ/2) where the rotation changes by the angle δ. Let δ be the
-//! angle to the nearest rotation asked for, at most half the sum of the steps of the three angles, and ε the sum of these
-//! bounds for the new half and for the half whose heights are wanted. Going to that rotation and back,
+//! A point at the distance r from the face centre moves by at most 2 r sin(δ/2) if the rotation changes by
+//! the angle δ. Let δ be the angle to the nearest given rotation, at most half the sum of the steps of the
+//! three angles, and ε the sum of these bounds for the new half and for the half that defines the wanted
+//! heights. Going to that rotation and back,
 //!
 //! ```text
 //!   h(x, R) ≤ max { h*(x + d, R) :  |d| ≤ ε } + ε        for every R within the range of the angles
 //! ```
 //!
-//! wherever heights are wanted at all these x + d: nothing is wanted where a half passes the other by.
+//! if heights are wanted at all these x + d: no height is wanted where a half passes the other by.
 
 use super::heights::{Heights, common};
 use super::{InvertError, Settings, heights_of, is_planar};

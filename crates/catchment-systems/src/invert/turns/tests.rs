@@ -1,4 +1,5 @@
-//! Rotations: what comes back, what is kept, and how much is missed between; the judge is the contact of facets by definition.
+//! Rotations: recovered halves, kept bounds, and the error between rotations; the reference is the contact of
+//! facets by definition.
 
 use super::super::tests::{FAMILIES, family, inverted, own_heights, problem};
 use super::super::{Inverse, lower_surface};

@@ -1,4 +1,5 @@
-//! Bonding ratio over overhang and neck, with the nine measured designs, and where the model only guesses.
+//! Bonding ratio over overhang and neck, with the nine measured designs, and the region in which the model
+//! extrapolates.
 
 use super::super::Latch;
 use super::super::force::{Forces, outside};

@@ -1,4 +1,5 @@
-//! The record of a press: force over the way, with the dips where hooks pass, below the force to latch that is fitted to measurements.
+//! The record of a press: force over the path, with the dips as hooks pass, below the force to latch that is
+//! fitted to measurements.
 
 use super::super::press::Record;
 use catchment::report::figure::draw::axis::{Frame, Scale};

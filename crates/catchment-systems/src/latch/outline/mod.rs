@@ -1,19 +1,21 @@
 //! The outline of a layer, derived from the dissertation's sentences.
 //!
 //! 1. The arm's profile y = f(x) from the outer edge to the hook at xₑ = L/2 + o/2.
-//! 2. The hook: down to y = 0, back under the overhang to L/2 − o/2, down to −h: the trench for the partner's hook.
-//! 3. The same profile turned by 180° about (L/2, 0), down to −f(0) at x = L.
-//! 4. The stop slit, cut into it from above; left of it the neck, left of that the cut-out, open at the outer edge. The arm
-//!    hangs on the neck alone.
+//! 2. The hook: down to y = 0, back under the overhang to L/2 − o/2, down to −h: the trench for the partner's
+//!    hook.
+//! 3. The same profile rotated by 180° about (L/2, 0), down to −f(0) at x = L.
+//! 4. The stop slit, cut into it from above; left of it the neck, left of that the cut-out, open at the outer
+//!    edge. Only the neck carries the arm.
 //! 5. The body below, to which everything is fixed.
 //!
-//! Why the slit lies right of the hook, inside the part, although its distance is stated without saying from what: f falls
-//! everywhere and its tangent at the hook passes through P (both stated), so that P lies below and to the *right* of the hook.
-//! Pressing then pushes the hook outward with the longest lever, tension turns the arm clockwise, closes the slit and drives the hook deeper
-//! into the partner's trench, all as stated. Fifteen millimetres from the outer edge would put P on the left.
+//! The slit lies right of the hook, inside the part, although its distance is stated without a reference: f
+//! falls everywhere and its tangent at the hook passes through P (both stated), so that P lies below and to
+//! the *right* of the hook. Pressing then pushes the hook outward with the longest lever, tension turns the
+//! arm clockwise, closes the slit and drives the hook deeper into the partner's trench, all as stated.
+//! Fifteen millimetres from the outer edge would put P on the left.
 //!
-//! Curves are polylines whose corners lie on the curve; chords are off by less than [`CHORD`]. Both halves share their corners, so
-//! that they mate without gap or overlap.
+//! Curves are polylines whose corners lie on the curve; chords deviate by less than [`CHORD`]. Both halves
+//! share their corners, so that they mate without gap or overlap.
 
 use super::Latch;
 use super::profile::Profile;

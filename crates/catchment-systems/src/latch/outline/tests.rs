@@ -1,4 +1,4 @@
-//! The outline against closed forms, another library's areas, and random lengths.
+//! The outline compared with closed forms, another library's areas, and random lengths.
 
 use super::*;
 use i_overlay::core::fill_rule::FillRule;
