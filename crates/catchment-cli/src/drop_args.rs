@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::setting::number;
 use crate::setting::{Change, with_changes};
 use catchment::method::Method;
-use catchment::method::drop::{Launch, PRESETS, Settings};
+use catchment::method::drop::{DropSettings, Launch, PRESETS};
 use catchment::poses::Circumstance;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 pub(crate) struct DropArgs {
     /// Settings under a name; options beside it go before it
     #[arg(long, value_name = "PRESET", value_parser = preset_parser(), help_heading = DROP)]
-    preset: Option<Settings>,
+    preset: Option<DropSettings>,
     /// Force along the approach, through the centre of rotation, in kg·D/s² [default: 5000]
     #[arg(long, value_name = "FORCE", value_parser = number, help_heading = DROP)]
     push: Option<f64>,
@@ -152,7 +152,7 @@ impl DropArgs {
     ///
     /// # Errors
     /// A setting that no trial can be made with.
-    pub(crate) fn settings(&self) -> Result<Settings, Failure> {
+    pub(crate) fn settings(&self) -> Result<DropSettings, Failure> {
         Ok(serde_json::from_value(self.of("drop")?.settings())?)
     }
 
@@ -160,7 +160,7 @@ impl DropArgs {
     ///
     /// # Errors
     /// A setting that no trial can be made with.
-    pub(crate) fn on(&self, settings: Settings) -> Result<Settings, Failure> {
+    pub(crate) fn on(&self, settings: DropSettings) -> Result<DropSettings, Failure> {
         let mut changes = self.changes();
         changes.retain(|change| !matches!(change.setting, "trials" | "seed"));
         Ok(serde_json::from_value(with_changes(&Method::new(settings), &changes)?.settings())?)

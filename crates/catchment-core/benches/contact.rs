@@ -76,7 +76,7 @@ fn lathed(rates: &mut Rates, name: &str, halves: impl Fn() -> [meshes::Triangles
         &mut || assert_eq!(heights(), known),
         None,
     );
-    let settings = descent::Settings::default();
+    let settings = descent::DescentSettings::default();
     rates.measure(
         &format!("random poses of {name}"),
         "descents",
@@ -142,7 +142,7 @@ fn descents(rates: &mut Rates, name: &str, pair: &Pair, friction: f64) {
         Domain::Poses(poses) => poses,
         Domain::Grid(_) => Vec::new(),
     };
-    let settings = descent::Settings::with_friction(friction).expect("a coefficient of friction");
+    let settings = descent::DescentSettings::with_friction(friction).expect("a coefficient of friction");
     rates.measure(
         name,
         "descents",

@@ -11,7 +11,7 @@ use catchment_core::contact::Pair;
 use catchment_core::design::Alignment;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Grid, Landscape};
-use catchment_core::method::flood::{self, Flooding, Rule, Settings, brute, meyer};
+use catchment_core::method::flood::{self, FloodSettings, Flooding, Rule, brute, meyer};
 use catchment_core::pose::{Dof, Mount};
 use designs::pair;
 use peak_alloc::PeakAlloc;
@@ -50,7 +50,8 @@ fn main() {
         let pair = pair(&format!("{name}.toml"));
         let grid = Grid::over(&pair.alignment, |_| cells);
         let accept = || {
-            let found = flood::accept(&pair, &grid, &Settings::default(), &Exec::new()).expect("flooded");
+            let found =
+                flood::accept(&pair, &grid, &FloodSettings::default(), &Exec::new()).expect("flooded");
             let share = found.counts()[0] as f64 / grid.len() as f64;
             // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
             assert!((0.05..0.9).contains(&share), "{name}: {share} of the box accepted");
@@ -61,7 +62,7 @@ fn main() {
     for rule in [Rule::Lowest, Rule::Steepest] {
         let pair = pair("pyramid.toml");
         let landscape = landscape(&pair, 12);
-        let settings = Settings { rule, ..Settings::default() };
+        let settings = FloodSettings { rule, ..FloodSettings::default() };
         let flood = || {
             flood::flood(&landscape, &pair.alignment, &|_| true, &settings, &Exec::new()).expect("flooded")
         };
@@ -70,7 +71,7 @@ fn main() {
     }
     let small = pair("v-face.toml");
     let landscape = landscape(&small, SMALL);
-    let settings = Settings::default();
+    let settings = FloodSettings::default();
     let shape = landscape.grid.shape();
     rates.measure(
         "judged, v-face, 24 cells per axis",
@@ -88,7 +89,7 @@ fn main() {
     );
     let plane = pair("v-face.toml");
     let landscape = self::landscape(&plane, 100);
-    let settings = meyer::Settings::default();
+    let settings = meyer::MeyerSettings::default();
     rates.measure(
         "Meyer's queue, v-face, 100 cells per axis",
         "floods of cells",
@@ -160,7 +161,7 @@ impl Smooth {
 
     fn flood(landscape: &Landscape, alignment: &Alignment, threads: usize) -> Flooding {
         let exec = Exec::new().with_threads(threads).expect("threads");
-        flood::flood(landscape, alignment, &|_| true, &Settings::default(), &exec).expect("flooded")
+        flood::flood(landscape, alignment, &|_| true, &FloodSettings::default(), &exec).expect("flooded")
     }
 }
 

@@ -12,7 +12,7 @@ mod designs;
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::Exec;
-use catchment_core::method::partition::{self, Settings};
+use catchment_core::method::partition::{self, PartitionSettings};
 use designs::pair;
 use std::time::Instant;
 
@@ -36,7 +36,7 @@ fn main() {
         );
         let mut points = Vec::new();
         for slices in SLICES.into_iter().filter(|slices| timed || *slices < 20) {
-            let settings = Settings { slices, strips: per_strip.map_or(1, |n| slices.div_ceil(n)) };
+            let settings = PartitionSettings { slices, strips: per_strip.map_or(1, |n| slices.div_ceil(n)) };
             let mut seconds = Vec::new();
             let mut counts = partition::Counts::default();
             for _ in 0..if timed { RUNS } else { 1 } {

@@ -5,7 +5,7 @@ mod rates;
 
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Grid, Landscape};
-use catchment_core::method::transport::{self, Settings, brute};
+use catchment_core::method::transport::{self, TransportSettings, brute};
 use designs::pair;
 use peak_alloc::PeakAlloc;
 use rates::Rates;
@@ -20,7 +20,7 @@ fn main() {
     {
         let pair = pair(&format!("{name}.toml"));
         let grid = Grid::over(&pair.alignment, |_| cells);
-        let (settings, exec) = (Settings::default(), Exec::new());
+        let (settings, exec) = (TransportSettings::default(), Exec::new());
         let mean = || transport::run(&pair, &grid, &settings, &exec).expect("arrivals").mean();
         let known = mean();
         let landscape = Landscape::compute(&pair, &grid, &exec).expect("heights");

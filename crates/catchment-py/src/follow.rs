@@ -85,7 +85,7 @@ impl Problem {
         work(py, &how, |_| {
             let problem = &self.inner;
             check_rows(&[pose], problem.design())?;
-            let settings = descent::Settings::with_friction(friction)
+            let settings = descent::DescentSettings::with_friction(friction)
                 .map_err(|error| Refusal::argument("friction", error))?;
             let error = PoseError::from_array(pose);
             let (path, reason) = problem.trace(&error, &settings);

@@ -99,7 +99,7 @@ impl Problem {
     fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let problem = &self.inner;
-            let found = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
+            let found = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
             let square = Square::of(&found, exec)?;
             let nilsson = Nilsson::beside(&found, problem.pair());
             let offsets = AcceptedOffsets::new(problem.design(), &found, &square, nilsson.as_ref());

@@ -224,7 +224,7 @@ mod tests {
     use super::*;
     use catchment_core::acceptance::Outcome;
     use catchment_core::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, LengthUnit};
-    use catchment_core::method::descent::Settings;
+    use catchment_core::method::descent::DescentSettings;
     use catchment_core::pose::PoseError;
     use catchment_core::problem::Problem;
 
@@ -234,7 +234,8 @@ mod tests {
         let name = "a \"V\" --> b".to_owned();
         let design = Design { name, connector, width: 40.0, unit: Some(LengthUnit::Mm), alignment };
         let problem = Problem::of(design).unwrap();
-        let (start, settings) = (PoseError { x, pitch: 0.1, ..PoseError::default() }, Settings::default());
+        let (start, settings) =
+            (PoseError { x, pitch: 0.1, ..PoseError::default() }, DescentSettings::default());
         let (path, reason) = problem.trace(&start, &settings);
         let trace = TraceReport::new(&problem, &settings, start, &path, reason);
         (problem, trace)

@@ -4,7 +4,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Subject, Table, fixed};
 use catchment_core::method::kinematic::stepping::Halt;
-use catchment_core::method::kinematic::{Body, Lever, Settings, Start};
+use catchment_core::method::kinematic::{Body, KinematicSettings, Lever, Start};
 use catchment_core::pose::PoseError;
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ pub struct FirstContact {
     /// Name of the method.
     pub method: &'static str,
     /// Its settings.
-    pub settings: Settings,
+    pub settings: KinematicSettings,
     /// The pose error, in D and radians.
     pub start: PoseError,
     /// Its outcome by this method.

@@ -6,7 +6,7 @@ use super::schema::WarningReport;
 use catchment_core::acceptance::{Outcome, Reason};
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Document, Format, Table, decimals};
-use catchment_core::method::descent::{Settings, Touch, Trajectory, Waypoint};
+use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
@@ -86,7 +86,7 @@ impl TraceReport {
     /// Of a path that [`Problem::trace`] followed from `start` with `settings`, with the reason why it did not dock.
     pub fn new(
         problem: &Problem,
-        settings: &Settings,
+        settings: &DescentSettings,
         start: PoseError,
         path: &Trajectory,
         reason: Option<Reason>,
@@ -110,7 +110,7 @@ impl TraceReport {
     #[cfg(feature = "drop")]
     pub fn of_drop(
         design: &Design,
-        settings: &drop::Settings,
+        settings: &drop::DropSettings,
         start: PoseError,
         path: &drop::Path,
         warnings: Vec<WarningReport>,
@@ -251,7 +251,7 @@ mod tests {
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
         let problem = Problem::of(design).unwrap();
-        let (start, settings) = (PoseError::default(), Settings::default());
+        let (start, settings) = (PoseError::default(), DescentSettings::default());
         let mut report = TraceReport::new(&problem, &settings, start, &path, None);
         report.warnings.push(WarningReport::note("shallow"));
         report

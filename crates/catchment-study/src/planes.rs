@@ -42,7 +42,7 @@ pub fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
 }
 
 /// The grids of planes over these pairs of axes; none for a grid of fewer than three axes, which is a plane itself.
-fn grids(pair: &Pair, motions: &descent::Settings, grid: &Grid, planes: &[[Dof; 2]]) -> Vec<Grid> {
+fn grids(pair: &Pair, motions: &descent::DescentSettings, grid: &Grid, planes: &[[Dof; 2]]) -> Vec<Grid> {
     if grid.axes.len() < 3 {
         return Vec::new();
     }
@@ -55,7 +55,7 @@ fn grids(pair: &Pair, motions: &descent::Settings, grid: &Grid, planes: &[[Dof; 
 }
 
 /// Bytes that [`through_zero`] takes at its peak.
-pub fn bytes(pair: &Pair, motions: &descent::Settings, grid: &Grid) -> u64 {
+pub fn bytes(pair: &Pair, motions: &descent::DescentSettings, grid: &Grid) -> u64 {
     let cells = |grid: &Grid| grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let planes = grids(pair, motions, grid, &slice::pairs(grid));
     let largest = planes.iter().map(cells).max().unwrap_or(0);
@@ -68,7 +68,7 @@ pub fn bytes(pair: &Pair, motions: &descent::Settings, grid: &Grid) -> u64 {
 /// [`Cancelled`] when asked to stop.
 pub fn through_zero(
     pair: &Pair,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     grid: &Grid,
     exec: &Exec,
 ) -> Result<Vec<Acceptance>, Cancelled> {
@@ -81,7 +81,7 @@ pub fn through_zero(
 /// [`Cancelled`] when asked to stop.
 pub fn main_through_zero(
     pair: &Pair,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     grid: &Grid,
     exec: &Exec,
 ) -> Result<Option<Acceptance>, Cancelled> {
@@ -91,7 +91,7 @@ pub fn main_through_zero(
 
 fn follow(
     pair: &Pair,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     grid: &Grid,
     planes: &[[Dof; 2]],
     exec: &Exec,
@@ -117,7 +117,7 @@ mod tests {
     fn planes_of_symmetric_halves_are_symmetric_on_even_grids() {
         let problem = problem(Family::Pyramid, free(&[Dof::X, Dof::Y, Dof::Yaw]));
         let grid = Grid::over(problem.alignment(), |_| 4);
-        let motions = descent::Settings::default();
+        let motions = descent::DescentSettings::default();
         let planes = through_zero(problem.pair(), &motions, &grid, &Exec::new()).unwrap();
         let axes = |plane: &Acceptance| plane.grid().unwrap().axes.iter().map(|a| a.dof).collect::<Vec<_>>();
         assert!(planes.iter().map(axes).eq(slice::pairs(&grid).into_iter().map(Vec::from)));
@@ -147,7 +147,7 @@ mod tests {
     fn a_grid_of_two_errors_is_its_own_plane() {
         let problem = problem(Family::Pyramid, free(&[Dof::X, Dof::Pitch]));
         let grid = Grid::over(problem.alignment(), |_| 6);
-        let motions = descent::Settings::default();
+        let motions = descent::DescentSettings::default();
         assert!(through_zero(problem.pair(), &motions, &grid, &Exec::new()).unwrap().is_empty());
         assert_eq!(bytes(problem.pair(), &motions, &grid), 0);
         assert_eq!(main_pair(&grid), Some([Dof::X, Dof::Pitch]));

@@ -125,7 +125,7 @@ impl Sampled {
     pub fn correct(
         &self,
         problem: &Problem,
-        settings: &correction::Settings,
+        settings: &correction::CorrectionSettings,
         exec: &Exec,
     ) -> Result<Corrected, CorrectionError> {
         let doubts = self.decided.doubts.as_deref();

@@ -60,7 +60,7 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         let resolution = Resolution::uniform(Self::CELLS).unwrap_or_default();
-        Self { resolution, pairs: Vec::new(), method: Method::new(descent::Settings::default()) }
+        Self { resolution, pairs: Vec::new(), method: Method::new(descent::DescentSettings::default()) }
     }
 }
 
@@ -245,7 +245,7 @@ mod tests {
         let all = descent::run(
             problem.pair(),
             Domain::Grid(whole.clone()),
-            &descent::Settings::default(),
+            &descent::DescentSettings::default(),
             &Exec::new(),
         );
         let outcomes = all.unwrap().0.outcomes;

@@ -13,7 +13,7 @@
 
 use catchment::connector::Half;
 use catchment::design::Design;
-use catchment::method::descent::Settings;
+use catchment::method::descent::DescentSettings;
 use catchment::pose::PoseError;
 use catchment::problem::Problem;
 use catchment::report::TraceReport;
@@ -98,7 +98,7 @@ pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, frictio
         if !start.to_array().into_iter().all(f64::is_finite) {
             return Err("a pose error is no number".to_owned());
         }
-        let settings = Settings::with_friction(friction).map_err(told)?;
+        let settings = DescentSettings::with_friction(friction).map_err(told)?;
         let (path, reason) = problem.trace(&start, &settings);
         TraceReport::new(problem, &settings, start, &path, reason).to_json().map_err(told)
     };

@@ -6,7 +6,7 @@ use catchment::acceptance::{Outcome, Reason};
 use catchment::contact::mated::MatedProblem;
 use catchment::design::family::XFace;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::{self, DescentSettings};
 use catchment::pose::{Dof, DofSet, PoseError};
 use catchment::problem::Problem;
 use proptest::prelude::*;
@@ -40,7 +40,7 @@ fn problem(free: &[Dof], layers: Option<[f64; 2]>, docked_y: f64) -> Problem {
 }
 
 fn fate(problem: &Problem, error: PoseError) -> (Outcome, Option<Reason>) {
-    let end = descent::outcome(problem.pair(), &error, &Settings::default());
+    let end = descent::outcome(problem.pair(), &error, &DescentSettings::default());
     (end.outcome, Reason::of(problem, end.outcome, &end.error))
 }
 
@@ -83,7 +83,7 @@ fn the_range_of_y_has_a_closed_form() {
     let end = descent::outcome(
         flat.pair(),
         &PoseError { x: 0.3, y: 0.3, ..PoseError::default() },
-        &Settings::default(),
+        &DescentSettings::default(),
     );
     assert!((end.error.x.abs() - 0.5).abs() < 1e-6 && (end.error.y - 0.3).abs() < 1e-9, "{end:?}");
 }
@@ -127,7 +127,7 @@ fn roll_is_corrected_as_well() {
     let solid = problem(&free, Some([THICK, GAP]), GAP);
     assert_eq!(solid.doubts(), []);
     let error = PoseError { x: 0.2, y: 0.05, roll: 0.05, pitch: 0.1, yaw: 0.0 };
-    let end = descent::Follower::new(solid.pair(), &Settings::default()).rest(&error);
+    let end = descent::Follower::new(solid.pair(), &DescentSettings::default()).rest(&error);
     assert_eq!(end.outcome, Outcome::Aligned, "{end:?}");
     assert!(end.error.x.abs() < 0.01 && end.error.y.abs() < GAP, "{end:?}");
     assert!(end.error.roll.abs() < 0.02 && end.error.pitch.abs() < 0.02, "{end:?}");
@@ -139,7 +139,7 @@ fn roll_is_corrected_as_well() {
 fn free_yaw_turns_until_walls_meet() {
     let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
     assert!(matches!(all.doubts(), [MatedProblem::NotMinimum { .. }, ..]), "{:?}", all.doubts());
-    let end = descent::Follower::new(all.pair(), &Settings::default()).rest(&PoseError::default());
+    let end = descent::Follower::new(all.pair(), &DescentSettings::default()).rest(&PoseError::default());
     // At rest within the steps of the motion, some 1e-5.
     assert!((end.error.yaw - 2.0 * GAP.atan()).abs() < 1e-4, "{end:?}");
 }

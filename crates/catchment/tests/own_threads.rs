@@ -21,17 +21,19 @@ fn the_process_wide_pool_is_never_started() {
     for exec in [Exec::new(), Exec::new().with_threads(2).unwrap()] {
         assert!(exec.threads() > 0);
         let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
-        flood::flood(&landscape, &design.alignment, &|_| true, &flood::Settings::default(), &exec).unwrap();
-        let arrival = transport::run(&pair, &grid, &transport::Settings::default(), &exec).unwrap();
+        flood::flood(&landscape, &design.alignment, &|_| true, &flood::FloodSettings::default(), &exec)
+            .unwrap();
+        let arrival = transport::run(&pair, &grid, &transport::TransportSettings::default(), &exec).unwrap();
         assert!(arrival.mean() > 0.0);
         let acceptance = arrival.acceptance(&exec).unwrap();
         Onaa::of(&acceptance, &exec).unwrap();
         centered_cube(&acceptance, &exec).unwrap();
-        let settings = correction::Settings { seed: 1, stop: correction::Stop::Samples(50) };
+        let settings = correction::CorrectionSettings { seed: 1, stop: correction::Stop::Samples(50) };
         let strata = correction::ByNeighbours::new(&acceptance.outcomes, grid.shape());
-        correction::correct(&pair, &grid, &strata, &settings, &descent::Settings::default(), &exec).unwrap();
+        correction::correct(&pair, &grid, &strata, &settings, &descent::DescentSettings::default(), &exec)
+            .unwrap();
         let poses = Domain::random(&pair.alignment, 20, 1);
-        descent::run(&pair, poses, &descent::Settings::default(), &exec).unwrap();
+        descent::run(&pair, poses, &descent::DescentSettings::default(), &exec).unwrap();
     }
     // Refused if anything had started it.
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();

@@ -7,7 +7,7 @@ use catchment::contact::{Pair, brute};
 use catchment::design::{
     ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, OutlineSpec, OwnSpec, PartSpec, ShapeSpec,
 };
-use catchment::method::descent::{Follower, Settings};
+use catchment::method::descent::{DescentSettings, Follower};
 use catchment::method::zraa;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
@@ -314,7 +314,7 @@ fn balls_in_grooves_are_a_kinematic_coupling() {
     assert!(apart < expected + 1e-9 && apart > expected - 0.06 * 2f64.sqrt(), "{apart} {expected}");
     let lateral = problem.design().clone().with_free([Dof::X, Dof::Y].into_iter().collect()).unwrap();
     let lateral = problem.with(lateral).unwrap();
-    let zraa = zraa::run(lateral.pair(), &zraa::Settings::default(), &Exec::new()).unwrap();
+    let zraa = zraa::run(lateral.pair(), &zraa::ZraaSettings::default(), &Exec::new()).unwrap();
     let hexagon = 2.0 * 3f64.sqrt() * (5.0f64 / 60.0).powi(2);
     let zraa::Zraa::Region { area, .. } = zraa else { panic!("both offsets are free") };
     // The lowest corner of each ball is on its axis, so that the facets change nothing.
@@ -326,8 +326,8 @@ fn balls_in_grooves_are_a_kinematic_coupling() {
 fn balls_of_facets_do_not_rest_on_planes_beside_them() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml");
     let problem = Problem::open(path).unwrap();
-    let settings = Settings::default();
-    let fine = Settings { step: settings.step / 4.0, ..settings.clone() };
+    let settings = DescentSettings::default();
+    let fine = DescentSettings { step: settings.step / 4.0, ..settings.clone() };
     let (mut followers, mut differ) =
         ([&settings, &fine].map(|settings| Follower::new(problem.pair(), settings)), 0);
     // Halton points of the bases 2, 3, 5, 7 and 11, in ±0.1 D and ±0.2 rad.

@@ -15,7 +15,7 @@ use catchment::connector::{Connector, Half, Source, Surface, convex_hull};
 use catchment::contact::{Pair, brute};
 use catchment::design::{self, Alignment};
 use catchment::exec::Exec;
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::{self, DescentSettings};
 use catchment::pose::{CorPose, DofSet, Mount, PoseError, rotation};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -30,7 +30,7 @@ fn read(name: &str) -> (Connector, Alignment) {
 }
 
 fn outcome(pair: &Pair, [x, y, roll, pitch, yaw]: [f64; 5]) -> Outcome {
-    descent::outcome(pair, &PoseError { x, y, roll, pitch, yaw }, &Settings::default()).outcome
+    descent::outcome(pair, &PoseError { x, y, roll, pitch, yaw }, &DescentSettings::default()).outcome
 }
 
 /// What becomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first came to rest on a seam of the
@@ -106,7 +106,7 @@ fn changed(one: &Connector, other: &Connector, alignment: &Alignment, poses: usi
     let outcomes = |connector: &Connector| {
         let domain = Domain::random(alignment, poses, 1);
         let pair = Pair::new(connector, alignment);
-        descent::run(&pair, domain, &Settings::default(), &Exec::new()).unwrap().0.outcomes
+        descent::run(&pair, domain, &DescentSettings::default(), &Exec::new()).unwrap().0.outcomes
     };
     let (one, other) = (outcomes(one), outcomes(other));
     one.iter().zip(&other).filter(|(a, b)| a != b).count()

@@ -8,7 +8,7 @@ use catchment::contact::Pair;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
 use catchment::landscape::Grid;
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::{self, DescentSettings};
 
 fn sum(family: Family, aspect_ratio: f64, cor: f64) -> f64 {
     let mut alignment = Alignment::default_for(Some(family));
@@ -21,7 +21,7 @@ fn sum(family: Family, aspect_ratio: f64, cor: f64) -> f64 {
     let grid = Grid::over(&design.alignment, |_| 100);
     let cell = grid.cell_measure();
     let (acceptance, _) =
-        descent::run(&pair, Domain::Grid(grid), &Settings::default(), &Exec::new()).unwrap();
+        descent::run(&pair, Domain::Grid(grid), &DescentSettings::default(), &Exec::new()).unwrap();
     assert_eq!(acceptance.counts()[3], 0, "no pose may stay undecided");
     acceptance.counts()[0] as f64 * cell
 }

@@ -242,10 +242,10 @@ fn final_poses_are_places_of_rest() {
 
 #[test]
 fn undecided_random_motions_are_said() {
-    use catchment::method::descent::Settings;
+    use catchment::method::descent::DescentSettings;
     let problem = problem(Family::XFace3dLocking, DofSet::ALL);
     // A budget that suffices for some.
-    let short = Settings { max_steps: 9, ..Settings::default() };
+    let short = DescentSettings { max_steps: 9, ..DescentSettings::default() };
     let run = Run {
         over: Over::Grid("2".parse().unwrap()),
         sample: Sample::Until(Stop::Samples(200)),
@@ -310,7 +310,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
                 PoseError::from_array(error)
             };
             let domain = Domain::Poses(drawn.iter().map(inside).collect());
-            let settings = descent::Settings::default();
+            let settings = descent::DescentSettings::default();
             let (found, _) = descent::run(problem.pair(), domain, &settings, &Exec::new()).unwrap();
             found.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count()
         };

@@ -51,7 +51,7 @@ fn heights() {
 fn flooding() {
     for (file, cells) in [("x-face.toml", 60), ("x-face-3d.toml", 7)] {
         let (design, pair, grid) = prepare(file, cells);
-        let settings = flood::Settings::default();
+        let settings = flood::FloodSettings::default();
         same_for_all(file, |exec| {
             bytes(&design, &flood::accept(&pair, &grid, &settings, exec).unwrap(), exec)
         });
@@ -62,7 +62,7 @@ fn flooding() {
 fn descents() {
     for (file, cells) in [("v-face.toml", 30), ("pyramid.toml", 4)] {
         let (design, pair, grid) = prepare(file, cells);
-        let settings = descent::Settings::default();
+        let settings = descent::DescentSettings::default();
         same_for_all(file, |exec| {
             let domain = Domain::Grid(grid.clone());
             let (acceptance, ends) = descent::run(&pair, domain, &settings, exec).unwrap();
@@ -76,11 +76,12 @@ fn descents() {
 fn corrected_sums() {
     for (file, cells) in [("v-face.toml", 30), ("pyramid.toml", 5)] {
         let (_, pair, grid) = prepare(file, cells);
-        let settings = correction::Settings { seed: 1, stop: Stop::Samples(600) };
+        let settings = correction::CorrectionSettings { seed: 1, stop: Stop::Samples(600) };
         same_for_all(file, |exec| {
-            let arrival = transport::run(&pair, &grid, &transport::Settings::default(), exec).unwrap();
+            let arrival =
+                transport::run(&pair, &grid, &transport::TransportSettings::default(), exec).unwrap();
             let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
-            let descents = descent::Settings::default();
+            let descents = descent::DescentSettings::default();
             let found = correction::correct(&pair, &grid, &by, &settings, &descents, exec).unwrap();
             let listed = |most| correction::ambiguous(grid.len(), |c| arrival.is_ambiguous(c), most, exec);
             let (count, cells) = listed(grid.len()).unwrap();

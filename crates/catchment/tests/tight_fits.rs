@@ -16,7 +16,7 @@ use catchment::connector::{Connector, Half, Surface, convex_hull};
 use catchment::contact::Pair;
 use catchment::design::{self, Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::{self, DescentSettings};
 use catchment::pose::{Dof, DofSet, Mount};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -130,9 +130,9 @@ fn through_stl(half: &Half) -> Half {
 }
 
 fn outcomes(pair: &Pair, poses: usize, step: f64) -> Vec<Outcome> {
-    let whole = Settings::default();
+    let whole = DescentSettings::default();
     let longer = (whole.step / step).ceil() as usize;
-    let settings = Settings { step, max_steps: whole.max_steps * longer, ..whole };
+    let settings = DescentSettings { step, max_steps: whole.max_steps * longer, ..whole };
     let domain = Domain::random(&pair.alignment, poses, 1);
     descent::run(pair, domain, &settings, &Exec::new()).unwrap().0.outcomes
 }
@@ -143,7 +143,7 @@ fn changed(a: &[Outcome], b: &[Outcome]) -> usize {
 
 /// Halves the step and counts what changes.
 fn halving_changes(pair: &Pair, poses: usize) -> usize {
-    let step = Settings::default().step;
+    let step = DescentSettings::default().step;
     let whole = outcomes(pair, poses, step);
     // Otherwise nothing is tested.
     assert!(pair.is_tight() && whole.contains(&Outcome::Aligned));
@@ -183,7 +183,7 @@ fn pins_in_holes_do_not_depend_on_the_step() {
 #[test]
 fn pieces_and_stl_are_the_solid() {
     for (fit, poses) in [(SQUARE, 300), (ROUND, 60)] {
-        let of = |form| outcomes(&fit.pair(form), poses, Settings::default().step);
+        let of = |form| outcomes(&fit.pair(form), poses, DescentSettings::default().step);
         let solid = of(Form::Surface);
         for other in [of(Form::Pieces), of(Form::Stl)] {
             let changed = changed(&solid, &other);
@@ -198,7 +198,7 @@ fn pieces_and_stl_are_the_solid() {
 fn the_accepted_share_is_that_of_small_steps() {
     const POSES: usize = 200;
     let pair = SQUARE.pair(Form::Surface);
-    let step = Settings::default().step;
+    let step = DescentSettings::default().step;
     let changed = changed(&outcomes(&pair, POSES, step), &outcomes(&pair, POSES, step / 60.0));
     // Pose by pose, which is more than their share.
     assert!(changed <= 1, "{changed} of {POSES}");

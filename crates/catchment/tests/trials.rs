@@ -10,7 +10,7 @@ use catchment::connector::Connector;
 use catchment::contact::Pair;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::{self, DescentSettings};
 use catchment::pose::{Dof, DofSet, PoseError};
 use std::path::Path;
 
@@ -70,7 +70,7 @@ const SETS: [&str; 4] = [
 ];
 
 impl Trials {
-    fn outcomes(&self, settings: &Settings) -> Vec<Outcome> {
+    fn outcomes(&self, settings: &DescentSettings) -> Vec<Outcome> {
         let domain = Domain::Poses(self.poses.clone());
         descent::run(&self.pair, domain, settings, &Exec::new()).unwrap().0.outcomes
     }
@@ -109,7 +109,8 @@ impl Trials {
                 })
                 .collect();
             let (near, _) =
-                descent::run(&self.pair, Domain::Poses(poses), &Settings::default(), &Exec::new()).unwrap();
+                descent::run(&self.pair, Domain::Poses(poses), &DescentSettings::default(), &Exec::new())
+                    .unwrap();
             if near.accepted().any(|a| a != accepted) {
                 found = Some(radius);
                 break;
@@ -124,7 +125,7 @@ fn descent_agrees_with_the_engine() {
     let (mut agreed, mut decided) = (0, 0);
     for file in SETS {
         let trials = read(file);
-        let outcomes = trials.outcomes(&Settings::default());
+        let outcomes = trials.outcomes(&DescentSettings::default());
         let (same, of, differing) = trials.compared(&outcomes);
         println!("{}: {same} of {of}", trials.name);
         // Undecided poses leave the comparison: hardly any may.
@@ -147,8 +148,8 @@ fn the_outcome_does_not_hang_on_the_step() {
     let (mut changed, mut tried) = (0, 0);
     for file in SETS {
         let trials = read(file);
-        let whole = Settings::default();
-        let half = Settings { step: whole.step / 2.0, ..whole.clone() };
+        let whole = DescentSettings::default();
+        let half = DescentSettings { step: whole.step / 2.0, ..whole.clone() };
         let (a, b) = (trials.outcomes(&whole), trials.outcomes(&half));
         changed += a.iter().zip(&b).filter(|(a, b)| a != b).count();
         tried += a.len();
@@ -162,7 +163,7 @@ fn the_outcome_does_not_hang_on_the_step() {
 #[test]
 fn the_engine_confirms_the_v_face_border() {
     let trials = read("v-face-ar0.5-cor-0.5-border.json");
-    let outcomes = trials.outcomes(&Settings::default());
+    let outcomes = trials.outcomes(&DescentSettings::default());
     let (same, of, _) = trials.compared(&outcomes);
     println!("{same} of {of} border cells");
     // Every one of these poses lies within two cells of the border, where agreement is hardest.
@@ -180,8 +181,10 @@ fn drop_tests_agree_with_descent() {
         let trials = read(file);
         let poses: Vec<PoseError> = trials.poses.iter().copied().step_by(EVERY).collect();
         let domain = || Domain::Poses(poses.clone());
-        let (descents, _) = descent::run(&trials.pair, domain(), &Settings::default(), &Exec::new()).unwrap();
-        let (drops, _) = drop::run(&trials.pair, domain(), &drop::Settings::default(), &Exec::new()).unwrap();
+        let (descents, _) =
+            descent::run(&trials.pair, domain(), &DescentSettings::default(), &Exec::new()).unwrap();
+        let (drops, _) =
+            drop::run(&trials.pair, domain(), &drop::DropSettings::default(), &Exec::new()).unwrap();
         let same = descents.accepted().zip(drops.accepted()).filter(|(a, b)| a == b).count();
         println!("{}: {same} of {}", trials.name, poses.len());
         assert!(same * 100 >= poses.len() * 95, "{}: {same} of {}", trials.name, poses.len());
@@ -223,9 +226,9 @@ fn hooked_and_grooved_motions_end_as_in_the_engine() {
         let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
         let poses = || Domain::Poses(poses.iter().map(|pose| PoseError::from_array(*pose)).collect());
         let (descents, _) =
-            descent::run(problem.pair(), poses(), &Settings::default(), &Exec::new()).unwrap();
+            descent::run(problem.pair(), poses(), &DescentSettings::default(), &Exec::new()).unwrap();
         let (drops, _) =
-            drop::run(problem.pair(), poses(), &drop::Settings::default(), &Exec::new()).unwrap();
+            drop::run(problem.pair(), poses(), &drop::DropSettings::default(), &Exec::new()).unwrap();
         assert_eq!(descents.outcomes, drops.outcomes, "{text}");
     }
 }
@@ -262,8 +265,8 @@ fn drop_tests_agree_with_friction() {
             PoseError::from_array(std::array::from_fn(number))
         };
         let poses = || Domain::Poses((0..POSES).map(pose).collect());
-        let by_motion = Settings::with_friction(friction).unwrap();
-        let by_drop = drop::Settings { friction, ..drop::Settings::default() };
+        let by_motion = DescentSettings::with_friction(friction).unwrap();
+        let by_drop = drop::DropSettings { friction, ..drop::DropSettings::default() };
         let (descents, _) = descent::run(problem.pair(), poses(), &by_motion, &Exec::new()).unwrap();
         let (drops, _) = drop::run(problem.pair(), poses(), &by_drop, &Exec::new()).unwrap();
         let same = descents.accepted().zip(drops.accepted()).filter(|(a, b)| a == b).count();

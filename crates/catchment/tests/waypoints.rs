@@ -9,7 +9,7 @@ use catchment::acceptance::Outcome;
 use catchment::connector::{Connector, Half, Surface};
 use catchment::contact::{Pair, brute};
 use catchment::design::{Alignment, ConnectorSpec, Design, HalfSpec, OwnSpec};
-use catchment::method::descent::{Settings, Trajectory, trace};
+use catchment::method::descent::{DescentSettings, Trajectory, trace};
 use catchment::pose::{CorPose, Dof, DofSet, Mount, PoseError};
 use catchment::prelude::Problem;
 use glam::DVec3;
@@ -140,7 +140,7 @@ impl Extruded {
     }
 
     fn passes_through_nothing(&self, error: &PoseError) -> Result<Outcome, TestCaseError> {
-        let path = trace(&self.pair, error, &Settings::default());
+        let path = trace(&self.pair, error, &DescentSettings::default());
         for (pose, cor) in below_first_contact(&self.pair, &path) {
             let deep = self.overlap(&pose, cor);
             prop_assert!(deep <= DEEP, "{error:?}: {deep} D deep at {pose:?}, {cor}");
@@ -235,7 +235,7 @@ fn no_design_passes_through_itself() {
         let pair = problem.pair();
         let count = if is_small(pair) { 100 } else { 10 };
         for error in poses(pair, count, 3) {
-            let path = trace(pair, &error, &Settings::default());
+            let path = trace(pair, &error, &DescentSettings::default());
             // Of many facets the last alone: what has passed a wall stays behind it.
             let below: Vec<_> = below_first_contact(pair, &path).collect();
             for (pose, cor) in
@@ -273,7 +273,7 @@ fn a_tip_that_lands_flat_stays_where_it_lies() {
             pitch: 0.2 * part(0.48),
             yaw: 0.5 * part(0.4),
         };
-        let path = trace(&pair, &error, &Settings::default());
+        let path = trace(&pair, &error, &DescentSettings::default());
         assert_eq!(path.outcome, Outcome::Jammed, "{error:?}");
         let last = path.waypoints.last().unwrap();
         let flush = path.waypoints.iter().filter(|w| w.height - last.height < 1e-6);

@@ -136,7 +136,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let plan = Plan { offsets_at: args.offsets_at.into(), ..plan };
     let slices = if output.wants_picture() {
         let poses: Vec<PoseError> = plan.points.iter().map(|point| point.error).collect();
-        let motions = descent::Settings::with_friction(settings.friction)?;
+        let motions = descent::DescentSettings::with_friction(settings.friction)?;
         panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?
     } else {
         Vec::new()

@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, warnings};
-use catchment::method::partition::{Settings, Subject, shapes};
+use catchment::method::partition::{PartitionSettings, Subject, shapes};
 use catchment::report::{Body, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
@@ -44,7 +44,7 @@ pub(crate) struct SolidsArgs {
 }
 
 /// Those of figure 5.6 of the dissertation.
-const DEFAULT: Settings = Settings { slices: 15, strips: 1 };
+const DEFAULT: PartitionSettings = PartitionSettings { slices: 15, strips: 1 };
 
 fn shape_parser() -> ValueParser {
     let shapes = [
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
     if output.wants_picture() {
         figure::ensure_fits(0, &running.exec)?;
     }
-    let settings = Settings { slices: args.slices, strips: args.strips };
+    let settings = PartitionSettings { slices: args.slices, strips: args.strips };
     let shape = shapes(problem.pair(), args.shape, &settings, &running.exec)?;
     drop(running);
     match output.own() {

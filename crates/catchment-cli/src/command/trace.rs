@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::result_args::{Output, ResultArgs, warnings};
 use catchment::document::Subject;
 use catchment::exec::Exec;
-use catchment::method::descent::{Settings, Trajectory};
+use catchment::method::descent::{DescentSettings, Trajectory};
 use catchment::method::drop::Bench;
 use catchment::method::kinematic::Start;
 use catchment::poses::parse_pose;
@@ -93,7 +93,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
             finish(output, &report, &problem, &path.trajectory())
         }
         By::Descent => {
-            let settings = Settings::with_friction(args.drop.friction())?;
+            let settings = DescentSettings::with_friction(args.drop.friction())?;
             // Other settings are of drop tests.
             args.drop.of("descent")?;
             let (path, reason) = problem.trace(&error, &settings);

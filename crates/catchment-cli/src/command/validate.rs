@@ -92,7 +92,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let validation = Validation { offsets_at: table.offsets_at, ..validation };
     let slices = if output.wants_picture() {
         let poses: Vec<PoseError> = validation.trials.iter().map(|trial| trial.point.error).collect();
-        let motions = descent::Settings::with_friction(settings.friction)?;
+        let motions = descent::DescentSettings::with_friction(settings.friction)?;
         panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?
     } else {
         Vec::new()

@@ -12,7 +12,7 @@ use catchment::design::Design;
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::method::Method;
-use catchment::method::zraa::{Nilsson, Settings, Square, Zraa, run as accepted_offsets};
+use catchment::method::zraa::{Nilsson, Square, Zraa, ZraaSettings, run as accepted_offsets};
 use catchment::problem::{Draft, Problem};
 use catchment::report::figure::{self, Face};
 use catchment::report::schema::Timing;
@@ -131,7 +131,7 @@ struct Correction {
 
 impl Correction {
     fn of(problem: &Problem, exec: &Exec) -> Result<Self, Failure> {
-        let zraa = accepted_offsets(problem.pair(), &Settings::default(), exec)?;
+        let zraa = accepted_offsets(problem.pair(), &ZraaSettings::default(), exec)?;
         let square = Square::of(&zraa, exec)?;
         let nilsson = Nilsson::beside(&zraa, problem.pair());
         Ok(Self { zraa, square, nilsson })

@@ -1,6 +1,6 @@
 //! Estimates of time and memory before a computation.
 
-use super::descent::{End, Follower, Settings};
+use super::descent::{DescentSettings, End, Follower};
 use crate::acceptance::{Domain, Outcome};
 use crate::advice::Advice;
 use crate::contact::Pair;
@@ -58,7 +58,7 @@ fn counted(pair: &Pair) -> f64 {
     /// After so many seconds what was seen is enough.
     const ENOUGH: f64 = 2.0;
     let Domain::Poses(poses) = Domain::random(&pair.alignment, POSES, SEED) else { return DESCENT_SECONDS };
-    let settings = Settings::default();
+    let settings = DescentSettings::default();
     let mut follower = Follower::new(pair, &settings);
     let (mut random, mut docking, mut followed) = (0.0, 0.0, 0.0);
     for pose in &poses {

@@ -108,8 +108,8 @@ pub trait Decide: fmt::Debug + Send + Sync {
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError>;
 
     /// How it follows motions, and how random poses beside it are followed.
-    fn motions(&self) -> descent::Settings {
-        descent::Settings::default()
+    fn motions(&self) -> descent::DescentSettings {
+        descent::DescentSettings::default()
     }
 
     /// The same method for so much time, where it has something to tell when the time is over; what takes its time anyway has not.

@@ -22,7 +22,7 @@ pub struct Followed {
 impl Problem {
     /// Where one pose comes to rest, by exact quasi-static motion.
     pub fn follow(&self, pose: &PoseError) -> End {
-        Follower::new(self.pair(), &descent::Settings::default()).rest(pose)
+        Follower::new(self.pair(), &descent::DescentSettings::default()).rest(pose)
     }
 
     /// Where every pose comes to rest, in their order, on all threads of `exec`.
@@ -31,7 +31,7 @@ impl Problem {
     /// It was asked to stop.
     pub fn follow_many(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<End>, Cancelled> {
         let domain = Domain::Poses(poses.to_vec());
-        Ok(descent::rests(self.pair(), domain, &descent::Settings::default(), exec)?.1)
+        Ok(descent::rests(self.pair(), domain, &descent::DescentSettings::default(), exec)?.1)
     }
 
     /// Where every pose comes to rest by a method of one's choice, and their outcomes.
@@ -100,7 +100,11 @@ impl Problem {
     }
 
     /// The path of one pose from first contact to where it rests, and why it does not dock, where that can be determined.
-    pub fn trace(&self, start: &PoseError, settings: &descent::Settings) -> (Trajectory, Option<Reason>) {
+    pub fn trace(
+        &self,
+        start: &PoseError,
+        settings: &descent::DescentSettings,
+    ) -> (Trajectory, Option<Reason>) {
         let path = descent::trace(self.pair(), start, settings);
         let end = path.waypoints.last().map(|waypoint| waypoint.error);
         let reason = end.and_then(|end| Reason::of(self, path.outcome, &end));

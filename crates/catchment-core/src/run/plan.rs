@@ -19,7 +19,7 @@ pub struct Plan {
     /// Which poses.
     pub domain: Domain,
     /// Random poses that correct the Sum, if any shall.
-    pub sample: Option<correction::Settings>,
+    pub sample: Option<correction::CorrectionSettings>,
     /// Whether the heights are computed beside what the method needs.
     pub heights: bool,
     /// What deciding will take.
@@ -106,7 +106,7 @@ impl Run {
                 samples => Some(Stop::Samples(samples)),
             },
         };
-        let sample = stop.map(|stop| correction::Settings { seed: self.seed, stop });
+        let sample = stop.map(|stop| correction::CorrectionSettings { seed: self.seed, stop });
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
         let afterwards = self.afterwards(problem, &method, &domain);

@@ -81,7 +81,7 @@ impl Seating {
     pub(super) fn of(
         problem: &Problem,
         acceptance: &Acceptance,
-        settings: &descent::Settings,
+        settings: &descent::DescentSettings,
         seed: u64,
         exec: &Exec,
     ) -> Result<Self, Cancelled> {
@@ -186,7 +186,7 @@ fn accepted(acceptance: &Acceptance, count: u64, seed: u64) -> Vec<PoseError> {
 impl Problem {
     /// Where a half let go without any error comes to rest: where it began, if the mated pose is one.
     pub fn settled(&self) -> End {
-        Follower::new(self.pair(), &descent::Settings::default()).rest(&PoseError::default())
+        Follower::new(self.pair(), &descent::DescentSettings::default()).rest(&PoseError::default())
     }
 
     /// This problem, unless its mated pose does not hold.

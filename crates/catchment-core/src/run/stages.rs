@@ -22,7 +22,7 @@ pub(super) fn follower(method: &Method) -> ExactFollower<'_> {
 /// Either of the two.
 pub(super) struct ExactFollower<'a> {
     own: Option<&'a dyn Follow>,
-    descent: descent::Settings,
+    descent: descent::DescentSettings,
 }
 
 impl ExactFollower<'_> {
@@ -120,7 +120,7 @@ struct Stages<'a> {
     plan: &'a Plan,
     problem: &'a Problem,
     follower: ExactFollower<'a>,
-    motions: descent::Settings,
+    motions: descent::DescentSettings,
 }
 
 /// The window of a run that computes one, or why there is none.
@@ -217,7 +217,7 @@ fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
 }
 
 /// What the grid has left of a budget of time, of which random poses have their part in any case.
-fn left(settings: correction::Settings, started: Stopwatch) -> correction::Settings {
+fn left(settings: correction::CorrectionSettings, started: Stopwatch) -> correction::CorrectionSettings {
     let stop = match settings.stop {
         Stop::Budget(budget) => {
             let least = budget.saturating_sub(budget / GRID_PART);
@@ -225,7 +225,7 @@ fn left(settings: correction::Settings, started: Stopwatch) -> correction::Setti
         }
         stop => stop,
     };
-    correction::Settings { stop, ..settings }
+    correction::CorrectionSettings { stop, ..settings }
 }
 
 /// The Sum, made unbiased by random poses, most of them where the method is in doubt.
@@ -235,7 +235,7 @@ pub fn correct(
     grid: &Grid,
     acceptance: &Acceptance,
     doubts: Option<&dyn Doubts>,
-    settings: &correction::Settings,
+    settings: &correction::CorrectionSettings,
     exec: &Exec,
 ) -> Result<Corrected, CorrectionError> {
     let follower = follower(method);

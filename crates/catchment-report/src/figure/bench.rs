@@ -304,7 +304,7 @@ mod tests {
         let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
         let found = run(&problem, &Settings::new(pattern, accuracy), &Exec::new()).unwrap();
         let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
-        let motions = descent::Settings::default();
+        let motions = descent::DescentSettings::default();
         let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
         assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
         let report = PlanReport::new(problem.design(), found, Vec::new(), None);
@@ -344,7 +344,7 @@ mod tests {
                 ..PoseError::default()
             };
             let poses: Vec<PoseError> = yaws.iter().enumerate().map(pose).collect();
-            let motions = descent::Settings::default();
+            let motions = descent::DescentSettings::default();
             let found = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
             let marks: Vec<Mark> =
                 poses.iter().map(|error| Mark { error: *error, shape: Shape::Docks, wrong: false }).collect();

@@ -118,7 +118,7 @@ pub(crate) mod tests {
     use catchment_core::design::Design;
     use catchment_core::exec::Exec;
     use catchment_core::landscape::{Grid, Landscape};
-    use catchment_core::method::flood::{Flooding, Reason, Settings, flood};
+    use catchment_core::method::flood::{FloodSettings, Flooding, Reason, flood};
     use catchment_core::pose::Dof;
 
     /// A mated valley, two jams beside it, one of them shallow, and nothing beyond.
@@ -136,7 +136,7 @@ pub(crate) mod tests {
         let heights = (0..grid.len()).map(height).collect();
         let landscape = Landscape { grid, heights };
         let flooding =
-            flood(&landscape, &design.alignment, &|_| true, &Settings::default(), &Exec::new()).unwrap();
+            flood(&landscape, &design.alignment, &|_| true, &FloodSettings::default(), &Exec::new()).unwrap();
         (design, flooding)
     }
 

@@ -19,7 +19,7 @@ use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Table, grouped};
-use catchment_core::method::partition::{Settings, Solid, Solids, Subject};
+use catchment_core::method::partition::{PartitionSettings, Solid, Solids, Subject};
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -40,7 +40,7 @@ pub struct SolidsBody {
     /// 3, or 2 for flat bodies.
     pub dimension: usize,
     /// Slices and strips; null for the halves.
-    pub settings: Option<Settings>,
+    pub settings: Option<PartitionSettings>,
     /// Number of convex pieces of the fixed half.
     pub fixed_pieces: usize,
     /// Number of convex pieces of the moving half.
@@ -93,7 +93,7 @@ impl Printed for SolidsBody {
         let mut document = Document::default();
         document.row("shape", in_words(self.shape));
         document.row("pieces", format!("{} fixed, {} moving", self.fixed_pieces, self.moving_pieces));
-        if let Some(Settings { slices, strips }) = self.settings {
+        if let Some(PartitionSettings { slices, strips }) = self.settings {
             let turns = self.axes.iter().any(|axis| is_angle(axis));
             let slices = if turns { format!("{slices} slices, ") } else { String::new() };
             document.row("made of", format!("{slices}{strips} strips per D"));

@@ -13,7 +13,7 @@ fn shape(family: Family, free: &[Dof], subject: Subject) -> (Design, Solids) {
     let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(0.5));
     let design = Design { name: "shape".to_owned(), connector, width: 1.0, unit: None, alignment };
     let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-    let shape = shapes(&pair, subject, &Settings { slices: 4, strips: 1 }, &Exec::new()).unwrap();
+    let shape = shapes(&pair, subject, &PartitionSettings { slices: 4, strips: 1 }, &Exec::new()).unwrap();
     (design, shape)
 }
 

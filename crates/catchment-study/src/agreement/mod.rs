@@ -140,7 +140,7 @@ pub enum AgreementError {
 /// Cells per axis where several methods share a grid and nothing was said, for one to five axes: what exact descent can
 /// afford, and even, which keeps cells off the mirror planes where transport is weak.
 pub fn even_cells(problem: &Problem) -> [usize; 5] {
-    let odd = descent::Settings::default().default_cells(problem.pair());
+    let odd = descent::DescentSettings::default().default_cells(problem.pair());
     odd.map(|cells| (cells - 1).max(Resolution::LEAST))
 }
 

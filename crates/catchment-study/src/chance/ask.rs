@@ -147,8 +147,8 @@ impl Trials<'_> {
     }
 
     /// How exact motions follow a draw.
-    pub(super) fn motions(&self, draw: &Draw) -> Result<descent::Settings, ChanceError> {
-        Ok(descent::Settings::with_friction(draw.friction(self.settings))?)
+    pub(super) fn motions(&self, draw: &Draw) -> Result<descent::DescentSettings, ChanceError> {
+        Ok(descent::DescentSettings::with_friction(draw.friction(self.settings))?)
     }
 
     /// The draws of a pose: functions of the seed, the pose and their numbers, wherever the pose stands.

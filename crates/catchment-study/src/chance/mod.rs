@@ -58,7 +58,7 @@ use serde::{Deserialize, Serialize};
 pub struct Settings {
     /// Constants of the drop test for all parameters without a distribution; its trials and seed are ignored,
     /// and its push too if the speed is held.
-    pub drop: drop::Settings,
+    pub drop: drop::DropSettings,
     /// Distributions of the declared parameters.
     pub dynamics: Dynamics,
     /// Whether the push is the force that damping balances at the approach speed, instead of the push in
@@ -77,7 +77,11 @@ pub const DAMPING: f64 = 10.0;
 
 impl Default for Settings {
     fn default() -> Self {
-        let drop = drop::Settings { damping: DAMPING, angular_damping: DAMPING, ..drop::Settings::default() };
+        let drop = drop::DropSettings {
+            damping: DAMPING,
+            angular_damping: DAMPING,
+            ..drop::DropSettings::default()
+        };
         Self { drop, dynamics: Dynamics::default(), held: true, trials: 100, overall: 1000, seed: 1 }
     }
 }

@@ -105,16 +105,17 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
 #[test]
 fn a_given_push_is_taken_as_it_is() {
     let problem = sliding();
-    let drop = drop::Settings {
+    let drop = drop::DropSettings {
         push: Push::Gravity(100.0),
         damping: 5.0,
         angular_damping: 5.0,
         perturbation: 0.0,
-        ..drop::Settings::default()
+        ..drop::DropSettings::default()
     };
     let dynamics = speed(2.0).with(Circumstance::DriftX, Law::constant(3.0));
     let settings = Settings { drop: drop.clone(), dynamics, held: false, trials: 1, ..Settings::default() };
-    let by_hand = drop::Settings { launch: Launch { speed: 2.0, drift: [3.0, 0.0], spin: [0.0; 3] }, ..drop };
+    let by_hand =
+        drop::DropSettings { launch: Launch { speed: 2.0, drift: [3.0, 0.0], spin: [0.0; 3] }, ..drop };
     let bench = drop::Bench::new(problem.pair()).unwrap();
     let mut met = Vec::new();
     for at in [-0.9, -0.6, -0.3, 0.0, 0.3, 0.45] {
@@ -134,7 +135,7 @@ fn a_heavy_half_coasts_as_a_fast_one() {
         let law = Law::Measured { measured: vec![mass, mass] };
         // Its mean is that of the settings where the law is a constant.
         let nominal = Law::Measured { measured: vec![1.0] };
-        let drop = drop::Settings { perturbation: 0.0, ..Settings::default().drop };
+        let drop = drop::DropSettings { perturbation: 0.0, ..Settings::default().drop };
         let dynamics = Dynamics::default().with(Circumstance::Mass, nominal);
         let settings = Settings { drop, dynamics, ..Settings::default() };
         let dynamics = Dynamics::default()

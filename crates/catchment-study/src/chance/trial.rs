@@ -53,7 +53,7 @@ impl Draw {
     }
 
     /// The settings of a trial, with every velocity times `factor`; `nominal` is the mass whose damping is declared, in kg.
-    pub(super) fn settings(&self, settings: &Settings, factor: f64, nominal: f64) -> drop::Settings {
+    pub(super) fn settings(&self, settings: &Settings, factor: f64, nominal: f64) -> drop::DropSettings {
         let mut drop = settings.drop.clone();
         let of = |of: Circumstance, rest: f64| self.get(of).unwrap_or(rest);
         let mass = of(Circumstance::Mass, nominal);

@@ -153,7 +153,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Conver
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(ConvergenceError::Tolerance { tolerance });
     }
-    let affordable = || descent::Settings::default().default_samples(problem.pair());
+    let affordable = || descent::DescentSettings::default().default_samples(problem.pair());
     let settings =
         &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
     let total = settings.methods.len() as f64;
@@ -217,7 +217,7 @@ fn sequence(
     let corrected = match finest {
         Some(sampled) if settings.descents != Some(0) => {
             let stop = Stop::Samples(settings.descents.unwrap_or_default());
-            let sample = correction::Settings { seed: settings.seed, stop };
+            let sample = correction::CorrectionSettings { seed: settings.seed, stop };
             let found = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
             Some(CorrectedSum { sum: found.sum, ci95: found.ci95, descents: found.descents })
         }

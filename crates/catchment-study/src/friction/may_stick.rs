@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 pub struct MayStick<'a> {
     problem: &'a Problem,
     poses: &'a [PoseError],
-    settings: descent::Settings,
+    settings: descent::DescentSettings,
     known: Vec<OnceLock<bool>>,
 }
 

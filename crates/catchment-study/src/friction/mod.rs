@@ -230,12 +230,12 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Fricti
     else {
         return Err(FrictionError::NoMotions);
     };
-    let ladder: Vec<descent::Settings> = settings
+    let ladder: Vec<descent::DescentSettings> = settings
         .frictions
         .iter()
-        .map(|mu| descent::Settings::with_friction(*mu))
+        .map(|mu| descent::DescentSettings::with_friction(*mu))
         .collect::<Result<_, _>>()?;
-    let without = descent::Settings::default();
+    let without = descent::DescentSettings::default();
     let top = settings.frictions.last().copied().unwrap_or_default();
     let done = AtomicUsize::new(0);
     let ways: Vec<Way> = exec.install(|| {
@@ -273,7 +273,7 @@ impl Settings {
     /// Everything filled in, the ladder from below.
     fn filled(&self, problem: &Problem) -> Result<Self, FrictionError> {
         for friction in &self.frictions {
-            descent::Settings::with_friction(*friction)?;
+            descent::DescentSettings::with_friction(*friction)?;
         }
         let mut frictions: Vec<f64> =
             self.frictions.iter().copied().filter(|friction| *friction > 0.0).collect();
@@ -282,9 +282,9 @@ impl Settings {
         if frictions.is_empty() {
             return Err(FrictionError::NoFrictions);
         }
-        let motions = self
-            .motions
-            .unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()).div_ceil(FEWER));
+        let motions = self.motions.unwrap_or_else(|| {
+            descent::DescentSettings::default().default_samples(problem.pair()).div_ceil(FEWER)
+        });
         if motions == 0 {
             return Err(FrictionError::NoMotions);
         }
@@ -334,7 +334,7 @@ impl Way {
         let lost = at.iter().position(|(outcome, _)| *outcome != Outcome::Aligned).filter(|_| docks);
         let critical = lost.map(|k| {
             let docks_at = |friction: f64| {
-                let settings = descent::Settings { friction, ..descent::Settings::default() };
+                let settings = descent::DescentSettings { friction, ..descent::DescentSettings::default() };
                 descent::outcome(problem.pair(), pose, &settings).outcome == Outcome::Aligned
             };
             let [mut docks, mut fails] = [if k == 0 { 0.0 } else { frictions[k - 1] }, frictions[k]];

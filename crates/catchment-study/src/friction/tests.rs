@@ -73,7 +73,7 @@ fn tallies_add_up_and_threads_change_nothing() {
     );
     let direct = |friction: f64| {
         let Domain::Poses(poses) = Domain::random(problem.alignment(), 120, 3) else { unreachable!() };
-        let settings = descent::Settings::with_friction(friction).unwrap();
+        let settings = descent::DescentSettings::with_friction(friction).unwrap();
         poses
             .iter()
             .filter(|pose| descent::outcome(problem.pair(), pose, &settings).outcome == Outcome::Aligned)

@@ -311,7 +311,7 @@ const COLUMNS: usize = 4;
 const FINEST: f64 = 1e-4;
 
 impl Settings {
-    fn check(&self) -> Result<descent::Settings, HoldError> {
+    fn check(&self) -> Result<descent::DescentSettings, HoldError> {
         if !(DIRECTIONS[0]..=DIRECTIONS[1]).contains(&self.directions) {
             return Err(HoldError::Directions { directions: self.directions });
         }
@@ -322,7 +322,7 @@ impl Settings {
             let wanted = "above 0 and at most a tenth of D";
             return Err(HoldError::Length { what: "play", value: self.play, wanted });
         }
-        Ok(descent::Settings::with_friction(self.friction)?)
+        Ok(descent::DescentSettings::with_friction(self.friction)?)
     }
 }
 

@@ -14,7 +14,7 @@
 
 use crate::success::normals;
 use catchment_core::acceptance::{Outcome, Stream};
-use catchment_core::method::descent::{Follower, Settings};
+use catchment_core::method::descent::{DescentSettings, Follower};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Observed;
 use catchment_core::problem::Problem;
@@ -58,7 +58,7 @@ pub struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     /// By these motions.
-    pub fn new(problem: &'a Problem, motions: &'a Settings) -> Self {
+    pub fn new(problem: &'a Problem, motions: &'a DescentSettings) -> Self {
         Self { follower: Follower::new(problem.pair(), motions), problem, followed: 0 }
     }
 

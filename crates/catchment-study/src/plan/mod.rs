@@ -278,7 +278,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, 
             return Err(PlanError::None { what });
         }
     }
-    let motions = descent::Settings::with_friction(settings.friction)?;
+    let motions = descent::DescentSettings::with_friction(settings.friction)?;
     let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
     let maker = Maker {
         problem,
@@ -369,7 +369,7 @@ fn stopped(problem: &Problem, mut points: Vec<Point>) -> Vec<Point> {
 fn other_signs(
     problem: &Problem,
     points: &[Point],
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<(usize, usize), Cancelled> {
     let found = for_each(

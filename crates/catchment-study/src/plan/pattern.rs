@@ -91,7 +91,7 @@ struct Border {
 pub(super) struct Maker<'a> {
     pub(super) problem: &'a Problem,
     pub(super) accuracy: PoseError,
-    pub(super) motions: &'a descent::Settings,
+    pub(super) motions: &'a descent::DescentSettings,
     pub(super) symmetric: bool,
     pub(super) seed: u64,
 }

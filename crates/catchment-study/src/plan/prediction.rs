@@ -92,7 +92,7 @@ pub(crate) fn for_each<T: Send, A>(
 pub(crate) fn foretell(
     problem: &Problem,
     accuracy: &PoseError,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     poses: &[PoseError],
     seed: u64,
     exec: &Exec,

@@ -79,7 +79,7 @@ pub fn panels(
     problem: &Problem,
     poses: &[PoseError],
     accuracy: &PoseError,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<Vec<Panel>, Cancelled> {
     let varies = |axis: &Dof| {

@@ -112,12 +112,12 @@ fn the_arc_of_the_pyramid_ends_where_it_was_computed() {
             let maker = Maker {
                 problem: &problem,
                 accuracy: PoseError::default(),
-                motions: &descent::Settings::default(),
+                motions: &descent::DescentSettings::default(),
                 symmetric: false,
                 seed: 1,
             };
             let made = maker.make(&pattern, &Exec::new()).unwrap();
-            let motions = descent::Settings::default();
+            let motions = descent::DescentSettings::default();
             let mut judge = Judge::new(&problem, &motions);
             let docking = made.poses.iter().take_while(|placed| judge.docks(&placed.error)).count();
             let found = 0.25 * (docking as f64 - 1.0);
@@ -226,7 +226,7 @@ fn distances_are_mirrored() {
             [1.0, -1.0].map(|s| PoseError { x: s * x, pitch: s * pitch, ..PoseError::default() })
         })
         .collect();
-    let motions = descent::Settings::default();
+    let motions = descent::DescentSettings::default();
     let (told, _) = foretell(&problem, &accuracy, &motions, &poses, 1, &Exec::new()).unwrap();
     for pair in told.chunks(2) {
         assert_eq!(pair[0].predicted, pair[1].predicted);

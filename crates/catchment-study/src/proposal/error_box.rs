@@ -38,7 +38,7 @@ pub(super) fn designed(
 fn ranges(pair: &Pair, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     let free = pair.alignment.free;
     let free: Vec<Dof> = free.iter().collect();
-    let motions = descent::Settings::default();
+    let motions = descent::DescentSettings::default();
     let found = exec.each(free.len(), usize::MAX, "errors", |k, exec| {
         let whole = if free[k].is_rotation() { FRAC_PI_2 } else { 1.0 };
         let mut follower = descent::Follower::new(pair, &motions);

@@ -49,7 +49,7 @@ pub struct Settings {
     /// Values of ρ over which the spread is taken, in D.
     pub rotation_lengths: Vec<f64>,
     /// Settings of the exact motions.
-    pub descent: descent::Settings,
+    pub descent: descent::DescentSettings,
 }
 
 impl Settings {
@@ -72,7 +72,7 @@ impl Default for Settings {
             relative_step: 0.1,
             cor_step: 0.05,
             rotation_lengths: (0..Self::RHOS).map(rho).collect(),
-            descent: descent::Settings::default(),
+            descent: descent::DescentSettings::default(),
         }
     }
 }
@@ -185,7 +185,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensit
     /// As a multiple of those of a run.
     const POSES_PER_SAMPLE: usize = 3;
     let design = problem.design();
-    let default = || POSES_PER_SAMPLE * descent::Settings::default().default_samples(problem.pair());
+    let default = || POSES_PER_SAMPLE * descent::DescentSettings::default().default_samples(problem.pair());
     let poses = settings.poses.unwrap_or_else(default);
     let settings = &Settings { poses: Some(poses), ..settings.clone() };
     if poses == 0 || settings.rotation_lengths.is_empty() {

@@ -168,7 +168,7 @@ pub fn run(
     exec: &Exec,
 ) -> Result<Success, SuccessError> {
     let by_method = || {
-        let samples = descent::Settings::default().default_samples(problem.pair());
+        let samples = descent::DescentSettings::default().default_samples(problem.pair());
         (PER_SAMPLE * samples).max(FEWEST_MOTIONS)
     };
     let motions = settings.motions.unwrap_or_else(by_method);
@@ -225,7 +225,7 @@ fn of_robot(
     exec: &Exec,
 ) -> Result<(Docking, usize), SuccessError> {
     let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
-    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let followed_by = descent::DescentSettings::with_friction(settings.friction)?;
     let source = Source::of(&robot.errors, motions, settings.seed).followed_by(&followed_by);
     // Rows that are all followed need no grid.
     let cells = if source.rows().is_some() { Some(0) } else { settings.cells };

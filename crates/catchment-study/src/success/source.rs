@@ -30,7 +30,7 @@ pub(crate) struct Source<'a> {
     factor: Matrix,
     random: Stream,
     /// How they are followed.
-    pub(super) motions: descent::Settings,
+    pub(super) motions: descent::DescentSettings,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -64,12 +64,12 @@ impl<'a> Source<'a> {
         };
         // Correlations of rows are semidefinite, but for rounding: without them distances are by each error alone.
         let factor = cholesky(&correlation).unwrap_or(catchment_core::poses::covariance::IDENTITY);
-        let motions = descent::Settings::default();
+        let motions = descent::DescentSettings::default();
         Self { law, mean: mean.to_array(), scale, factor, random: Stream::new(seed), motions }
     }
 
     /// The same, followed by these motions.
-    pub(super) fn followed_by(self, motions: &descent::Settings) -> Self {
+    pub(super) fn followed_by(self, motions: &descent::DescentSettings) -> Self {
         Self { motions: motions.clone(), ..self }
     }
 

@@ -81,11 +81,11 @@ impl Strata {
         };
         let grid = Grid { axes: Dof::ALL.into_iter().filter_map(axis).collect() };
         let (outcomes, motions) = if is_whole {
-            let settings = confluence::Settings::default();
+            let settings = confluence::ConfluenceSettings::default();
             let labels = confluence::run(problem.pair(), &grid, &settings, exec)?;
             (labels.acceptance(exec).outcomes, labels.joined.motions + labels.joined.tried)
         } else {
-            let settings = descent::Settings::default();
+            let settings = descent::DescentSettings::default();
             let (found, _) = descent::run(problem.pair(), Domain::Grid(grid.clone()), &settings, exec)?;
             let motions = found.outcomes.len();
             (found.outcomes, motions)

@@ -201,7 +201,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Trials
     exec.ensure_fits("the trials", trials.saturating_mul(TRIAL_BYTES), |_| {
         vec![catchment_core::advice::Advice::CoarserGrid]
     })?;
-    let zraa = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
+    let zraa = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
     let coarse = settings.resolutions.iter().map(|resolution| (*resolution, 0));
     let rounds: Vec<(usize, u32)> = coarse.chain((1..=settings.halvings).map(|k| (finest, k))).collect();
     let (mut found, mut last) = (Vec::new(), None);

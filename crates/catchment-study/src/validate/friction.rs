@@ -133,7 +133,8 @@ fn beyond(
 ) -> Result<(usize, usize), Cancelled> {
     /// Borders that are looked for at once, whatever the threads.
     const AT_ONCE: usize = 8;
-    let motions = descent::Settings { friction, max_steps: CREEPS, ..descent::Settings::default() };
+    let motions =
+        descent::DescentSettings { friction, max_steps: CREEPS, ..descent::DescentSettings::default() };
     let search = Search::new(problem, &settings.accuracy, settings.limit);
     let random = Stream::new(settings.seed).branch(6);
     let judge = || Judge::new(problem, &motions);

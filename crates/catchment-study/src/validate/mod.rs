@@ -284,7 +284,7 @@ pub fn run(
     if !(settings.limit.is_finite() && settings.limit >= 1.0) {
         return Err(ValidateError::Limit { limit: settings.limit });
     }
-    let motions = descent::Settings::with_friction(settings.friction)?;
+    let motions = descent::DescentSettings::with_friction(settings.friction)?;
     if tried.iter().all(|trial| trial.observed.is_none()) {
         return Err(ValidateError::NothingMade);
     }

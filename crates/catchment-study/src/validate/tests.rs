@@ -34,7 +34,7 @@ fn trials(
     friction: f64,
     seed: u64,
 ) -> Vec<Tried> {
-    let motions = descent::Settings::with_friction(friction).unwrap();
+    let motions = descent::DescentSettings::with_friction(friction).unwrap();
     let mut judge = plan::Judge::new(bench, &motions);
     let random = Stream::new(seed);
     let tried = real.iter().zip(written).enumerate().map(|(k, (real, written))| {
@@ -61,7 +61,7 @@ fn verdicts(
     runs: u64,
 ) -> [usize; 3] {
     let settings = Settings::new(*accuracy);
-    let motions = descent::Settings::default();
+    let motions = descent::DescentSettings::default();
     let (prediction, _) =
         foretell(predicting, accuracy, &motions, written, settings.seed, &Exec::new()).unwrap();
     let mut counts = [0; 3];
@@ -123,7 +123,7 @@ fn otherwise(runs: u64) {
         println!("COR {by} D off: {inconsistent} of {runs} inconsistent");
         assert!(inconsistent as f64 >= 0.95 * runs as f64, "COR {by} D off: {inconsistent} of {runs}");
     }
-    let motions = [0.0, 0.3].map(|mu| descent::Settings::with_friction(mu).unwrap());
+    let motions = [0.0, 0.3].map(|mu| descent::DescentSettings::with_friction(mu).unwrap());
     let docking = motions.map(|motions| {
         let mut judge = plan::Judge::new(&problem, &motions);
         poses.iter().map(|pose| judge.docks(pose)).collect::<Vec<bool>>()

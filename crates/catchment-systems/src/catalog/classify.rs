@@ -5,7 +5,7 @@ use super::data::{Catalog, Source, System};
 use super::facts::Fact;
 use super::rule::{Degree, Extents};
 use catchment::exec::{Cancelled, Exec};
-use catchment::method::zraa::{Settings, Square, Zraa, ZraaError, run};
+use catchment::method::zraa::{Square, Zraa, ZraaError, ZraaSettings, run};
 use catchment::problem::Problem;
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ pub enum ClassifyError {
 /// # Errors
 /// Where its zero-rotation area of acceptance is not decided.
 pub fn classify(problem: &Problem, exec: &Exec) -> Result<Classified, ClassifyError> {
-    let zraa = run(problem.pair(), &Settings::default(), exec)?;
+    let zraa = run(problem.pair(), &ZraaSettings::default(), exec)?;
     let square = Square::of(&zraa, exec)?;
     let extents = Extents::of(&zraa);
     Ok(Classified {

@@ -18,7 +18,7 @@ use catchment::acceptance::Outcome;
 use catchment::design::{Complaint, Design, Quantity, Unit};
 use catchment::exec::{Cancelled, Exec};
 use catchment::merit::sum::wilson95;
-use catchment::method::zraa::{Settings, Zraa, run as without_rotation};
+use catchment::method::zraa::{Zraa, ZraaSettings, run as without_rotation};
 use catchment::pose::{Dof, DofSet, PoseError};
 use catchment::problem::Problem;
 use serde::{Deserialize, Serialize};
@@ -88,7 +88,7 @@ pub fn offsets_without_rotation(problem: &Problem, exec: &Exec) -> Result<[f64; 
     let free: DofSet = std::iter::once(Dof::X).collect();
     let design = problem.design().clone().with_free(free).map_err(|error| error.to_string())?;
     let problem = problem.with(design).map_err(|error| error.to_string())?;
-    match without_rotation(problem.pair(), &Settings::default(), exec) {
+    match without_rotation(problem.pair(), &ZraaSettings::default(), exec) {
         Ok(Zraa::Interval { from, to, .. }) => Ok([from, to]),
         Ok(Zraa::Region { .. }) => Err("two offsets are free".to_owned()),
         Err(error) => Err(error.to_string()),

@@ -66,9 +66,7 @@ use catchment::connector::{Connector, Half};
 use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
-use catchment::method::zraa::{
-    HeightFacet, Settings as Exactness, ZraaError, heights as first_contact, highest,
-};
+use catchment::method::zraa::{HeightFacet, ZraaError, ZraaSettings, heights as first_contact, highest};
 use catchment::pose::{Dof, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -194,7 +192,7 @@ pub fn heights_of(
     exec: &Exec,
 ) -> Result<Heights, InvertError> {
     let moving = connector.moving.mapped(|p| turn * p);
-    let facets = first_contact(&connector.fixed, &moving, &Exactness::default(), exec)?;
+    let facets = first_contact(&connector.fixed, &moving, &ZraaSettings::default(), exec)?;
     Ok(counted(design, Heights { facets }).merged())
 }
 
@@ -239,7 +237,7 @@ pub fn invert(
     let turns = settings.turns(design)?;
     let plan = lower_surface(&connector.moving, exec)?;
     let over_plan = |fixed: &Half, body: &Half| -> Result<Vec<HeightFacet>, InvertError> {
-        let whole = Heights { facets: first_contact(fixed, body, &Exactness::default(), exec)? };
+        let whole = Heights { facets: first_contact(fixed, body, &ZraaSettings::default(), exec)? };
         Ok(plan.facets.iter().flat_map(|face| whole.within(&face.polygon).facets).collect())
     };
     let wanted = counted(design, wanted).merged();
@@ -253,7 +251,7 @@ pub fn invert(
         if let Some((fixed, body)) = turns::asked(&connector.fixed, &there, turn, floor) {
             // One rotation after the other: what one asks for is mostly hidden by the others.
             asked.facets.extend(over_plan(&fixed, &body)?);
-            asked = Heights { facets: highest(asked.facets, &Exactness::default(), exec)? }.merged();
+            asked = Heights { facets: highest(asked.facets, &ZraaSettings::default(), exec)? }.merged();
         }
     }
     let moving = asked.tidied();

@@ -104,7 +104,7 @@ mod tests {
     use catchment::design::SourceText;
     use catchment::exec::Exec;
     use catchment::method::descent;
-    use catchment::method::zraa::{Settings, Zraa, run};
+    use catchment::method::zraa::{Zraa, ZraaSettings, run};
     use catchment::pose::PoseError;
     use catchment::problem::{Draft, Problem};
 
@@ -119,7 +119,7 @@ mod tests {
     fn sliding_alone_corrects_a_width() {
         for facets in [2, 5, FACETS] {
             let problem = problem(facets);
-            let zraa = run(problem.pair(), &Settings::default(), &Exec::new()).unwrap();
+            let zraa = run(problem.pair(), &ZraaSettings::default(), &Exec::new()).unwrap();
             let Zraa::Interval { from, to, .. } = zraa else { panic!("{zraa:?}") };
             // Coordinates are written to 1e-9 mm.
             assert!((from + 1.0).abs() < 1e-8 && (to - 1.0).abs() < 1e-8, "{facets}: {from} {to}");
@@ -138,7 +138,8 @@ mod tests {
                     pitch: 0.4 * spread(0.754_878),
                     ..PoseError::default()
                 };
-                let outcome = descent::outcome(problem.pair(), &error, &descent::Settings::default()).outcome;
+                let outcome =
+                    descent::outcome(problem.pair(), &error, &descent::DescentSettings::default()).outcome;
                 assert_eq!(outcome, Outcome::Aligned, "{facets} {error:?}");
             }
         }

@@ -152,7 +152,9 @@ impl Recipe {
             Self::Kinematic(face) => {
                 // The printed 0.108819 is 2^(−4 + 0.8), rounded.
                 let aspect_ratio = (0.8 * row as f64 - 4.0).exp2();
-                Some(kinematic::Settings { face, aspect_ratio, rotation_point: column as f64 }.area())
+                Some(
+                    kinematic::KinematicSettings { face, aspect_ratio, rotation_point: column as f64 }.area(),
+                )
             }
             Self::Sum(family, errors) => {
                 Some(dissertation::accept(&settings(family, errors, row, column), exec)?.sum())
@@ -221,10 +223,11 @@ impl Recipe {
         let settings = settings(family, errors, row, column);
         let pair = pair(family, settings.aspect_ratio, None, settings.center_of_rotation(), free)?;
         let grid = Grid::over(&pair.alignment, |_| SPATIAL);
-        let arrival = transport::run(&pair, &grid, &transport::Settings::default(), exec).map_err(failed)?;
+        let arrival =
+            transport::run(&pair, &grid, &transport::TransportSettings::default(), exec).map_err(failed)?;
         let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
-        let sample = correction::Settings { seed: SEED, stop: Stop::Samples(DESCENTS) };
-        let descents = descent::Settings::default();
+        let sample = correction::CorrectionSettings { seed: SEED, stop: Stop::Samples(DESCENTS) };
+        let descents = descent::DescentSettings::default();
         let found = correction::correct(&pair, &grid, &by, &sample, &descents, exec).map_err(failed)?;
         Ok(Exact { value: found.sum, ci95: Some(found.ci95) })
     }
@@ -298,13 +301,13 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
         PoseError { x: x + cor * pitch.sin(), pitch, ..PoseError::default() }
     };
     let poses = Domain::Poses((0..PLANAR * PLANAR).map(pose).collect());
-    let (acceptance, _) = descent::run(&pair, poses, &descent::Settings::default(), exec)?;
+    let (acceptance, _) = descent::run(&pair, poses, &descent::DescentSettings::default(), exec)?;
     Ok(acceptance.accepted().collect())
 }
 
 /// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, and no strips.
 fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, RecipeError> {
-    const AS_PUBLISHED: partition::Settings = partition::Settings { slices: 12, strips: 1 };
+    const AS_PUBLISHED: partition::PartitionSettings = partition::PartitionSettings { slices: 12, strips: 1 };
     let settings = settings(family, Errors::XTheta, row, column);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = settings.center_of_rotation();
@@ -326,7 +329,7 @@ fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
             // The cone has width 1; the one that circumscribes a square of width 1 is √2 as wide.
             let free = [Dof::X, Dof::Y].into_iter().collect();
             let pair = pair(Family::Cone, FamilySpec::new(Family::Cone).aspect_ratio(), None, 0.0, free)?;
-            match zraa::run(&pair, &zraa::Settings::default(), exec).map_err(failed)? {
+            match zraa::run(&pair, &zraa::ZraaSettings::default(), exec).map_err(failed)? {
                 Zraa::Region { area, .. } => Some(2.0 * area),
                 Zraa::Interval { .. } => None,
             }
@@ -339,7 +342,7 @@ fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
 type Decide = fn(&Pair, Grid, &Exec) -> Result<Acceptance, RecipeError>;
 
 fn followed_exactly(pair: &Pair, grid: Grid, exec: &Exec) -> Result<Acceptance, RecipeError> {
-    Ok(descent::run(pair, Domain::Grid(grid), &descent::Settings::default(), exec)?.0)
+    Ok(descent::run(pair, Domain::Grid(grid), &descent::DescentSettings::default(), exec)?.0)
 }
 
 /// The same slice by drop tests; `None` without the engine.
@@ -348,7 +351,7 @@ fn dropped(row: usize, exec: &Exec) -> Result<Option<[f64; 2]>, RecipeError> {
     use catchment::method::drop;
     let decide: Decide = |pair, grid, exec| {
         let (acceptance, _) =
-            drop::run(pair, Domain::Grid(grid), &drop::Settings::default(), exec).map_err(failed)?;
+            drop::run(pair, Domain::Grid(grid), &drop::DropSettings::default(), exec).map_err(failed)?;
         Ok(acceptance)
     };
     slice(row, decide, exec).map(Some)

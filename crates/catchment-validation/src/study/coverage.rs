@@ -154,8 +154,12 @@ pub fn coverage(settings: &Settings, exec: &Exec) -> Result<Coverage, CoverageEr
         let at = |part: f64| (k as f64 + part / 4.0) / cases.len() as f64;
         let pair = case.pair()?;
         let grid = Grid::over(&pair.alignment, |_| case.cells);
-        let arrival =
-            transport::run(&pair, &grid, &transport::Settings::default(), &exec.part([at(0.0); 2], STAGE))?;
+        let arrival = transport::run(
+            &pair,
+            &grid,
+            &transport::TransportSettings::default(),
+            &exec.part([at(0.0); 2], STAGE),
+        )?;
         let outcomes = arrival.acceptance(exec)?.outcomes;
         let exact = plain(&pair, settings.exact, &exec.part([at(0.0), at(1.0)], STAGE))?;
         let nothing = vec![Outcome::Missed; grid.len()];
@@ -178,7 +182,7 @@ const CHUNK: usize = 10_000;
 
 /// Share of the error box that is accepted, by `count` plain random poses.
 fn plain(pair: &Pair, count: usize, exec: &Exec) -> Result<f64, Cancelled> {
-    let settings = descent::Settings::default();
+    let settings = descent::DescentSettings::default();
     let chunks = count.div_ceil(CHUNK);
     let mut aligned = 0;
     for chunk in 0..chunks {
@@ -204,8 +208,16 @@ impl Trial<'_> {
         let Settings { repeats, descents, exact: plain } = *self.settings;
         let silent = self.exec.part([at; 2], STAGE);
         let one = |number: usize, exec: &Exec| {
-            let settings = correction::Settings { seed: number as u64 + 1, stop: Stop::Samples(descents) };
-            correction::correct(self.pair, self.grid, by, &settings, &descent::Settings::default(), exec)
+            let settings =
+                correction::CorrectionSettings { seed: number as u64 + 1, stop: Stop::Samples(descents) };
+            correction::correct(
+                self.pair,
+                self.grid,
+                by,
+                &settings,
+                &descent::DescentSettings::default(),
+                exec,
+            )
         };
         let found = silent.each(repeats as usize, usize::MAX, STAGE, one);
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;

@@ -122,7 +122,8 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
     let Some(finest) = finest else {
         return Err(RecipeError::Exact { reason: "no resolution was asked for".to_owned() });
     };
-    let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
+    let sample =
+        correction::CorrectionSettings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
     let exact = finest.correct(&problem, &sample, exec).map_err(|error| failed(&error))?;
     let settings = settings.clone();
     Ok(Found { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })

@@ -44,14 +44,14 @@ fn exact_motion_and_the_exact_region_have_the_area_of_the_mouth() {
         let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, loose).unwrap_or_else(|e| panic!("{peg:?}: {e}"));
         let Zraa::Region { area, .. } =
-            zraa::run(problem.pair(), &zraa::Settings::default(), &Exec::new()).unwrap()
+            zraa::run(problem.pair(), &zraa::ZraaSettings::default(), &Exec::new()).unwrap()
         else {
             panic!("two translations are free")
         };
         assert!((area - peg.area()).abs() <= 0.01 * peg.area() + 1e-9, "{peg:?}: {area} for {}", peg.area());
         let poses = Domain::random(problem.alignment(), 400, 3);
         let (found, _) =
-            descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+            descent::run(problem.pair(), poses, &descent::DescentSettings::default(), &Exec::new()).unwrap();
         let share = found.counts()[0] as f64 / 400.0;
         let expected = peg.area() / (4.0 * range * range);
         // Four standard deviations of a share of 400.
@@ -90,7 +90,7 @@ fn a_square_peg_that_may_turn_has_the_volume_of_its_mouth() {
     let expected = mean / (4.0 * range * range);
     let poses = Domain::random(problem.alignment(), count, 3);
     let (found, _) =
-        descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        descent::run(problem.pair(), poses, &descent::DescentSettings::default(), &Exec::new()).unwrap();
     let share = found.counts()[0] as f64 / count as f64;
     let doubt = 4.0 * (expected * (1.0 - expected) / count as f64).sqrt();
     assert!((share - expected).abs() <= doubt, "{share} for {expected} ± {doubt}");
@@ -116,7 +116,7 @@ fn on_the_rim_is_not_docked_and_seated_with_play_is() {
     // Half a millimetre of play in a blind hole, at rest against its wall.
     let peg = Peg::new(32, 0.3, 0.5 / 12.0, 0.1);
     let problem = peg.problem(&LATERAL, 0.2, |_| ()).unwrap();
-    let end = Follower::new(problem.pair(), &descent::Settings::default()).rest(&at(0.1, 0.0));
+    let end = Follower::new(problem.pair(), &descent::DescentSettings::default()).rest(&at(0.1, 0.0));
     assert_eq!(end.outcome, Outcome::Aligned);
     assert!((end.error.x - 0.5 / 12.0).abs() < 1e-3, "{end:?}");
 }
@@ -198,7 +198,7 @@ fn what_slides_over_a_low_rim_is_missed() {
         .collect();
     let pair = problem.pair();
     for friction in [0.0, 0.01] {
-        let settings = descent::Settings::with_friction(friction).unwrap();
+        let settings = descent::DescentSettings::with_friction(friction).unwrap();
         let mut follower = Follower::new(pair, &settings);
         for (pose, expected) in poses.iter().zip(&expected) {
             assert_eq!(follower.follow(pose).outcome, *expected, "{pose:?}, friction {friction}");
@@ -209,7 +209,7 @@ fn what_slides_over_a_low_rim_is_missed() {
     let near = |pose: &&PoseError| (pose.x.abs() - RIM).abs() > 0.005;
     let away: Vec<PoseError> = poses.iter().filter(near).copied().collect();
     let (dropped, _) =
-        drop::run(pair, Domain::Poses(away.clone()), &drop::Settings::default(), &Exec::new()).unwrap();
+        drop::run(pair, Domain::Poses(away.clone()), &drop::DropSettings::default(), &Exec::new()).unwrap();
     for (pose, outcome) in away.iter().zip(&dropped.outcomes) {
         assert_eq!(*outcome == Outcome::Aligned, pose.x.abs() < RIM, "{pose:?} ends {outcome:?}");
     }
@@ -226,9 +226,9 @@ fn drops_agree_with_motions() {
         let problem = peg.problem(&LATERAL, range, |_| ()).unwrap();
         let poses = Domain::random(problem.alignment(), 400, 5);
         let (dropped, _) =
-            drop::run(problem.pair(), poses.clone(), &drop::Settings::default(), &Exec::new()).unwrap();
+            drop::run(problem.pair(), poses.clone(), &drop::DropSettings::default(), &Exec::new()).unwrap();
         let (moved, _) =
-            descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+            descent::run(problem.pair(), poses, &descent::DescentSettings::default(), &Exec::new()).unwrap();
         let docks = |o: &Outcome| *o == Outcome::Aligned;
         same[0] += dropped.outcomes.iter().zip(&moved.outcomes).filter(|(a, b)| docks(a) == docks(b)).count();
         same[1] += dropped.outcomes.len();
@@ -247,7 +247,8 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
         for problem in pieces.into_iter().chain([peg.triangles()]).map(|source| peg.problem(source)) {
             let poses = Domain::random(problem.alignment(), 150, 5);
             let (found, _) =
-                descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+                descent::run(problem.pair(), poses, &descent::DescentSettings::default(), &Exec::new())
+                    .unwrap();
             for (k, outcome) in found.outcomes.iter().enumerate() {
                 let error = found.domain.pose(k);
                 let inside = peg.inside(&error);
@@ -275,7 +276,7 @@ fn the_envelope_of_flush_faces_has_no_holes() {
         let peg = Chamfered { sides, slope, digits };
         for problem in [peg.pieces(), peg.triangles()].map(|source| peg.problem(source)) {
             let catchment::connector::Connector { fixed, moving, .. } = problem.connector();
-            let facets = zraa::heights(fixed, moving, &zraa::Settings::default(), &Exec::new()).unwrap();
+            let facets = zraa::heights(fixed, moving, &zraa::ZraaSettings::default(), &Exec::new()).unwrap();
             let mut alignment = problem.alignment().clone();
             alignment.half_ranges[..2].fill(1.0);
             let poses = Domain::random(&alignment, 2000, 7);
@@ -313,7 +314,7 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
         let peg = Chamfered { sides, slope, digits };
         let right = peg.captured();
         for problem in [peg.pieces(), peg.triangles()].map(|source| peg.problem(source)) {
-            match zraa::run(problem.pair(), &zraa::Settings::default(), &Exec::new()) {
+            match zraa::run(problem.pair(), &zraa::ZraaSettings::default(), &Exec::new()) {
                 Ok(ref region @ Zraa::Region { area, .. }) => {
                     assert!((area - right).abs() < 1e-4 * right, "{peg:?}: {area} for {right}");
                     // No gap between tiles counts as border: a square fits into the circle inside of the n-gon.

@@ -1,6 +1,6 @@
 //! Certified sets as a method: it refines its own boxes, and the grid receives their labels.
 
-use super::{CertifiedError, LEAST_BOXES, Settings, certify};
+use super::{CertifiedError, CertifiedSettings, LEAST_BOXES, certify};
 use crate::acceptance::Domain;
 use crate::contact::{Pair, Seat};
 use crate::design::Design;
@@ -21,13 +21,13 @@ pub(super) const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<CertifiedSettings>(&INFO);
 
 /// Core-seconds per box, and bytes.
 const BOX_SECONDS: f64 = 1e-4;
 const BOX_BYTES: u64 = 256;
 
-impl Decide for Settings {
+impl Decide for CertifiedSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }

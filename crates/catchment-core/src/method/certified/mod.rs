@@ -63,7 +63,7 @@ use tube::Tube;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct CertifiedSettings {
     /// Undecided share of the error box at which refinement stops, in [0, 1].
     pub gap: f64,
     /// Largest number of boxes that are examined; the remaining undecided boxes stay undecided.
@@ -73,7 +73,7 @@ pub struct Settings {
     pub budget_s: Option<f64>,
 }
 
-impl Default for Settings {
+impl Default for CertifiedSettings {
     fn default() -> Self {
         Self { gap: 0.02, boxes: 20_000, budget_s: None }
     }
@@ -173,7 +173,11 @@ const PART: usize = 16;
 ///
 /// # Errors
 /// See [`CertifiedError`].
-pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Certified, CertifiedError> {
+pub(crate) fn certify(
+    pair: &Pair,
+    settings: &CertifiedSettings,
+    exec: &Exec,
+) -> Result<Certified, CertifiedError> {
     let bodies = Bodies::of(pair);
     if bodies.meetings.len() > MOST_MEETINGS {
         return Err(CertifiedError::Large { meetings: bodies.meetings.len() });

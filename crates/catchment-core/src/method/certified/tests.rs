@@ -117,7 +117,7 @@ impl Certified {
 }
 
 fn certified(pair: &Pair, boxes: usize) -> Certified {
-    certify(pair, &Settings { boxes, ..Settings::default() }, &Exec::new()).unwrap()
+    certify(pair, &CertifiedSettings { boxes, ..CertifiedSettings::default() }, &Exec::new()).unwrap()
 }
 
 /// As many random motions per planar design as this variable says, or a few: `docs/certified.md` tells of 100 000.
@@ -130,8 +130,8 @@ fn motions() -> usize {
 fn contradicts_nothing(pair: &Pair, found: &Certified, poses: usize) -> usize {
     /// Motions that finer steps may have to decide, at most: one in so many.
     const FINER: usize = 20_000;
-    let (settings, mut number) = (descent::Settings::default(), numbers(5));
-    let finer = descent::Settings { step: settings.step / 16.0, ..settings };
+    let (settings, mut number) = (descent::DescentSettings::default(), numbers(5));
+    let finer = descent::DescentSettings { step: settings.step / 16.0, ..settings };
     let mut follower = descent::Follower::new(pair, &settings);
     let (mut labelled, mut finely) = (0, 0);
     for _ in 0..poses {
@@ -207,7 +207,7 @@ fn no_motion_contradicts_the_other_certificates() {
 #[test]
 fn a_budget_ends_it() {
     let pair = pair_of(Family::VFace, &[], 0.0);
-    let settings = Settings { boxes: usize::MAX, gap: 0.0, budget_s: Some(0.3) };
+    let settings = CertifiedSettings { boxes: usize::MAX, gap: 0.0, budget_s: Some(0.3) };
     let found = certify(&pair, &settings, &Exec::new()).unwrap();
     assert!(found.certificate.undecided > 0.0, "{:?}", found.certificate);
     contradicts_nothing(&pair, &found, 300);
@@ -313,7 +313,7 @@ fn motions_never_go_back_along_a_bearing() {
             let (poses, error) = random_box(&pair, 0.1, &mut number);
             let rising = Survey::of(&bodies, &poses, &all, &mut nearby).rising(&tree.bearings);
             told += rising.count_ones();
-            let settings = descent::Settings { step: 1e-3, ..descent::Settings::default() };
+            let settings = descent::DescentSettings { step: 1e-3, ..descent::DescentSettings::default() };
             let way = descent::trace(&pair, &error, &settings).waypoints;
             let inside = |error: &PoseError| (0..5).all(|k| poses[k].contains(error.to_array()[k]));
             for two in way.windows(2).take_while(|two| two.iter().all(|point| inside(&point.error))) {
@@ -375,7 +375,7 @@ fn the_merge_tree_lets_the_seat_go_as_high() {
             Resolution::uniform(200).unwrap().grid(&pair.alignment, &Resolution::DEFAULT_CELLS).unwrap();
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let docks = flood::docks(&pair, &grid);
-        let settings = flood::Settings::default();
+        let settings = flood::FloodSettings::default();
         let flooding = flood::flood(&landscape, &pair.alignment, &docks, &settings, &Exec::new()).unwrap();
         let basins = &flooding.hierarchy.basins;
         let seat = basins.iter().find(|basin| basin.outcome == Outcome::Aligned).unwrap();
@@ -401,7 +401,7 @@ fn five_errors_leave_an_inner_set() {
     let home = Home::find(&bodies, &root, pair.mated_height(), &mut pair.about(REACH), &Exec::new());
     let home = home.unwrap().unwrap();
     let (mut number, mut nearby) = (numbers(3), pair.about(REACH));
-    let settings = descent::Settings::default();
+    let settings = descent::DescentSettings::default();
     let mut follower = descent::Follower::new(&pair, &settings);
     for k in 0..200 {
         // On its border the height is no less than its level, and within all motions dock that begin below that.
@@ -464,7 +464,8 @@ fn threads_change_no_bit() {
     let pair = pair_of(Family::XFace, &[], 0.5);
     let on = |threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        let found = certify(&pair, &Settings { boxes: 9000, ..Settings::default() }, &exec).unwrap();
+        let found = certify(&pair, &CertifiedSettings { boxes: 9000, ..CertifiedSettings::default() }, &exec)
+            .unwrap();
         let labels: Vec<_> = found
             .tree
             .cells
@@ -487,7 +488,7 @@ fn it_ends_soon_when_asked_to() {
         flag.store(true, Ordering::Relaxed);
         Instant::now()
     });
-    let settings = Settings { gap: 0.0, boxes: 10_000_000, ..Settings::default() };
+    let settings = CertifiedSettings { gap: 0.0, boxes: 10_000_000, ..CertifiedSettings::default() };
     let found = certify(&pair, &settings, &exec);
     assert!(matches!(found, Err(CertifiedError::Cancelled(_))));
     assert!(asked.join().unwrap().elapsed() < Duration::from_secs(1));

@@ -1,6 +1,6 @@
 //! Confluence as a method: exact motions over a grid with inherited labels.
 
-use super::{ConfluenceError, Settings, bytes, run};
+use super::{ConfluenceError, ConfluenceSettings, bytes, run};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -23,9 +23,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<ConfluenceSettings>(&INFO);
 
-impl Decide for Settings {
+impl Decide for ConfluenceSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -44,7 +44,7 @@ impl Decide for Settings {
         self.descent.check()
     }
 
-    fn motions(&self) -> descent::Settings {
+    fn motions(&self) -> descent::DescentSettings {
         self.descent.clone()
     }
 

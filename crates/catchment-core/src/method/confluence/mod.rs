@@ -54,7 +54,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct ConfluenceSettings {
     /// Share of the cell centres around a pose that must be decided, all with the same outcome, before the
     /// pose inherits it; above ½ and at most 1. Grids of up to three axes have at most eight such centres,
     /// and all must agree.
@@ -66,12 +66,12 @@ pub struct Settings {
     /// computed.
     pub budget_s: Option<f64>,
     /// Settings of the exact motions.
-    pub descent: descent::Settings,
+    pub descent: descent::DescentSettings,
 }
 
-impl Default for Settings {
+impl Default for ConfluenceSettings {
     fn default() -> Self {
-        Self { known: 0.75, motions: None, budget_s: None, descent: descent::Settings::default() }
+        Self { known: 0.75, motions: None, budget_s: None, descent: descent::DescentSettings::default() }
     }
 }
 
@@ -142,7 +142,12 @@ pub struct Labels {
 ///
 /// # Errors
 /// See [`ConfluenceError`].
-pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result<Labels, ConfluenceError> {
+pub fn run(
+    pair: &Pair,
+    grid: &Grid,
+    settings: &ConfluenceSettings,
+    exec: &Exec,
+) -> Result<Labels, ConfluenceError> {
     let cells = grid.checked_len().unwrap_or(usize::MAX);
     if cells >= u32::MAX as usize {
         return Err(ConfluenceError::TooManyCells { cells });

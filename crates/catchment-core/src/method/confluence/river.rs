@@ -8,7 +8,7 @@
 
 use super::around::Around;
 use super::label::Label;
-use super::{Joined, STAGE, Settings};
+use super::{ConfluenceSettings, Joined, STAGE};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, Stopwatch};
@@ -23,7 +23,7 @@ pub(super) struct River<'a> {
     pub(super) pair: &'a Pair,
     /// Its gradients are velocities.
     pub(super) falls: &'a Falls,
-    pub(super) settings: &'a Settings,
+    pub(super) settings: &'a ConfluenceSettings,
     /// When it began: what a budget of time counts from.
     pub(super) started: Stopwatch,
 }

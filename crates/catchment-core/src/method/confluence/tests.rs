@@ -18,13 +18,14 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Do
 }
 
 fn labels(pair: &Pair, cells: usize) -> Labels {
-    run(pair, &Grid::over(&pair.alignment, |_| cells), &Settings::default(), &Exec::new()).unwrap()
+    run(pair, &Grid::over(&pair.alignment, |_| cells), &ConfluenceSettings::default(), &Exec::new()).unwrap()
 }
 
 /// Every cell by its own motion: the judge.
 fn judge(labels: &Labels, pair: &Pair) -> Vec<Outcome> {
     let domain = Domain::Grid(labels.grid().clone());
-    let (acceptance, _) = descent::run(pair, domain, &descent::Settings::default(), &Exec::new()).unwrap();
+    let (acceptance, _) =
+        descent::run(pair, domain, &descent::DescentSettings::default(), &Exec::new()).unwrap();
     acceptance.outcomes
 }
 
@@ -77,7 +78,7 @@ fn folding_changes_nothing() {
     for axis in &mut grid.axes {
         axis.hi += 1e-6;
     }
-    let whole = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+    let whole = run(&pair, &grid, &ConfluenceSettings::default(), &Exec::new()).unwrap();
     assert!(whole.kept.len() > folded.kept.len());
     let differ = (0..grid.len()).filter(|cell| folded.outcome(*cell) != whole.outcome(*cell)).count();
     assert!(differ * 100 <= grid.len(), "{differ} of {}", grid.len());
@@ -89,7 +90,7 @@ fn threads_do_not_change_a_bit() {
     let grid = Grid::over(&pair.alignment, |_| 6);
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        let labels = run(&pair, &grid, &Settings::default(), &exec).unwrap();
+        let labels = run(&pair, &grid, &ConfluenceSettings::default(), &exec).unwrap();
         (labels.kept, labels.joined)
     };
     let one = with(1);
@@ -103,7 +104,8 @@ fn a_budget_of_motions_decides_what_lies_lowest() {
     let pair = pair(Family::XFace3d, 0.577, 0.5, 0.5, None);
     let grid = Grid::over(&pair.alignment, |_| 6);
     let whole = labels(&pair, 6);
-    let settings = Settings { motions: Some(whole.joined.motions / 3), ..Settings::default() };
+    let settings =
+        ConfluenceSettings { motions: Some(whole.joined.motions / 3), ..ConfluenceSettings::default() };
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
         run(&pair, &grid, &settings, &exec).unwrap()
@@ -142,7 +144,7 @@ fn a_budget_of_time_ends_at_once_or_never() {
     let grid = Grid::over(&pair.alignment, |_| 5);
     let whole = labels(&pair, 5);
     let within = |budget_s: f64| {
-        let settings = Settings { budget_s: Some(budget_s), ..Settings::default() };
+        let settings = ConfluenceSettings { budget_s: Some(budget_s), ..ConfluenceSettings::default() };
         run(&pair, &grid, &settings, &Exec::new()).unwrap()
     };
     let ample = within(1e9);
@@ -161,7 +163,7 @@ fn heights_that_outlast_the_budget_are_refused() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
     // More than any machine computes, or holds.
     let grid = Grid::over(&pair.alignment, |_| 80);
-    let settings = Settings { budget_s: Some(1e-3), ..Settings::default() };
+    let settings = ConfluenceSettings { budget_s: Some(1e-3), ..ConfluenceSettings::default() };
     let exec = Exec::new().with_memory_budget(1 << 60);
     match run(&pair, &grid, &settings, &exec) {
         Err(ConfluenceError::HeightsTakeLonger { cells, seconds, most, .. }) => {
@@ -177,7 +179,7 @@ fn a_slice_is_followed_cell_by_cell() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
     let mut grid = Grid::over(&pair.alignment, |_| 12);
     grid.axes.retain(|axis| matches!(axis.dof, Dof::X | Dof::Pitch));
-    let labels = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+    let labels = run(&pair, &grid, &ConfluenceSettings::default(), &Exec::new()).unwrap();
     assert_eq!((labels.joined.joined, labels.joined.tried), (0, 0));
     assert_eq!(labels.joined.motions, labels.joined.cells);
     assert_eq!(labels.acceptance(&Exec::new()).outcomes, judge(&labels, &pair));
@@ -188,13 +190,13 @@ fn refusals() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
     let grid = Grid::over(&pair.alignment, |_| 40);
     let small = Exec::new().with_memory_budget(1 << 20);
-    let error = run(&pair, &grid, &Settings::default(), &small).unwrap_err().to_string();
+    let error = run(&pair, &grid, &ConfluenceSettings::default(), &small).unwrap_err().to_string();
     assert!(error.contains("cells per axis fit"), "{error}");
     let stopped = Exec::new();
     stopped.cancel_flag().store(true, Ordering::Relaxed);
-    let error = run(&pair, &grid, &Settings::default(), &stopped).unwrap_err();
+    let error = run(&pair, &grid, &ConfluenceSettings::default(), &stopped).unwrap_err();
     assert_eq!(error, ConfluenceError::Landscape(LandscapeError::Cancelled(Cancelled)));
     let many = Grid::over(&pair.alignment, |_| 100);
-    let error = run(&pair, &many, &Settings::default(), &Exec::new()).unwrap_err();
+    let error = run(&pair, &many, &ConfluenceSettings::default(), &Exec::new()).unwrap_err();
     assert_eq!(error, ConfluenceError::TooManyCells { cells: 10_000_000_000 });
 }

@@ -47,7 +47,7 @@ use strata::Strata;
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct CorrectionSettings {
     /// Seed of the sampled poses.
     pub seed: u64,
     /// Stopping rule.
@@ -135,8 +135,8 @@ pub fn correct(
     pair: &Pair,
     grid: &Grid,
     by: &impl Stratify,
-    settings: &Settings,
-    descents: &descent::Settings,
+    settings: &CorrectionSettings,
+    descents: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<Corrected, CorrectionError> {
     estimate(grid, by, settings, exec, |poses, exec| {
@@ -151,11 +151,11 @@ pub fn correct(
 pub fn estimate(
     grid: &Grid,
     by: &impl Stratify,
-    settings: &Settings,
+    settings: &CorrectionSettings,
     exec: &Exec,
     mut decide: impl FnMut(Vec<PoseError>, &Exec) -> Result<Vec<Outcome>, CorrectionError>,
 ) -> Result<Corrected, CorrectionError> {
-    let Settings { seed, stop } = *settings;
+    let CorrectionSettings { seed, stop } = *settings;
     if let Stop::Tolerance(share) = stop
         && (share <= 0.0 || share.is_nan())
     {

@@ -48,7 +48,7 @@ impl Case {
 
     fn estimate(&self, stop: Stop, seed: u64, exec: &Exec) -> Corrected {
         let by = ByNeighbours::new(&self.outcomes, self.grid.shape());
-        estimate(&self.grid, &by, &Settings { seed, stop }, exec, |poses, _| {
+        estimate(&self.grid, &by, &CorrectionSettings { seed, stop }, exec, |poses, _| {
             let inside = |p: &PoseError| distance(p, 0.0) < self.radius;
             Ok(poses.iter().map(|p| if inside(p) { Outcome::Aligned } else { Outcome::Jammed }).collect())
         })
@@ -136,7 +136,7 @@ fn a_seed_gives_one_result_and_longer_samples_begin_with_shorter_ones() {
     let case = &cases()[1];
     let drawn = |samples: usize| {
         let by = ByNeighbours::new(&case.outcomes, case.grid.shape());
-        let settings = Settings { seed: 3, stop: Stop::Samples(samples) };
+        let settings = CorrectionSettings { seed: 3, stop: Stop::Samples(samples) };
         let mut all = Vec::new();
         estimate(&case.grid, &by, &settings, &Exec::new(), |poses, _| {
             let outcomes = vec![Outcome::Aligned; poses.len()];
@@ -166,7 +166,7 @@ fn undecided_poses_widen_the_interval_upwards_only() {
     let case = &cases()[1];
     let of = |third: Outcome| {
         let by = ByNeighbours::new(&case.outcomes, case.grid.shape());
-        let settings = Settings { seed: 3, stop: Stop::Samples(1000) };
+        let settings = CorrectionSettings { seed: 3, stop: Stop::Samples(1000) };
         estimate(&case.grid, &by, &settings, &Exec::new(), |poses, _| {
             let outcome = |p: &PoseError| match p.x {
                 x if x < 0.0 => Outcome::Aligned,
@@ -189,7 +189,7 @@ fn a_stop_is_obeyed_and_settings_without_sense_are_refused() {
     let case = &cases()[0];
     let by = ByNeighbours::new(&case.outcomes, case.grid.shape());
     let with = |grid: &Grid, stop: Stop, exec: &Exec| {
-        estimate(grid, &by, &Settings { seed: 1, stop }, exec, |_, _| Ok(Vec::new())).unwrap_err()
+        estimate(grid, &by, &CorrectionSettings { seed: 1, stop }, exec, |_, _| Ok(Vec::new())).unwrap_err()
     };
     for share in [0.0, -1.0, f64::NAN] {
         let error = with(&case.grid, Stop::Tolerance(share), &Exec::new());

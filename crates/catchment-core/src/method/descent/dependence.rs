@@ -9,7 +9,7 @@
 //!
 //! Not detected: errors that both steps share.
 
-use super::{Settings, run};
+use super::{DescentSettings, run};
 use crate::acceptance::{Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
@@ -29,7 +29,7 @@ const LONGEST: f64 = 8.0;
 /// [`Cancelled`] when asked to stop.
 pub fn step_dependence(
     pair: &Pair,
-    settings: &Settings,
+    settings: &DescentSettings,
     seed: u64,
     exec: &Exec,
 ) -> Result<Option<Warning>, Cancelled> {
@@ -38,8 +38,11 @@ pub fn step_dependence(
     }
     let of = ((SIMPLE * affordable(pair)) as usize).max(LEAST.min(motions_in(LONGEST, pair)));
     let poses = || Domain::random(&pair.alignment, of, seed);
-    let half =
-        Settings { step: settings.step / 2.0, max_steps: settings.max_steps.saturating_mul(2), ..*settings };
+    let half = DescentSettings {
+        step: settings.step / 2.0,
+        max_steps: settings.max_steps.saturating_mul(2),
+        ..*settings
+    };
     let (whole, _) = run(pair, poses(), settings, exec)?;
     let (halved, _) = run(pair, poses(), &half, exec)?;
     let changed = whole.outcomes.iter().zip(&halved.outcomes).filter(|(a, b)| a != b).count();
@@ -63,7 +66,7 @@ mod tests {
     #[test]
     fn nothing_is_followed_where_nothing_is_tight() {
         // Steps of the size of the halves would change something.
-        let coarse = Settings { step: 1.0, ..Settings::default() };
+        let coarse = DescentSettings { step: 1.0, ..DescentSettings::default() };
         let none = step_dependence(&pair(Family::Pyramid), &coarse, 1, &Exec::new());
         assert_eq!(none, Ok(None));
     }
@@ -72,7 +75,7 @@ mod tests {
     fn a_dependence_is_told_with_its_interval() {
         // A budget of steps that suffices for some motion, but not where its steps are half as long.
         let pair = pair(Family::XFace3dLocking);
-        let short = |max_steps: usize| Settings { max_steps, ..Settings::default() };
+        let short = |max_steps: usize| DescentSettings { max_steps, ..DescentSettings::default() };
         let warning = (4..16).find_map(|most| step_dependence(&pair, &short(most), 1, &Exec::new()).unwrap());
         let Some(Warning::StepDependence { changed, of, ci95 }) = warning else {
             panic!("some motion must need more")

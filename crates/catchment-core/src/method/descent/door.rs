@@ -1,6 +1,6 @@
 //! Exact descent as a method: every pose is followed separately.
 
-use super::{End, Settings, rests, rests_told, run, step_dependence};
+use super::{DescentSettings, End, rests, rests_told, run, step_dependence};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -15,9 +15,9 @@ const INFO: Info =
     Info { name: "descent", summary: "exact motion of every cell's centre", on_grids: true, departs: false };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<DescentSettings>(&INFO);
 
-impl Decide for Settings {
+impl Decide for DescentSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -53,8 +53,8 @@ impl Decide for Settings {
     }
 
     fn check(&self) -> Result<(), DecideError> {
-        Settings::with_friction(self.friction).map_err(DecideError::method)?;
-        Settings::with_slope_threshold(self.slope_threshold).map(|_| ()).map_err(DecideError::method)
+        DescentSettings::with_friction(self.friction).map_err(DecideError::method)?;
+        DescentSettings::with_slope_threshold(self.slope_threshold).map(|_| ()).map_err(DecideError::method)
     }
 
     fn motions(&self) -> Self {
@@ -66,7 +66,7 @@ impl Decide for Settings {
     }
 }
 
-impl Follow for Settings {
+impl Follow for DescentSettings {
     fn follow(
         &self,
         problem: &Problem,

@@ -19,7 +19,7 @@
 
 use super::motion::{Motion, Until};
 use super::rest::TOUCHING;
-use super::{End, Settings};
+use super::{DescentSettings, End};
 use crate::acceptance::Outcome;
 use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
 use crate::contact::{Pair, Seat};
@@ -50,7 +50,7 @@ pub(super) fn home(pair: &Pair) -> f64 {
 
 fn about(pair: &Pair) -> About {
     pair.about_mated(|| {
-        let settings = Settings::default();
+        let settings = DescentSettings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
         // Where all facets nearly touch, to know that all that is near comes home saves motions the longest part of their way.

@@ -28,7 +28,7 @@ use super::coulomb::is_still;
 use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use super::sticking::{Sticking, Touching};
-use super::{Pair, Settings};
+use super::{DescentSettings, Pair};
 use crate::contact::{Contact, Meeting};
 use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DQuat, DVec3};
@@ -80,7 +80,7 @@ impl Holding {
     /// What touches where a half is lowered at a pose error: everything no farther apart than `near`, in D. `None` where nothing touches.
     pub fn at(pair: &Pair, error: &PoseError, near: f64) -> Option<Self> {
         // Any friction: slips are asked for.
-        let settings = Settings { friction: 1.0, ..Settings::default() };
+        let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
         let mut motion = Motion::new(pair, &settings);
         let state = motion.lower(error)?;
         Self::seen(&mut motion, &state, near)
@@ -88,7 +88,7 @@ impl Holding {
 
     /// What touches where a half rests at a pose error, its centre of rotation at `height`; also beneath what it could not be lowered through.
     pub fn at_rest(pair: &Pair, error: &PoseError, height: f64, near: f64) -> Option<Self> {
-        let settings = Settings { friction: 1.0, ..Settings::default() };
+        let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
         let mut motion = Motion::new(pair, &settings);
         let alignment = &pair.alignment;
         let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);

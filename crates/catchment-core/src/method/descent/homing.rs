@@ -14,7 +14,7 @@
 //!
 //! Not promised: that no pose near it jams, only that fewer than three in a hundred do, with 95 % confidence.
 
-use super::Settings;
+use super::DescentSettings;
 use super::fall::all_count;
 use super::motion::{Motion, Until, Unwatched};
 use crate::acceptance::{Outcome, Stream};
@@ -43,7 +43,7 @@ pub(super) fn all_dock(pair: &Pair) -> bool {
     }
     pair.is_homing(|| {
         let stream = Stream::new(SEED);
-        let (free, settings) = (pair.alignment.free, Settings::default());
+        let (free, settings) = (pair.alignment.free, DescentSettings::default());
         let mut motion = Motion::new(pair, &settings);
         (0..POSES).all(|k| {
             let mut error = [0.0; Dof::ALL.len()];
@@ -73,7 +73,7 @@ mod tests {
         let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
         let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
         // A budget in which nothing docks.
-        let spent = Settings { max_steps: 1, ..Settings::default() };
+        let spent = DescentSettings { max_steps: 1, ..DescentSettings::default() };
         let _ = outcome(&pair, &PoseError { x: 0.3, ..PoseError::default() }, &spent);
         assert!(pair.is_homing(|| false) && all_dock(&pair));
     }

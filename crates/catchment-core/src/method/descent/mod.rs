@@ -70,7 +70,7 @@ use sticking::{Doubting, OnTheWay};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct DescentSettings {
     /// Longest step in the ρ-metric, in D; twice as long if the motion is straight. Halving it must not
     /// change outcomes; the setting exists for that test.
     pub step: f64,
@@ -87,7 +87,7 @@ pub struct Settings {
     pub slope_threshold: f64,
 }
 
-impl Default for Settings {
+impl Default for DescentSettings {
     fn default() -> Self {
         Self { step: 0.02, surprise: 0.05, max_steps: 20_000, friction: 0.0, slope_threshold: 0.0 }
     }
@@ -112,7 +112,7 @@ pub struct SlopeOutOfRange {
     pub slope: f64,
 }
 
-impl Settings {
+impl DescentSettings {
     /// Whether something may hold a half on its way.
     pub(in crate::method) fn may_hold(&self) -> bool {
         self.friction > 0.0 || self.slope_threshold > 0.0
@@ -168,7 +168,7 @@ pub struct Follower<'a>(Motion<'a>);
 
 impl<'a> Follower<'a> {
     /// For the poses of a pair.
-    pub fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
+    pub fn new(pair: &'a Pair, settings: &'a DescentSettings) -> Self {
         Self(Motion::new(pair, settings).homing())
     }
 
@@ -219,12 +219,12 @@ impl<'a> Follower<'a> {
 }
 
 /// Follows one pose until it is known what becomes of it.
-pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
+pub fn outcome(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> End {
     Follower::new(pair, settings).follow(error)
 }
 
 /// Follows one pose until it has come to rest, and keeps its path.
-pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
+pub fn trace(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Trajectory {
     let mut waypoints = Vec::new();
     let End { outcome, .. } = Motion::new(pair, settings).follow(error, Until::AtRest, &mut waypoints);
     Trajectory { waypoints, outcome }
@@ -241,7 +241,7 @@ const MOST_BETWEEN: usize = 256;
 pub fn run(
     pair: &Pair,
     domain: Domain,
-    settings: &Settings,
+    settings: &DescentSettings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     each(pair, domain, Until::Known, settings, exec, &|_, _| {})
@@ -254,7 +254,7 @@ pub fn run(
 pub fn rests(
     pair: &Pair,
     domain: Domain,
-    settings: &Settings,
+    settings: &DescentSettings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     rests_told(pair, domain, settings, exec, &|_, _| {})
@@ -264,7 +264,7 @@ pub fn rests(
 pub(super) fn rests_told(
     pair: &Pair,
     domain: Domain,
-    settings: &Settings,
+    settings: &DescentSettings,
     exec: &Exec,
     finished: Finished<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
@@ -288,7 +288,12 @@ pub struct Rows<'a> {
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop; checked before every pose. What was written until then means nothing.
-pub fn rests_of_rows(pair: &Pair, rows: Rows<'_>, settings: &Settings, exec: &Exec) -> Result<(), Cancelled> {
+pub fn rests_of_rows(
+    pair: &Pair,
+    rows: Rows<'_>,
+    settings: &DescentSettings,
+    exec: &Exec,
+) -> Result<(), Cancelled> {
     let Rows { poses, ends, heights, outcomes } = rows;
     let count = poses.len();
     let done = AtomicUsize::new(0);
@@ -316,7 +321,7 @@ fn each(
     pair: &Pair,
     domain: Domain,
     until: Until,
-    settings: &Settings,
+    settings: &DescentSettings,
     exec: &Exec,
     finished: Finished<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {

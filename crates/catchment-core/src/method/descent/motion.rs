@@ -10,7 +10,7 @@ use super::rest::TOUCHING;
 use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
 use super::step::{Advance, Pace};
-use super::{End, Settings, Touch, Waypoint};
+use super::{DescentSettings, End, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
 use crate::pose::{CorPose, PoseError, rotation};
@@ -90,7 +90,7 @@ const TAPER: f64 = 0.1;
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
     pub(super) pair: &'a Pair,
-    pub(super) settings: &'a Settings,
+    pub(super) settings: &'a DescentSettings,
     seat: Seat<'a>,
     /// Whether all motion near the mated pose leads to it: [`super::homing`].
     pub(super) homing: bool,
@@ -115,7 +115,7 @@ pub(super) struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    pub(super) fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
+    pub(super) fn new(pair: &'a Pair, settings: &'a DescentSettings) -> Self {
         let radius =
             pair.moving.surfaces.iter().flat_map(|s| &s.vertices).map(|v| v.length()).fold(0.0, f64::max);
         let (slack, near) = horizon(settings.step, radius, pair.alignment.rotation_length);

@@ -4,7 +4,7 @@ use super::coulomb::Contacts;
 use super::holding::BORDER;
 use super::motion::{Motion, State, Until, Watch};
 use super::projection::{Vector, dot};
-use super::{End, Follower, Pair, Settings};
+use super::{DescentSettings, End, Follower, Pair};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use crate::pose::PoseError;
@@ -149,6 +149,6 @@ impl Motion<'_> {
 }
 
 /// Follows one pose until it is known what becomes of it, and keeps what carried it last.
-pub fn settle(pair: &Pair, error: &PoseError, settings: &Settings) -> Rest {
+pub fn settle(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Rest {
     Follower::new(pair, settings).settle(error)
 }

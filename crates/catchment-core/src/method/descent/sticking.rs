@@ -23,7 +23,7 @@ use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
 use super::motion::{Motion, State, Watch};
 use super::projection::{MAX_COORDINATES, Projection, Vector};
 use super::rows::{OVERLAP, margin};
-use super::{MOST_FRICTION as MOST, Settings};
+use super::{DescentSettings, MOST_FRICTION as MOST};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Pair};
 use crate::pose::PoseError;
@@ -66,7 +66,7 @@ pub const HARDLY: f64 = 1.1;
 /// From which friction on a half that is lowered at a pose error sticks where it first touches; `None` where it touches nothing.
 pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
     // Any friction: what slips is asked for.
-    let settings = Settings { friction: 1.0, ..Settings::default() };
+    let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
     let mut motion = Motion::new(pair, &settings);
     let state = motion.lower(error)?;
     let mut touching = Touching::default();

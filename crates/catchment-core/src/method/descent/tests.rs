@@ -2,7 +2,7 @@
 
 use super::fall::home;
 use super::rest::TOUCHING;
-use super::{Follower, Settings, outcome, run, trace};
+use super::{DescentSettings, Follower, outcome, run, trace};
 use crate::acceptance::{Domain, Outcome, Warning};
 use crate::connector::{Connector, Source};
 use crate::contact::{Pair, meshes};
@@ -39,7 +39,7 @@ proptest! {
         // Closer to the border than the alignment tolerance either answer is right.
         prop_assume!((x.abs() + y.abs() - 1.0).abs() > 1e-3 && x.abs() > 1e-3 && y.abs() > 1e-3);
         let pair = pair(Family::XFace3d, lateral);
-        let end = outcome(&pair, &at(x, y), &Settings::default()).outcome;
+        let end = outcome(&pair, &at(x, y), &DescentSettings::default()).outcome;
         prop_assert_eq!(end == Outcome::Aligned, x.abs() + y.abs() < 1.0, "{:?}", end);
     }
 
@@ -49,7 +49,7 @@ proptest! {
         let reach = x.abs().max(y.abs());
         prop_assume!((reach - 0.5).abs() > 1e-3);
         let pair = pair(Family::Pyramid, lateral);
-        let end = outcome(&pair, &at(x, y), &Settings::default()).outcome;
+        let end = outcome(&pair, &at(x, y), &DescentSettings::default()).outcome;
         prop_assert_eq!(end == Outcome::Aligned, reach < 0.5, "{:?}", end);
     }
 
@@ -65,7 +65,7 @@ proptest! {
         for dof in Dof::ALL.into_iter().filter(|d| !free.contains(*d)) {
             start[dof.index()] = 0.0;
         }
-        let path = trace(&pair, &PoseError::from_array(start), &Settings::default());
+        let path = trace(&pair, &PoseError::from_array(start), &DescentSettings::default());
         for pairs in path.waypoints.windows(2) {
             // Past a corner that no contact announced a motion is carried by the smallest step, 0.02/4096 D = 5e-6 D, up
             // slopes of at most 20 (steeper ones are walls): 1e-4.
@@ -87,7 +87,7 @@ proptest! {
     #[test]
     fn a_mirrored_pose_ends_mirrored(x in -0.8..0.8f64, pitch in -1.4..1.4f64) {
         let pair = pair(Family::VFace, |a| a.center_of_rotation = 0.5);
-        let settings = Settings::default();
+        let settings = DescentSettings::default();
         let a = outcome(&pair, &PoseError { x, pitch, ..PoseError::default() }, &settings);
         let b = outcome(&pair, &PoseError { x: -x, pitch: -pitch, ..PoseError::default() }, &settings);
         prop_assert_eq!(a.outcome, b.outcome);
@@ -104,7 +104,7 @@ fn the_first_step_is_the_steepest_in_the_metric() {
             a.center_of_rotation = 0.4;
             a.rotation_length = rho;
         });
-        let settings = Settings { step: 1e-4, ..Settings::default() };
+        let settings = DescentSettings { step: 1e-4, ..DescentSettings::default() };
         let path = trace(&pair, &error, &settings);
         let [first, second] = [&path.waypoints[0], &path.waypoints[1]];
         assert_eq!(first.touches.len(), 1, "one contact to start from");
@@ -131,7 +131,7 @@ fn the_first_step_is_the_steepest_in_the_metric() {
 #[test]
 fn passing_by_is_missed_and_keeps_the_pose() {
     let pair = pair(Family::Pyramid, lateral);
-    let end = outcome(&pair, &at(1.3, 0.0), &Settings::default());
+    let end = outcome(&pair, &at(1.3, 0.0), &DescentSettings::default());
     assert_eq!(end.outcome, Outcome::Missed);
     assert_eq!(end.error, at(1.3, 0.0));
 }
@@ -139,7 +139,7 @@ fn passing_by_is_missed_and_keeps_the_pose() {
 #[test]
 fn a_quarter_turn_counts_where_declared() {
     let quarter = PoseError { yaw: FRAC_PI_2, ..PoseError::default() };
-    let settings = Settings::default();
+    let settings = DescentSettings::default();
     assert_eq!(outcome(&pair(Family::Pyramid, |_| ()), &quarter, &settings).outcome, Outcome::Jammed);
     let fourfold = pair(Family::Pyramid, |a| a.symmetry = 4);
     assert_eq!(outcome(&fourfold, &quarter, &settings).outcome, Outcome::Aligned);
@@ -151,7 +151,8 @@ fn a_locked_translation_stays_at_the_centre_of_rotation() {
         a.free = [Dof::X, Dof::Pitch].into_iter().collect();
         a.center_of_rotation = 0.5;
     });
-    let path = trace(&pair, &PoseError { x: 0.1, pitch: 0.3, ..PoseError::default() }, &Settings::default());
+    let path =
+        trace(&pair, &PoseError { x: 0.1, pitch: 0.3, ..PoseError::default() }, &DescentSettings::default());
     assert!(path.waypoints.len() > 5);
     for waypoint in &path.waypoints {
         let rotation = waypoint.error.rotation();
@@ -163,7 +164,7 @@ fn a_locked_translation_stays_at_the_centre_of_rotation() {
 #[test]
 fn a_spent_budget_is_undecided_and_said() {
     let pair = pair(Family::Pyramid, |_| ());
-    let settings = Settings { max_steps: 2, ..Settings::default() };
+    let settings = DescentSettings { max_steps: 2, ..DescentSettings::default() };
     let domain = Domain::Poses(vec![at(0.3, 0.1), at(0.0, 0.0)]);
     let (acceptance, _) = run(&pair, domain, &settings, &Exec::new()).unwrap();
     assert_eq!(acceptance.outcomes, [Outcome::Undecided, Outcome::Aligned]);
@@ -176,7 +177,7 @@ fn a_stop_is_obeyed() {
     let exec = Exec::new();
     exec.cancel_flag().store(true, Ordering::Relaxed);
     let domain = Domain::Poses(vec![at(0.3, 0.1)]);
-    assert_eq!(run(&pair, domain, &Settings::default(), &exec).err(), Some(Cancelled));
+    assert_eq!(run(&pair, domain, &DescentSettings::default(), &exec).err(), Some(Cancelled));
 }
 
 /// Pins in holes that fit tightly, followed by trees: lengths of a step that overlap, tried before an overlap was seen, count as clear no more. These poses of
@@ -185,7 +186,7 @@ fn a_stop_is_obeyed() {
 fn pins_by_trees_do_not_jam_on_a_length_that_seemed_clear() {
     let pair = pair(Family::PinHole, |_| ());
     assert!(pair.is_tight() && pair.asks_trees());
-    let settings = Settings::default();
+    let settings = DescentSettings::default();
     let mut follower = Follower::new(&pair, &settings);
     for error in [
         [
@@ -242,7 +243,7 @@ fn walls_are_followed_to_the_end() {
                 pitch: 0.06 * (0.9 * a).cos(),
                 yaw: 0.05 * (1.3 * a).sin(),
             };
-            let end = outcome(&pair, &error, &Settings::default());
+            let end = outcome(&pair, &error, &DescentSettings::default());
             assert_eq!(end.outcome, Outcome::Aligned, "{family:?} {error:?} ended at {:?}", end.error);
         }
     }
@@ -261,7 +262,8 @@ fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
     for (x, pitch) in
         [(0.43, -0.958_186), (0.43, -0.926_77), (0.4, -0.930_26), (0.45, -0.99), (0.4, -0.923_28)]
     {
-        let trajectory = trace(&pair, &PoseError { x, pitch, ..PoseError::default() }, &Settings::default());
+        let trajectory =
+            trace(&pair, &PoseError { x, pitch, ..PoseError::default() }, &DescentSettings::default());
         for waypoint in &trajectory.waypoints {
             let alignment = &pair.alignment;
             let pose = CorPose::from_error(&waypoint.error, alignment.center_of_rotation, alignment.free);
@@ -288,7 +290,7 @@ fn lathed(halves: [meshes::Triangles; 2]) -> Pair {
 fn a_funnel_ends_in_the_mated_pose() {
     let pair = lathed(meshes::funnel(1000));
     assert!(pair.asks_trees() && !pair.is_tight());
-    let settings = Settings::default();
+    let settings = DescentSettings::default();
     let mut follower = Follower::new(&pair, &settings);
     let mut docked = 0;
     for k in 0..24 {
@@ -330,7 +332,7 @@ fn only_a_seat_that_leads_home_takes_home() {
     assert!(pair.asks_trees() && !pair.is_tight());
     assert_eq!(home(&pair), 0.0);
     let error = PoseError { x: 1.5e-3, ..PoseError::default() };
-    let rest = Follower::new(&pair, &Settings::default()).come_to_rest(&error);
+    let rest = Follower::new(&pair, &DescentSettings::default()).come_to_rest(&error);
     assert!(rest.error.x > 1e-3, "{rest:?}");
 }
 
@@ -340,7 +342,7 @@ fn trees_change_no_motion() {
     let pair = lathed(meshes::cone(160));
     let judge = pair.without_trees();
     assert!(pair.asks_trees() && !judge.asks_trees());
-    let settings = Settings::default();
+    let settings = DescentSettings::default();
     let (mut by_trees, mut by_list) = (Follower::new(&pair, &settings), Follower::new(&judge, &settings));
     let (mut seen, mut differ) = ([0, 0], Vec::new());
     for k in 0..16 {

@@ -3,7 +3,7 @@
 use super::motion::Motion;
 use super::sticking::Touching;
 use super::tests::{at, pair};
-use super::{Follower, Settings, outcome, run, sticking};
+use super::{DescentSettings, Follower, outcome, run, sticking};
 use crate::acceptance::{Domain, Outcome, Stream};
 use crate::contact::Pair;
 use crate::design::Family;
@@ -111,7 +111,7 @@ fn motions_stick_from_the_exact_thresholds_on() {
         for k in -20i32..=20 {
             // Shares of ±0.05 % to ±2 % of the threshold.
             let share = (f64::from(k) - 0.5) * 1e-3;
-            let settings = Settings::with_friction(threshold * (1.0 + share)).unwrap();
+            let settings = DescentSettings::with_friction(threshold * (1.0 + share)).unwrap();
             let expected = if share < 0.0 { Outcome::Aligned } else { Outcome::Jammed };
             let found = outcome(&pair, &error, &settings).outcome;
             assert_eq!(found, expected, "{family:?} {aspect_ratio} {free:?} {error:?}: {threshold} {share}");
@@ -123,7 +123,7 @@ fn motions_stick_from_the_exact_thresholds_on() {
 #[test]
 fn a_slope_threshold_ends_motion_on_gentler_slopes() {
     let at_slope = |pair: &Pair, error: &PoseError, slope: f64| {
-        outcome(pair, error, &Settings::with_slope_threshold(slope).unwrap()).outcome
+        outcome(pair, error, &DescentSettings::with_slope_threshold(slope).unwrap()).outcome
     };
     let lateral = [Dof::X, Dof::Y];
     for (family, aspect_ratio, error, slope) in [
@@ -137,7 +137,7 @@ fn a_slope_threshold_ends_motion_on_gentler_slopes() {
         assert_eq!(at_slope(&pair, &error, slope - 1e-6), Outcome::Aligned, "{family:?}");
         assert_eq!(at_slope(&pair, &error, slope + 1e-6), Outcome::Jammed, "{family:?}");
     }
-    let refusal = Settings::with_slope_threshold(f64::NAN).unwrap_err().to_string();
+    let refusal = DescentSettings::with_slope_threshold(f64::NAN).unwrap_err().to_string();
     assert!(refusal.contains("NaN is no slope"), "{refusal}");
 }
 
@@ -180,7 +180,7 @@ fn a_peg_jams_by_the_lines_of_whitneys_diagram() {
         (0.6, 0.7),
     ]) {
         let (pair, error) = peg(1.0, 5e-4, 0.0, depth);
-        let settings = Settings::with_friction(friction).unwrap();
+        let settings = DescentSettings::with_friction(friction).unwrap();
         let mut motion = Motion::new(&pair, &settings);
         let state = motion.lower(&error).unwrap();
         let mut touching = Touching::default();
@@ -251,7 +251,7 @@ fn between_the_thresholds_a_motion_is_in_doubt() {
     for (friction, outcome, may_stick) in
         [(0.57, Outcome::Aligned, false), (0.59, Outcome::Aligned, true), (0.62, Outcome::Jammed, false)]
     {
-        let settings = Settings::with_friction(friction).unwrap();
+        let settings = DescentSettings::with_friction(friction).unwrap();
         let (end, doubt) = Follower::new(&pair, &settings).follow_doubting(&at(0.2, 0.2));
         assert_eq!((end.outcome, doubt.may_stick, doubt.wedges), (outcome, may_stick, false), "{friction}");
     }
@@ -270,7 +270,7 @@ fn facing_facets_wedge_from_their_angle_on() {
 #[test]
 fn a_number_that_is_no_friction_is_refused() {
     for friction in [-0.1, f64::NAN, f64::INFINITY, 11.0] {
-        let refusal = Settings::with_friction(friction).unwrap_err().to_string();
+        let refusal = DescentSettings::with_friction(friction).unwrap_err().to_string();
         assert!(refusal.contains("from 0 to 10"), "{refusal}");
     }
 }
@@ -295,14 +295,14 @@ fn neither_steps_nor_threads_change_outcomes() {
     for (name, pair, friction) in
         [("X-Face", face, 0.2), ("pyramid", pyramid, 0.1), ("flat", flat.clone(), 0.2), ("flat", flat, 0.3)]
     {
-        let settings = Settings::with_friction(friction).unwrap();
-        let outcomes = |settings: &Settings, threads: usize| {
+        let settings = DescentSettings::with_friction(friction).unwrap();
+        let outcomes = |settings: &DescentSettings, threads: usize| {
             let exec = Exec::new().with_threads(threads).unwrap();
             run(&pair, random(300), settings, &exec).unwrap().0.outcomes
         };
         let found = outcomes(&settings, 1);
         assert_eq!(found, outcomes(&settings, 2));
-        let halved = outcomes(&Settings { step: 0.5 * settings.step, ..settings }, 2);
+        let halved = outcomes(&DescentSettings { step: 0.5 * settings.step, ..settings }, 2);
         let differ = found.iter().zip(&halved).filter(|(a, b)| a != b).count();
         assert!(differ <= 3, "{name}: {differ} of 300");
     }

@@ -1,7 +1,7 @@
 //! Drop tests as a method: every pose is decided separately.
 
 use super::engine::SUNK;
-use super::{DropError, Settings, run, run_told};
+use super::{DropError, DropSettings, run, run_told};
 use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -21,9 +21,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<DropSettings>(&INFO);
 
-impl Decide for Settings {
+impl Decide for DropSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -58,7 +58,7 @@ impl Decide for Settings {
     }
 }
 
-impl Follow for Settings {
+impl Follow for DropSettings {
     fn follow(
         &self,
         problem: &Problem,

@@ -7,7 +7,7 @@
 use super::DropError;
 use super::mass::Mass;
 use super::pieces::{Part, parts};
-use super::settings::{Launch, Push, Settings};
+use super::settings::{DropSettings, Launch, Push};
 use super::turning::Turning;
 use crate::acceptance::Outcome;
 use crate::connector::Half;
@@ -39,7 +39,7 @@ impl Shapes {
 /// A pair with settings.
 pub(super) struct Engine<'a> {
     pair: &'a Pair,
-    settings: &'a Settings,
+    settings: &'a DropSettings,
     shapes: &'a Shapes,
     /// z of the ground, in D.
     ground: Option<f64>,
@@ -68,7 +68,11 @@ const SWEEPS: usize = 8;
 const RELAXATIONS: usize = 2;
 
 impl<'a> Engine<'a> {
-    pub(super) fn new(pair: &'a Pair, shapes: &'a Shapes, settings: &'a Settings) -> Result<Self, DropError> {
+    pub(super) fn new(
+        pair: &'a Pair,
+        shapes: &'a Shapes,
+        settings: &'a DropSettings,
+    ) -> Result<Self, DropError> {
         settings.check()?;
         let alignment = &pair.alignment;
         let body = Mass::of(&pair.moving, settings, alignment);
@@ -419,7 +423,7 @@ mod tests {
 
     #[test]
     fn a_half_at_rest_overlaps_by_a_thousandth_and_settles_mated() {
-        let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), Settings::default());
+        let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), DropSettings::default());
         let shapes = Shapes::of(&pair).unwrap();
         let engine = Engine::new(&pair, &shapes, &settings).unwrap();
         let cor = pair.alignment.center_of_rotation;
@@ -435,7 +439,7 @@ mod tests {
 
     #[test]
     fn triangles_hold_like_pieces() {
-        let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), Settings::default());
+        let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), DropSettings::default());
         let mut shapes = Shapes::of(&pair).unwrap();
         let mut outcomes = Vec::new();
         for meshes in [false, true] {

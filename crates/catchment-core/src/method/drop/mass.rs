@@ -9,7 +9,7 @@
 //! velocity that has the momentum `M·u`. Contacts see `M + Δt·C` too: if damping dominates, they push in the
 //! metric of friction, for any inertia, and every step is stable.
 
-use super::settings::{Body, Settings};
+use super::settings::{Body, DropSettings};
 use crate::connector::{Half, Surface};
 use crate::design::Alignment;
 use crate::pose::face_from_cor;
@@ -28,7 +28,7 @@ pub(super) struct Mass {
 
 impl Mass {
     /// What the settings say of the moving half, given from the COR.
-    pub(super) fn of(moving: &Half, settings: &Settings, alignment: &Alignment) -> Self {
+    pub(super) fn of(moving: &Half, settings: &DropSettings, alignment: &Alignment) -> Self {
         let mass = match settings.body {
             Body::Given { mass, gyration, center } => {
                 let radius = gyration.unwrap_or(alignment.rotation_length);
@@ -63,7 +63,7 @@ impl Mass {
     }
 
     /// The body that an implicit step of `settings.timestep` moves: this one with its damping.
-    pub(super) fn damped(&self, settings: &Settings, rotation_length: f64) -> Self {
+    pub(super) fn damped(&self, settings: &DropSettings, rotation_length: f64) -> Self {
         let impulse = settings.timestep * self.weight;
         let at_cor = Self {
             weight: impulse * settings.damping,
@@ -119,7 +119,8 @@ mod tests {
 
     #[test]
     fn heavy_damping_leaves_the_metric_of_friction() {
-        let settings = Settings { timestep: 1.0, damping: 1e9, angular_damping: 1e9, ..Settings::default() };
+        let settings =
+            DropSettings { timestep: 1.0, damping: 1e9, angular_damping: 1e9, ..DropSettings::default() };
         let body = Mass { weight: 2.0, center: DVec3::new(0.1, 0.0, 0.3), inertia: isotropic(7.0) };
         let damped = body.damped(&settings, 0.5);
         assert!((damped.weight / 2e9 - 1.0).abs() < 1e-8 && damped.center.length() < 1e-8);

@@ -41,7 +41,7 @@ mod tests;
 mod turning;
 
 pub use path::{Moment, Path};
-pub use settings::{Body, Launch, PRESETS, Preset, Push, SettingError, Settings};
+pub use settings::{Body, DropSettings, Launch, PRESETS, Preset, Push, SettingError};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::advice::Advice;
@@ -98,7 +98,7 @@ const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 pub fn run(
     pair: &Pair,
     domain: Domain,
-    settings: &Settings,
+    settings: &DropSettings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
     run_told(pair, domain, settings, exec, &|_, _| {})
@@ -108,7 +108,7 @@ pub fn run(
 fn run_told(
     pair: &Pair,
     domain: Domain,
-    settings: &Settings,
+    settings: &DropSettings,
     exec: &Exec,
     finished: Finished<'_>,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
@@ -150,7 +150,7 @@ fn run_told(
 fn decide(
     engine: &Engine,
     pair: &Pair,
-    settings: &Settings,
+    settings: &DropSettings,
     error: &PoseError,
     exec: &Exec,
 ) -> Result<End, Cancelled> {
@@ -194,7 +194,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// See [`DropError`]. A stop is looked for every 64 time steps.
-    pub fn fall(&self, error: &PoseError, settings: &Settings, exec: &Exec) -> Result<End, DropError> {
+    pub fn fall(&self, error: &PoseError, settings: &DropSettings, exec: &Exec) -> Result<End, DropError> {
         Ok(Engine::new(self.pair, &self.shapes, settings)?.fall(error, exec)?)
     }
 
@@ -202,12 +202,12 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// As [`Bench::fall`].
-    pub fn trace(&self, error: &PoseError, settings: &Settings, exec: &Exec) -> Result<Path, DropError> {
+    pub fn trace(&self, error: &PoseError, settings: &DropSettings, exec: &Exec) -> Result<Path, DropError> {
         Ok(path::trace(&Engine::new(self.pair, &self.shapes, settings)?, error, exec)?)
     }
 
     /// Mass of the moving half with these settings, in kg.
-    pub fn mass(&self, settings: &Settings) -> f64 {
+    pub fn mass(&self, settings: &DropSettings) -> f64 {
         Mass::of(&self.pair.moving, settings, &self.pair.alignment).weight
     }
 }
@@ -215,7 +215,7 @@ impl<'a> Bench<'a> {
 /// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the free errors of the
 /// pose and the number of the trial alone. Neither the place of the pose in a list nor a locked offset, which the lock decides,
 /// changes it.
-fn perturbed(pair: &Pair, settings: &Settings, error: &PoseError, trial: u32) -> PoseError {
+fn perturbed(pair: &Pair, settings: &DropSettings, error: &PoseError, trial: u32) -> PoseError {
     let free = pair.alignment.free;
     let mut start = error.to_array();
     // −0 and 0 are the same error.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct DropSettings {
     /// Force that drives the moving half along the approach.
     pub push: Push,
     /// Mass and inertia of the moving half.
@@ -101,7 +101,7 @@ pub enum Body {
     },
 }
 
-impl Default for Settings {
+impl Default for DropSettings {
     fn default() -> Self {
         Self {
             push: Push::Force(5000.0),
@@ -133,7 +133,7 @@ pub struct Preset {
     /// What it is.
     pub summary: &'static str,
     /// The settings.
-    pub settings: fn() -> Settings,
+    pub settings: fn() -> DropSettings,
     /// What its source leaves open, and what stands here instead.
     pub unknown: &'static [&'static str],
 }
@@ -143,7 +143,7 @@ pub const PRESETS: [Preset; 1] = [Preset {
     name: "gazebo-2014",
     summary: "the trials of the dissertation, as far as it states them: gravity of 9000 m/s², velocities that decay by 0.99 per \
               step, a ground",
-    settings: Settings::gazebo_2014,
+    settings: DropSettings::gazebo_2014,
     unknown: &[
         "the time step: 1 ms, the default of Gazebo, is taken",
         "the range of the slices: that of the design's error box is taken",
@@ -155,7 +155,7 @@ pub const PRESETS: [Preset; 1] = [Preset {
     ],
 }];
 
-impl Settings {
+impl DropSettings {
     /// The drop tests of the dissertation, sections 4.2.1 and 4.2.2, as far as they are stated.
     ///
     /// Stated: g = 9000 m/s² through the solid's centre of mass; all velocities lose 0.99 of themselves per step; no friction, no bounce; one
@@ -205,7 +205,7 @@ const MOST_STEPS: f64 = 1e8;
 /// Most trials per pose: a share of 1 % apart from one half shows in as many, and more would take minutes per pose.
 const MOST_TRIALS: u32 = 9_999;
 
-impl Settings {
+impl DropSettings {
     /// Refuses what no trial can be made with.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ fn x(x: f64) -> PoseError {
     PoseError { x, ..PoseError::default() }
 }
 
-fn outcomes(pair: &Pair, poses: Vec<PoseError>, settings: &Settings) -> Vec<Outcome> {
+fn outcomes(pair: &Pair, poses: Vec<PoseError>, settings: &DropSettings) -> Vec<Outcome> {
     run(pair, Domain::Poses(poses), settings, &Exec::new()).unwrap().0.outcomes
 }
 
@@ -35,7 +35,7 @@ type Margin = fn(f64, f64) -> f64;
 fn without_rotation_a_pyramid_seats_from_half_its_width_and_an_x_face_from_a_diamond() {
     const CELLS: usize = 13;
     let sliding = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
-    let settings = Settings { trials: 1, ..Settings::default() };
+    let settings = DropSettings { trials: 1, ..DropSettings::default() };
     // |x|, |y| < 1/2, and |x| + |y| < 1, of which the area is 2.
     let closed: [(Family, Margin); 2] = [
         (Family::Pyramid, |x, y| 0.5 - x.abs().max(y.abs())),
@@ -71,7 +71,7 @@ fn friction_holds_a_half_on_a_slope_no_steeper_than_its_cone() {
         let poses = || [-0.3, -0.1, 0.2].map(x).to_vec();
         for (friction, expected) in [(0.0, Outcome::Aligned), (0.9, Outcome::Aligned), (1.1, Outcome::Jammed)]
         {
-            let settings = Settings { friction, ..Settings::default() };
+            let settings = DropSettings { friction, ..DropSettings::default() };
             assert_eq!(outcomes(&pair, poses(), &settings), [expected; 3], "{family:?} {friction}");
         }
     }
@@ -82,10 +82,10 @@ fn threads_change_no_bit() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
     let [one, two] = [1, 2].map(|threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        run(&pair, Domain::random(&pair.alignment, 24, 3), &Settings::default(), &exec).unwrap()
+        run(&pair, Domain::random(&pair.alignment, 24, 3), &DropSettings::default(), &exec).unwrap()
     });
     assert_eq!(one, two);
-    let other = Settings { seed: 2, ..Settings::default() };
+    let other = DropSettings { seed: 2, ..DropSettings::default() };
     let (_, ends) = run(&pair, one.0.domain.clone(), &other, &Exec::new()).unwrap();
     assert_ne!(ends, one.1, "another seed perturbs otherwise");
 }
@@ -97,7 +97,7 @@ fn hinges_stay_hinges() {
     let pair = pair(Family::Cone, free);
     let poses: Vec<PoseError> =
         [0.1, 0.2, 0.3].map(|a| PoseError { roll: a, pitch: -a, ..x(a / 2.0) }).to_vec();
-    let (_, ends) = run(&pair, Domain::Poses(poses), &Settings::default(), &Exec::new()).unwrap();
+    let (_, ends) = run(&pair, Domain::Poses(poses), &DropSettings::default(), &Exec::new()).unwrap();
     for end in ends {
         assert_eq!(end.error.yaw, 0.0);
         let cor = crate::pose::CorPose::from_error(&end.error, 0.5, DofSet::ALL).lateral;
@@ -109,8 +109,11 @@ fn hinges_stay_hinges() {
 #[test]
 fn a_solid_falls_by_gravity_like_a_given_mass() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
-    let settings =
-        Settings { body: Body::Solid { density: 2.0 }, push: Push::Gravity(5000.0), ..Settings::default() };
+    let settings = DropSettings {
+        body: Body::Solid { density: 2.0 },
+        push: Push::Gravity(5000.0),
+        ..DropSettings::default()
+    };
     let poses = vec![x(0.1), PoseError { yaw: 0.2, ..x(0.0) }, x(0.9)];
     assert_eq!(outcomes(&pair, poses, &settings), [Outcome::Aligned, Outcome::Aligned, Outcome::Missed]);
     // Its centre of mass is not at the COR, so locking y there is not what the engine would do.
@@ -122,19 +125,19 @@ fn a_solid_falls_by_gravity_like_a_given_mass() {
 #[test]
 fn a_bouncing_half_is_undecided_when_the_time_is_up() {
     let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
-    let bouncing = Settings {
+    let bouncing = DropSettings {
         push: Push::Gravity(10.0),
         damping: 0.0,
         angular_damping: 0.0,
         restitution: 1.0,
         drop_height: 0.5,
         timeout: 1.0,
-        ..Settings::default()
+        ..DropSettings::default()
     };
     let (acceptance, _) = run(&pair, Domain::Poses(vec![x(0.2)]), &bouncing, &Exec::new()).unwrap();
     assert_eq!(acceptance.outcomes, [Outcome::Undecided]);
     assert_eq!(acceptance.warnings, [Warning::Undecided { cells: 1 }]);
-    let damped = Settings { restitution: 0.0, damping: 20.0, timeout: 20.0, ..bouncing };
+    let damped = DropSettings { restitution: 0.0, damping: 20.0, timeout: 20.0, ..bouncing };
     assert_eq!(outcomes(&pair, vec![x(0.2)], &damped), [Outcome::Aligned]);
 }
 
@@ -158,36 +161,42 @@ fn the_majority_decides() {
 #[test]
 fn what_cannot_run_is_refused() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
-    let refused = |settings: &Settings, exec: &Exec| {
+    let refused = |settings: &DropSettings, exec: &Exec| {
         run(&pair, Domain::Poses(vec![x(0.1)]), settings, exec).unwrap_err()
     };
     for settings in [
-        Settings { trials: 2, ..Settings::default() },
-        Settings { friction: f64::NAN, ..Settings::default() },
-        Settings { restitution: 1.5, ..Settings::default() },
-        Settings { timestep: 1e-9, ..Settings::default() },
-        Settings { push: Push::Force(0.0), ..Settings::default() },
-        Settings { inertia_factor: 0.0, ..Settings::default() },
-        Settings { launch: Launch { speed: -1.0, ..Launch::default() }, ..Settings::default() },
-        Settings { launch: Launch { drift: [0.0, f64::NAN], ..Launch::default() }, ..Settings::default() },
-        Settings { body: Body::Solid { density: -1.0 }, ..Settings::default() },
+        DropSettings { trials: 2, ..DropSettings::default() },
+        DropSettings { friction: f64::NAN, ..DropSettings::default() },
+        DropSettings { restitution: 1.5, ..DropSettings::default() },
+        DropSettings { timestep: 1e-9, ..DropSettings::default() },
+        DropSettings { push: Push::Force(0.0), ..DropSettings::default() },
+        DropSettings { inertia_factor: 0.0, ..DropSettings::default() },
+        DropSettings { launch: Launch { speed: -1.0, ..Launch::default() }, ..DropSettings::default() },
+        DropSettings {
+            launch: Launch { drift: [0.0, f64::NAN], ..Launch::default() },
+            ..DropSettings::default()
+        },
+        DropSettings { body: Body::Solid { density: -1.0 }, ..DropSettings::default() },
     ] {
         assert!(matches!(refused(&settings, &Exec::new()), DropError::Setting(_)));
     }
     let small = Exec::new().with_memory_budget(10);
-    assert!(matches!(refused(&Settings::default(), &small), DropError::OutOfBudget(_)));
+    assert!(matches!(refused(&DropSettings::default(), &small), DropError::OutOfBudget(_)));
     let stopped = Exec::new();
     stopped.cancel_flag().store(true, Ordering::Relaxed);
-    assert_eq!(refused(&Settings::default(), &stopped), DropError::Cancelled(Cancelled));
+    assert_eq!(refused(&DropSettings::default(), &stopped), DropError::Cancelled(Cancelled));
 }
 
 #[test]
 fn settings_survive_json_and_refuse_what_they_do_not_know() {
-    let settings =
-        Settings { push: Push::Gravity(9.81), body: Body::Solid { density: 3.0 }, ..Settings::default() };
+    let settings = DropSettings {
+        push: Push::Gravity(9.81),
+        body: Body::Solid { density: 3.0 },
+        ..DropSettings::default()
+    };
     let text = serde_json::to_string(&settings).unwrap();
-    assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
-    assert!(serde_json::from_str::<Settings>("{\"fricton\": 0.1}").is_err());
+    assert_eq!(serde_json::from_str::<DropSettings>(&text).unwrap(), settings);
+    assert!(serde_json::from_str::<DropSettings>("{\"fricton\": 0.1}").is_err());
 }
 
 /// A tip beside its notch slides off outwards, until its base clears the peak at x = 1: past the notch into nothing, or onto the ground that
@@ -196,7 +205,7 @@ fn settings_survive_json_and_refuse_what_they_do_not_know() {
 fn what_slides_off_comes_to_rest_on_the_ground() {
     let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
     let fall = |ground: Option<f64>, at: f64| {
-        let settings = Settings { ground, trials: 1, ..Settings::default() };
+        let settings = DropSettings { ground, trials: 1, ..DropSettings::default() };
         run(&pair, Domain::Poses(vec![x(at)]), &settings, &Exec::new()).unwrap().1[0]
     };
     assert_eq!(fall(None, 0.7).outcome, Outcome::Missed);
@@ -213,7 +222,7 @@ fn what_slides_off_comes_to_rest_on_the_ground() {
 /// inside and well outside.
 #[test]
 fn the_preset_of_the_dissertation_docks_and_fails_as_it_should() {
-    let settings = Settings { trials: 1, ..Settings::gazebo_2014() };
+    let settings = DropSettings { trials: 1, ..DropSettings::gazebo_2014() };
     settings.check().unwrap();
     let Push::Gravity(gravity) = settings.push else { panic!("it falls by its weight") };
     // Velocity keeps a hundredth of itself per step.
@@ -231,13 +240,13 @@ fn the_preset_of_the_dissertation_docks_and_fails_as_it_should() {
 #[test]
 fn a_half_in_flight_keeps_its_velocities() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
-    let settings = Settings {
+    let settings = DropSettings {
         push: Push::Force(1e-9),
         damping: 0.0,
         angular_damping: 0.0,
         drop_height: 0.4,
         launch: Launch { speed: 0.8, drift: [0.2, -0.1], spin: [0.0, 0.0, 0.3] },
-        ..Settings::default()
+        ..DropSettings::default()
     };
     let start = PoseError { y: 0.05, ..x(-0.1) };
     let path = Bench::new(&pair).unwrap().trace(&start, &settings, &Exec::new()).unwrap();
@@ -269,13 +278,13 @@ fn a_push_beside_the_centre_of_mass_turns_a_half() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
     let pitch = |push: Push| {
         let center = Some([0.2, 0.0, -0.5]);
-        let settings = Settings {
+        let settings = DropSettings {
             push,
             body: Body::Given { mass: 2.0, gyration: Some(0.4), center },
             damping: 0.0,
             angular_damping: 0.0,
             drop_height: 0.5,
-            ..Settings::default()
+            ..DropSettings::default()
         };
         let path = Bench::new(&pair).unwrap().trace(&x(0.0), &settings, &Exec::new()).unwrap();
         let flown = path.moments.iter().rfind(|moment| moment.time < 0.15).unwrap();
@@ -293,7 +302,7 @@ fn a_push_beside_the_centre_of_mass_turns_a_half() {
 #[test]
 fn a_frozen_rotation_leaves_the_region_of_sliding() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
-    let settings = Settings { inertia_factor: 1e5, trials: 1, ..Settings::gazebo_2014() };
+    let settings = DropSettings { inertia_factor: 1e5, trials: 1, ..DropSettings::gazebo_2014() };
     let turned = |yaw: f64| PoseError { yaw, ..x(0.05) };
     let poses = || {
         vec![
@@ -308,7 +317,7 @@ fn a_frozen_rotation_leaves_the_region_of_sliding() {
     assert_eq!(frozen[..2], [Outcome::Aligned; 2]);
     assert!(!frozen[2..].contains(&Outcome::Aligned), "{frozen:?}");
     // Free to turn it turns home.
-    let free = outcomes(&pair, vec![turned(0.3)], &Settings { inertia_factor: 1.0, ..settings });
+    let free = outcomes(&pair, vec![turned(0.3)], &DropSettings { inertia_factor: 1.0, ..settings });
     assert_eq!(free, [Outcome::Aligned]);
 }
 
@@ -320,7 +329,7 @@ fn a_half_rests_on_the_other_and_on_the_ground() {
         ConnectorSpec::Family(FamilySpec::new(Family::XFace3d).with_aspect_ratio(30f64.to_radians().tan()));
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-    let settings = Settings { trials: 1, ..Settings::gazebo_2014() };
+    let settings = DropSettings { trials: 1, ..DropSettings::gazebo_2014() };
     let ground = pair.fixed.surfaces.iter().flat_map(|s| &s.vertices).fold(0.0f64, |low, v| low.min(v.z));
     let bench = Bench::new(&pair).unwrap();
     let rests = |x: f64, y: f64, pitch: f64, yaw: f64| {

@@ -1,6 +1,6 @@
 //! Flooding as a method, by either rule: two lines of the registry, one implementation.
 
-use super::{FloodError, Rule, Settings, bytes, docks, flood};
+use super::{FloodError, FloodSettings, Rule, bytes, docks, flood};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -25,19 +25,19 @@ const STEEPEST: Info = Info {
 };
 
 /// The line of [`Rule::Lowest`] in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&LOWEST);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<FloodSettings>(&LOWEST);
 
 /// The line of [`Rule::Steepest`], which is the rule where none is named.
 pub(in crate::method) const ENTRY_STEEPEST: Entry = Entry::by(&STEEPEST, |value| {
     let named = value.get("rule").is_some();
-    let settings: Settings = serde_json::from_value(value)?;
-    Ok(Method::new(if named { settings } else { Settings { rule: Rule::Steepest, ..settings } }))
+    let settings: FloodSettings = serde_json::from_value(value)?;
+    Ok(Method::new(if named { settings } else { FloodSettings { rule: Rule::Steepest, ..settings } }))
 });
 
 /// Core-seconds per cell.
 const CELL_SECONDS: f64 = 1e-7;
 
-impl Decide for Settings {
+impl Decide for FloodSettings {
     fn info(&self) -> &'static Info {
         match self.rule {
             Rule::Lowest => &LOWEST,

@@ -98,7 +98,7 @@ impl Rule {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct FloodSettings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. By default it is chosen from the
     /// depths.
     pub depth_tolerance: Option<f64>,
@@ -106,7 +106,7 @@ pub struct Settings {
     pub rule: Rule,
 }
 
-impl Settings {
+impl FloodSettings {
     /// Merges basins shallower than `depth`, in D.
     pub fn with_tolerance(depth: f64) -> Self {
         Self { depth_tolerance: Some(depth), ..Self::default() }
@@ -197,7 +197,12 @@ pub struct Hierarchy {
 ///
 /// # Errors
 /// When the grid does not suit the pair, does not fit into memory, or the computation is cancelled.
-pub fn accept(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result<Acceptance, FloodError> {
+pub fn accept(
+    pair: &Pair,
+    grid: &Grid,
+    settings: &FloodSettings,
+    exec: &Exec,
+) -> Result<Acceptance, FloodError> {
     let cells = grid.checked_len().unwrap_or(usize::MAX) as u64;
     ensure_fits(cells, Landscape::bytes(1), grid.axes.len(), exec)?;
     let landscape = Landscape::compute(pair, grid, exec)?;
@@ -208,7 +213,7 @@ pub fn accept(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Res
 /// mated pose lie on its rim then, and their basin is not that of the mated pose.
 pub fn docks<'a>(pair: &'a Pair, grid: &'a Grid) -> impl Fn(usize) -> bool + 'a {
     |cell| {
-        let end = descent::outcome(pair, &grid.pose(cell), &descent::Settings::default());
+        let end = descent::outcome(pair, &grid.pose(cell), &descent::DescentSettings::default());
         end.outcome == Outcome::Aligned
     }
 }
@@ -221,7 +226,7 @@ pub fn flood(
     landscape: &Landscape,
     alignment: &Alignment,
     docks: &dyn Fn(usize) -> bool,
-    settings: &Settings,
+    settings: &FloodSettings,
     exec: &Exec,
 ) -> Result<Flooding, FloodError> {
     if let Some(depth) = settings.depth_tolerance

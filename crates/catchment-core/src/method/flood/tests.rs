@@ -116,9 +116,14 @@ fn line(heights: &[f32]) -> (Landscape, Alignment) {
 
 fn outcomes(heights: &[f32], depth_tolerance: f64) -> String {
     let (landscape, alignment) = line(heights);
-    let flooding =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(depth_tolerance), &Exec::new())
-            .unwrap();
+    let flooding = flood(
+        &landscape,
+        &alignment,
+        &|_| true,
+        &FloodSettings::with_tolerance(depth_tolerance),
+        &Exec::new(),
+    )
+    .unwrap();
     flooding.acceptance.outcomes.iter().map(|o| o.name().chars().next().unwrap()).collect()
 }
 
@@ -153,7 +158,7 @@ fn with_an_even_number_of_cells_both_cells_around_the_mated_pose_are_its_minimum
     ];
     let landscape = Landscape { grid, heights };
     let flooding =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
+        flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [16, 0, 0, 0]);
 }
 
@@ -171,7 +176,7 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
     let grid = Grid::over(&alignment, |_| 9);
     let heights = vec![0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0];
     let landscape = Landscape { grid, heights };
-    let settings = Settings::with_tolerance(0.5);
+    let settings = FloodSettings::with_tolerance(0.5);
     let aligned = |a: &Alignment| {
         flood(&landscape, a, &|_| true, &settings, &Exec::new()).unwrap().acceptance.counts()[0]
     };
@@ -183,7 +188,7 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
 #[test]
 fn basins_tell_depth_share_and_outcome() {
     let (landscape, alignment) = line(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE]);
-    let settings = Settings::with_tolerance(0.5);
+    let settings = FloodSettings::with_tolerance(0.5);
     let basins = flood(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap().hierarchy.basins;
     let mated = basins.iter().find(|b| b.outcome == Outcome::Aligned).unwrap();
     assert_eq!((mated.minimum, mated.height, mated.depth), (5, 0.0, 4.0));
@@ -195,12 +200,12 @@ fn basins_tell_depth_share_and_outcome() {
 fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
     let (landscape, alignment) = line(&[0.0, 1.0, 2.0, 1.5, 2.0, 1.0, 0.0]);
     let flooding =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.1), &Exec::new()).unwrap();
+        flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(0.1), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [1, 0, 6, 0]);
     assert!(flooding.acceptance.warnings.iter().any(|w| matches!(w, Warning::Note { .. })));
     // The mated pose, shallower than the tolerance, joins a basin that gathers far below it.
     let merged =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.6), &Exec::new()).unwrap();
+        flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(0.6), &Exec::new()).unwrap();
     assert_eq!(merged.acceptance.counts()[0], 0);
     assert!(merged.acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
 }
@@ -208,11 +213,11 @@ fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
 #[test]
 fn what_cannot_be_flooded_is_refused() {
     let (landscape, alignment) = line(&[1.0, 0.0, 1.0]);
-    let bad =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(-1.0), &Exec::new()).unwrap_err();
+    let bad = flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(-1.0), &Exec::new())
+        .unwrap_err();
     assert_eq!(bad, FloodError::Tolerance { depth: -1.0 });
     let exec = Exec::new().with_memory_budget(10);
-    let settings = Settings::with_tolerance(0.0);
+    let settings = FloodSettings::with_tolerance(0.0);
     assert!(matches!(
         flood(&landscape, &alignment, &|_| true, &settings, &exec),
         Err(FloodError::OutOfBudget(_))
@@ -230,7 +235,7 @@ fn an_empty_set_of_free_axes_is_one_cell_at_the_mated_pose() {
     let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
     let landscape = Landscape { grid: Grid { axes: Vec::new() }, heights: vec![0.0] };
     let flooding =
-        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
+        flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.outcomes, [Outcome::Aligned]);
 }
 
@@ -261,7 +266,7 @@ fn the_bias_of_flooding_is_what_the_documentation_says() {
         pair.alignment.rotation_length = 1.0;
         let grid = Grid::over(&pair.alignment, |_| 100);
         [Rule::Lowest, Rule::Steepest].map(|rule| {
-            let settings = Settings { rule, ..Settings::default() };
+            let settings = FloodSettings { rule, ..FloodSettings::default() };
             let acceptance = accept(&pair, &grid, &settings, &Exec::new()).unwrap();
             assert!(!acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
             let sum = acceptance.counts()[0] as f64 * grid.cell_measure();
@@ -280,8 +285,8 @@ fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
         let grid = Grid::over(&pair.alignment, |_| 100);
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let flooding =
-            flood(&landscape, &pair.alignment, &|_| true, &Settings::default(), &Exec::new()).unwrap();
-        let settings = meyer::Settings::default();
+            flood(&landscape, &pair.alignment, &|_| true, &FloodSettings::default(), &Exec::new()).unwrap();
+        let settings = meyer::MeyerSettings::default();
         let meyer = meyer::accept(&landscape, &pair.alignment, &|_| true, &settings, &Exec::new()).unwrap();
         assert_eq!(meyer.tolerance, flooding.hierarchy.tolerance);
         let accepted = || flooding.acceptance.accepted().zip(meyer.acceptance.accepted());
@@ -303,7 +308,8 @@ fn meyers_flooding_has_the_bias_that_the_documentation_says() {
         let pair = pair(family, aspect_ratio, cor, 1);
         let grid = Grid::over(&pair.alignment, |_| 100);
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
-        let tenth = meyer::Settings::with_tolerance(meyer::Settings::DEPTH_PER_FACE_HEIGHT * aspect_ratio);
+        let tenth =
+            meyer::MeyerSettings::with_tolerance(meyer::MeyerSettings::DEPTH_PER_FACE_HEIGHT * aspect_ratio);
         let found = meyer::accept(&landscape, &pair.alignment, &|_| true, &tenth, &Exec::new()).unwrap();
         assert_eq!(found.acceptance.method, "meyer");
         let bias = 100.0 * (found.acceptance.counts()[0] as f64 * grid.cell_measure() / exact - 1.0);
@@ -327,8 +333,8 @@ fn the_tolerance_of_the_widest_gap_parts_pits_from_jams() {
         let pair = pair(family, aspect_ratio, cor, 1);
         let grid = Grid::over(&pair.alignment, |_| cells);
         let count = |settings| accept(&pair, &grid, &settings, &Exec::new()).unwrap().counts()[0];
-        let tenth = Settings::with_tolerance(0.1 * aspect_ratio);
-        assert_eq!(count(Settings::default()), count(tenth), "{family:?} {aspect_ratio} {cor}");
+        let tenth = FloodSettings::with_tolerance(0.1 * aspect_ratio);
+        assert_eq!(count(FloodSettings::default()), count(tenth), "{family:?} {aspect_ratio} {cor}");
     }
 }
 
@@ -337,7 +343,7 @@ fn five_axes_agree_between_odd_and_even_grids_and_a_quarter_turn_doubles_the_bas
     let share = |cells, symmetry| {
         let pair = pair(Family::Pyramid, 0.5, 0.5, symmetry);
         let grid = Grid::over(&pair.alignment, |_| cells);
-        let acceptance = accept(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+        let acceptance = accept(&pair, &grid, &FloodSettings::default(), &Exec::new()).unwrap();
         acceptance.counts()[0] as f64 / grid.len() as f64
     };
     // Rolls and pitches aside, yaw in ±90° holds one whole basin and two halves of its quarter turns.
@@ -356,7 +362,7 @@ fn threads_do_not_change_a_bit() {
         let exec = Exec::new().with_threads(threads).unwrap();
         let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
         [Rule::Lowest, Rule::Steepest].map(|rule| {
-            let settings = Settings { rule, ..Settings::default() };
+            let settings = FloodSettings { rule, ..FloodSettings::default() };
             flood(&landscape, &pair.alignment, &|_| true, &settings, &exec).unwrap()
         })
     };
@@ -376,8 +382,8 @@ fn counted(field: &(Landscape, Alignment), tolerance: f64) -> [Counts; 2] {
     let (landscape, alignment) = field;
     let docks = |_: usize| true;
     let exec = Exec::new();
-    let fast = flood(landscape, alignment, &docks, &Settings::with_tolerance(tolerance), &exec).unwrap();
-    let settings = meyer::Settings::with_tolerance(tolerance);
+    let fast = flood(landscape, alignment, &docks, &FloodSettings::with_tolerance(tolerance), &exec).unwrap();
+    let settings = meyer::MeyerSettings::with_tolerance(tolerance);
     let queue = meyer::accept(landscape, alignment, &docks, &settings, &exec).unwrap();
     [fast.watersheds.counts(), queue.watersheds.counts()]
 }

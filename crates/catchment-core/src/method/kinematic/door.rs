@@ -38,11 +38,11 @@ impl Decide for Kinematic {
     }
 
     fn settings_for(&self, problem: &Problem) -> Value {
-        super::Settings::of(problem.design()).map_or(Value::Null, |settings| json!(settings))
+        super::KinematicSettings::of(problem.design()).map_or(Value::Null, |settings| json!(settings))
     }
 
     fn applies_to(&self, design: &Design) -> Result<(), NotApplicable> {
-        super::Settings::of(design)
+        super::KinematicSettings::of(design)
             .map(|_| ())
             .map_err(|unfit| NotApplicable { method: INFO.name, reason: unfit.to_string() })
     }

@@ -30,7 +30,7 @@
 //! Not promised: any later contact, or that the first contact is unique (figure 3.6 has two).
 
 use super::stepping::{self, Faces, Halt};
-use super::{Face, Settings, Unfit};
+use super::{Face, KinematicSettings, Unfit};
 use crate::acceptance::Outcome;
 use crate::connector::{Half, Surface};
 use crate::contact::Contact;
@@ -150,7 +150,7 @@ impl Lever {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     /// Its settings.
-    pub settings: Settings,
+    pub settings: KinematicSettings,
     /// The pose error.
     pub error: PoseError,
     /// z of the rotation point of the moving half at first contact, in D; `None` where the halves pass each other by.
@@ -169,7 +169,7 @@ impl Start {
     /// # Errors
     /// A design or a pose that the method does not apply to.
     pub fn of(problem: &Problem, error: &PoseError) -> Result<Self, Unfit> {
-        let settings = Settings::of(problem.design())?;
+        let settings = KinematicSettings::of(problem.design())?;
         if error.y != 0.0 || error.roll != 0.0 || error.yaw != 0.0 {
             return Err(Unfit::Pose);
         }

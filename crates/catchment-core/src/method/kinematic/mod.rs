@@ -65,7 +65,7 @@ pub enum Face {
 /// The parameters that determine the result; lengths in D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct KinematicSettings {
     /// The planar face.
     pub face: Face,
     /// H/D, H from the lowest to the highest point of the face.
@@ -120,7 +120,7 @@ pub enum KinematicError {
     Cancelled(#[from] Cancelled),
 }
 
-impl Settings {
+impl KinematicSettings {
     /// The settings that stand for a design.
     ///
     /// # Errors
@@ -184,14 +184,14 @@ impl Settings {
 
 /// Starts of one pair of faces.
 struct Starts<'a> {
-    settings: &'a Settings,
+    settings: &'a KinematicSettings,
     /// Of an X-Face.
     faces: Option<Faces>,
 }
 
 impl Starts<'_> {
     fn outcome(&self, x0: f64, theta0: f64) -> Outcome {
-        let Settings { face, aspect_ratio: h, rotation_point } = *self.settings;
+        let KinematicSettings { face, aspect_ratio: h, rotation_point } = *self.settings;
         if let Some(faces) = &self.faces {
             return match faces.follow(x0, theta0, stepping::STEP) {
                 Halt::Success => Outcome::Aligned,
@@ -221,7 +221,7 @@ impl Starts<'_> {
 /// # Errors
 /// A design that it does not apply to, a grid that does not fit into memory, a cancelled run.
 pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, KinematicError> {
-    let settings = Settings::of(design)?;
+    let settings = KinematicSettings::of(design)?;
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     exec.ensure_fits("the outcome of every cell", cells, |_| vec![Advice::CoarserGrid])?;
     let (starts, cor) = (settings.starts(), design.alignment.center_of_rotation);
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn without_rotation_the_bounds_are_nilssons() {
         for (face, bound) in [(Face::VFace, 0.5), (Face::SFace, 1.0 / 3.0)] {
-            let settings = Settings { face, aspect_ratio: 0.5, rotation_point: 1.0 };
+            let settings = KinematicSettings { face, aspect_ratio: 0.5, rotation_point: 1.0 };
             for side in [-1.0, 1.0] {
                 assert!(settings.succeeds(side * (bound - 1e-9), 0.0));
                 assert!(!settings.succeeds(side * (bound + 1e-9), 0.0));
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn the_bound_itself_fails() {
-        let settings = Settings { face: Face::VFace, aspect_ratio: 0.5, rotation_point: 1.0 };
+        let settings = KinematicSettings { face: Face::VFace, aspect_ratio: 0.5, rotation_point: 1.0 };
         assert!(!settings.succeeds(0.5, 0.0));
     }
 
@@ -270,7 +270,7 @@ mod tests {
     fn a_centred_tip_slides_home_up_to_the_outer_edge() {
         for (face, slope) in [(Face::VFace, 2.0), (Face::SFace, 1.5)] {
             for h in [0.1, 0.5, 2.0] {
-                let settings = Settings { face, aspect_ratio: h, rotation_point: 2.0 };
+                let settings = KinematicSettings { face, aspect_ratio: h, rotation_point: 2.0 };
                 let limit = FRAC_PI_2 - f64::atan(slope * h);
                 let centred = |theta: f64| {
                     let swing = if face == Face::SFace { (theta.cos() - 1.0) / 6.0 } else { 0.0 };
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn the_s_face_is_chiral_and_the_v_face_is_not() {
         // Centre of the tips that slide home at θ₀ = 1: 0 for V, moved by the swing of the minimum for S.
-        let settings = |face| Settings { face, aspect_ratio: 0.2, rotation_point: 2.0 };
+        let settings = |face| KinematicSettings { face, aspect_ratio: 0.2, rotation_point: 2.0 };
         let lever = 1.1;
         let theta: f64 = 1.0;
         let edges = |face| {
@@ -309,7 +309,7 @@ mod tests {
         // The tip of a V whose rotation point lies a width behind mid height (r_p = 2): in D and radians of our frame it
         // is at x − (H/2)·sin(pitch)·(−1): at the face centre plus half the height along the tilted axis.
         let design = design(Family::VFace, -1.0);
-        let settings = Settings::of(&design).unwrap();
+        let settings = KinematicSettings::of(&design).unwrap();
         assert_eq!((settings.face, settings.rotation_point), (Face::VFace, 2.0));
         let grid = Grid::over(&design.alignment, |_| 60);
         let found = accept(&design, &grid, &Exec::new()).unwrap();
@@ -331,14 +331,14 @@ mod tests {
         assert_eq!(with(1), with(2));
         let counts = with(1).counts();
         assert!(counts[0] > 20 && counts[1] > 20 && counts[2] > 20, "{counts:?}");
-        assert_eq!(Settings::of(&design(Family::Pyramid, 0.0)), Err(Unfit::Face));
-        assert_eq!(Settings::of(&design(Family::XFace, 0.5)), Err(Unfit::RotationPoint));
+        assert_eq!(KinematicSettings::of(&design(Family::Pyramid, 0.0)), Err(Unfit::Face));
+        assert_eq!(KinematicSettings::of(&design(Family::XFace, 0.5)), Err(Unfit::RotationPoint));
         let mut other = design(Family::SFace, 0.0);
         other.alignment.free = DofSet::ALL;
-        assert_eq!(Settings::of(&other), Err(Unfit::Free));
+        assert_eq!(KinematicSettings::of(&other), Err(Unfit::Free));
         let mut deep = design(Family::SFace, 0.0);
         deep.alignment.docked.depth = 0.1;
-        assert_eq!(Settings::of(&deep), Err(Unfit::Docked));
+        assert_eq!(KinematicSettings::of(&deep), Err(Unfit::Docked));
     }
 
     /// A sample of the whole set of the tables (11 × 11 designs, 41 × 41 starts), spread by a low-discrepancy sequence.

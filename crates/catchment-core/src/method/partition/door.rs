@@ -1,6 +1,6 @@
 //! The polyhedral partition as a method, sampled at the requested poses.
 
-use super::{PartitionError, Settings, run};
+use super::{PartitionError, PartitionSettings, run};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Pair;
 use crate::design::Design;
@@ -34,9 +34,9 @@ pub(in crate::method) struct Partitioned {
 }
 
 impl Partitioned {
-    fn of(&self, design: &Design) -> Settings {
-        let default = Settings::for_rotations(design.alignment.free.rotations());
-        Settings {
+    fn of(&self, design: &Design) -> PartitionSettings {
+        let default = PartitionSettings::for_rotations(design.alignment.free.rotations());
+        PartitionSettings {
             slices: self.slices.unwrap_or(default.slices),
             strips: self.strips.unwrap_or(default.strips),
         }
@@ -71,7 +71,7 @@ impl Decide for Partitioned {
     fn cost(&self, problem: &Problem, _: &Grid) -> Cost {
         /// Core-seconds per square of slices and strips, of the planar faces: see the bench of its growth.
         const STRIP_SECONDS: f64 = 1e-5;
-        let Settings { slices, strips } = self.of(problem.design());
+        let PartitionSettings { slices, strips } = self.of(problem.design());
         let rotations = problem.alignment().free.rotations() as f64;
         Cost {
             what: "the outcome of every cell",

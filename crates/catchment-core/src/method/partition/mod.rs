@@ -53,7 +53,7 @@ use watershed::{Parts, Watersheds};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct PartitionSettings {
     /// Rotation slices across the error box of every free rotation.
     pub slices: usize,
     /// Strips per D into which the moving half is cut across x (and y) before its slices are joined. A
@@ -62,13 +62,13 @@ pub struct Settings {
     pub strips: usize,
 }
 
-impl Default for Settings {
+impl Default for PartitionSettings {
     fn default() -> Self {
         Self { slices: 24, strips: 12 }
     }
 }
 
-impl Settings {
+impl PartitionSettings {
     /// Defaults that take seconds: the polytopes grow with the product of the slices of all angles.
     pub fn for_rotations(rotations: usize) -> Self {
         if rotations < 2 { Self::default() } else { Self { slices: 4, strips: 1 } }
@@ -159,7 +159,7 @@ pub struct Counts {
 #[derive(Debug)]
 pub struct Partition {
     alignment: Alignment,
-    settings: Settings,
+    settings: PartitionSettings,
     cells: Cells,
     compartments: Vec<Compartment>,
     /// The compartment of every cell.
@@ -190,7 +190,7 @@ const POLYTOPE_BYTES: u64 = 4_000;
 ///
 /// # Errors
 /// [`PartitionError`]; cancel is checked before every compartment and every few cells.
-pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, PartitionError> {
+pub fn run(pair: &Pair, settings: &PartitionSettings, exec: &Exec) -> Result<Partition, PartitionError> {
     let alignment = &pair.alignment;
     let free = alignment.free;
     if free.len() < 2 || free.rotations() == 0 {
@@ -277,7 +277,7 @@ impl Partition {
     }
 
     /// The settings it was made with.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &PartitionSettings {
         &self.settings
     }
 
@@ -378,7 +378,7 @@ fn docks(pair: &Pair) -> impl Fn(&Point) -> bool + '_ {
         let near = error.x.hypot(error.y) <= NEAR && alignment.turned_by(&pose.rotation) <= NEAR;
         (error.x, error.y) = (error.x + face.x, error.y + face.y);
         if near {
-            descent::outcome(pair, &error, &descent::Settings::default()).outcome == Outcome::Aligned
+            descent::outcome(pair, &error, &descent::DescentSettings::default()).outcome == Outcome::Aligned
         } else {
             let mut seat = Seat::new(pair);
             let height = pair.height(&pose).unwrap_or(f64::INFINITY);

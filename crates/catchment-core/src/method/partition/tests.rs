@@ -30,7 +30,7 @@ const FIVE: [(Family, f64, f64); 5] = [
     (Family::VFace, 0.5, -0.5),
 ];
 
-fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Tile>, Compartment)> {
+fn spaces_of(pair: &Pair, settings: &PartitionSettings) -> Vec<(Vec<Roof>, Vec<Tile>, Compartment)> {
     let free = pair.alignment.free;
     let angles = settings.slices_of(&pair.alignment);
     let pieces = Pieces::of(pair, 1.0 / settings.strips as f64).unwrap();
@@ -67,10 +67,10 @@ fn brute_height(roofs: &[Roof], q: &Point) -> Option<f64> {
 fn tiles_cover_the_shadow_at_the_height_of_the_highest_roof() {
     let yaw = [Dof::X, Dof::Y, Dof::Yaw];
     let cases = [
-        (pair(Family::VFace, 0.5, -0.5, 1.0, &[]), Settings { slices: 7, strips: 3 }),
-        (pair(Family::XFace, 1.0, 0.5, 1.0, &[]), Settings { slices: 6, strips: 2 }),
-        (pair(Family::SFace, 1.0, 0.0, 1.0, &[]), Settings { slices: 4, strips: 2 }),
-        (pair(Family::Pyramid, 1.0, 0.0, 0.5, &yaw), Settings { slices: 4, strips: 1 }),
+        (pair(Family::VFace, 0.5, -0.5, 1.0, &[]), PartitionSettings { slices: 7, strips: 3 }),
+        (pair(Family::XFace, 1.0, 0.5, 1.0, &[]), PartitionSettings { slices: 6, strips: 2 }),
+        (pair(Family::SFace, 1.0, 0.0, 1.0, &[]), PartitionSettings { slices: 4, strips: 2 }),
+        (pair(Family::Pyramid, 1.0, 0.0, 0.5, &yaw), PartitionSettings { slices: 4, strips: 1 }),
     ];
     for (case, (pair, settings)) in cases.iter().enumerate() {
         let stream = Stream::new(case as u64);
@@ -104,7 +104,7 @@ fn tiles_cover_the_shadow_at_the_height_of_the_highest_roof() {
 fn on_slices_the_height_is_that_of_first_contact() {
     for (family, ratio, cor) in FIVE {
         let pair = pair(family, ratio, cor, 1.0, &[]);
-        let partition = run(&pair, &Settings { slices: 6, strips: 2 }, &Exec::new()).unwrap();
+        let partition = run(&pair, &PartitionSettings { slices: 6, strips: 2 }, &Exec::new()).unwrap();
         for angle in slices(std::f64::consts::FRAC_PI_2, 6) {
             let rotation = PoseError { pitch: angle, ..PoseError::default() }.rotation();
             for k in -20..=20 {
@@ -153,7 +153,7 @@ fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [us
 fn parts_end_where_their_points_end() {
     for (case, (family, ratio, cor)) in FIVE.into_iter().enumerate() {
         let pair = pair(family, ratio, cor, 1.0, &[]);
-        let partition = run(&pair, &Settings { slices: 12, strips: 3 }, &Exec::new()).unwrap();
+        let partition = run(&pair, &PartitionSettings { slices: 12, strips: 3 }, &Exec::new()).unwrap();
         let [same, tried] = judged(&pair, &partition, Stream::new(case as u64), 1000);
         println!("{} AR {ratio} COR {cor}: {same} of {tried}, {:?}", family.name(), partition.counts());
         assert!(tried > 500 && same == tried, "{} AR {ratio} COR {cor}: {same} of {tried}", family.name());
@@ -164,7 +164,7 @@ fn parts_end_where_their_points_end() {
 fn exact(pair: &Pair, cells: usize) -> f64 {
     let grid = Grid::over(&pair.alignment, |_| cells);
     let measure = grid.cell_measure();
-    let settings = descent::Settings::default();
+    let settings = descent::DescentSettings::default();
     let (acceptance, _) = descent::run(pair, Domain::Grid(grid), &settings, &Exec::new()).unwrap();
     acceptance.counts()[0] as f64 * measure
 }
@@ -176,7 +176,7 @@ fn sums_come_to_those_of_exact_descents() {
         let exact = exact(&pair, 100);
         // In the thin ravine of the last one the crest that parts two watersheds is a ten-thousandth of D high.
         let strips = if (family, ratio) == (Family::VFace, 0.5) { 64 } else { 24 };
-        let partition = run(&pair, &Settings { slices: 50, strips }, &Exec::new()).unwrap();
+        let partition = run(&pair, &PartitionSettings { slices: 50, strips }, &Exec::new()).unwrap();
         let sum = partition.measure(Outcome::Aligned);
         println!("{} AR {ratio} COR {cor}: {sum:.4} for {exact:.4}", family.name());
         assert!((sum / exact - 1.0).abs() < 0.03, "{} AR {ratio} COR {cor}: {sum} {exact}", family.name());
@@ -190,7 +190,8 @@ fn without_strips_more_slices_make_it_worse() {
     let pair = pair(family, ratio, cor, 1.0, &[]);
     let exact = exact(&pair, 50);
     let share = |slices| {
-        run(&pair, &Settings { slices, strips: 1 }, &Exec::new()).unwrap().measure(Outcome::Aligned) / exact
+        run(&pair, &PartitionSettings { slices, strips: 1 }, &Exec::new()).unwrap().measure(Outcome::Aligned)
+            / exact
     };
     let [few, many] = [12, 50].map(share);
     println!("{few} {many}");
@@ -203,7 +204,7 @@ fn spatial_sets_of_three_errors_agree_with_the_judge() {
         [([Dof::X, Dof::Y, Dof::Pitch], 8, 0.98), ([Dof::X, Dof::Pitch, Dof::Yaw], 2, 0.94)]
     {
         let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, &free);
-        let partition = run(&pair, &Settings { slices, strips: 1 }, &Exec::new()).unwrap();
+        let partition = run(&pair, &PartitionSettings { slices, strips: 1 }, &Exec::new()).unwrap();
         let [same, tried] = judged(&pair, &partition, Stream::new(3), 500);
         println!("{free:?}: {same} of {tried}, {:?}", partition.counts());
         assert!(tried > 250 && same as f64 >= least * tried as f64, "{free:?}: {same} of {tried}");
@@ -216,7 +217,7 @@ fn threads_change_nothing() {
     let pair = pair(family, ratio, cor, 1.0, &[]);
     let parts = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        let partition = run(&pair, &Settings { slices: 8, strips: 3 }, &exec).unwrap();
+        let partition = run(&pair, &PartitionSettings { slices: 8, strips: 3 }, &exec).unwrap();
         let parts: Vec<_> =
             partition.parts().map(|part| (part.region.vertices().to_vec(), part.outcome)).collect();
         parts
@@ -228,7 +229,7 @@ fn threads_change_nothing() {
 fn the_outline_encloses_what_is_accepted() {
     let (family, ratio, cor) = FIVE[1];
     let pair = pair(family, ratio, cor, 1.0, &[]);
-    let partition = run(&pair, &Settings { slices: 12, strips: 4 }, &Exec::new()).unwrap();
+    let partition = run(&pair, &PartitionSettings { slices: 12, strips: 4 }, &Exec::new()).unwrap();
     // Green: the area is the integral of x dθ around the border, each segment with what is accepted on its left;
     // the unsigned sum over polygons is the same without the box.
     let area = |corners: &[Corner]| {
@@ -251,21 +252,30 @@ fn the_outline_encloses_what_is_accepted() {
 #[test]
 fn what_cannot_be_partitioned_is_said() {
     let locked = pair(Family::Pyramid, 0.5, 0.0, 0.5, &[Dof::X, Dof::Y]);
-    let error = run(&locked, &Settings::default(), &Exec::new()).unwrap_err();
+    let error = run(&locked, &PartitionSettings::default(), &Exec::new()).unwrap_err();
     assert_eq!(error, PartitionError::TooFewErrors { free: 2 });
     let planar = pair(Family::VFace, 0.5, 0.0, 0.5, &[]);
-    let error = run(&planar, &Settings { slices: 1, strips: 1 }, &Exec::new()).unwrap_err();
+    let error = run(&planar, &PartitionSettings { slices: 1, strips: 1 }, &Exec::new()).unwrap_err();
     assert!(error.to_string().contains("slices must be at least 2"), "{error}");
-    for settings in [Settings { slices: usize::MAX, strips: 1 }, Settings { slices: 8, strips: usize::MAX }] {
+    for settings in [
+        PartitionSettings { slices: usize::MAX, strips: 1 },
+        PartitionSettings { slices: 8, strips: usize::MAX },
+    ] {
         let error = run(&planar, &settings, &Exec::new()).unwrap_err();
         assert!(error.to_string().contains("at most"), "{error}");
     }
     let all = pair(Family::Pyramid, 0.5, 0.0, 0.5, &Dof::ALL);
-    let error = run(&all, &Settings { slices: 1000, strips: 200 }, &Exec::new()).unwrap_err();
+    let error = run(&all, &PartitionSettings { slices: 1000, strips: 200 }, &Exec::new()).unwrap_err();
     assert!(matches!(error, PartitionError::TooManyStrips { .. }), "{error}");
     let small = Exec::new().with_memory_budget(1000);
-    assert!(matches!(run(&planar, &Settings::default(), &small), Err(PartitionError::OutOfBudget(_))));
+    assert!(matches!(
+        run(&planar, &PartitionSettings::default(), &small),
+        Err(PartitionError::OutOfBudget(_))
+    ));
     let cancelled = Exec::new();
     cancelled.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(matches!(run(&planar, &Settings::default(), &cancelled), Err(PartitionError::Cancelled(_))));
+    assert!(matches!(
+        run(&planar, &PartitionSettings::default(), &cancelled),
+        Err(PartitionError::Cancelled(_))
+    ));
 }

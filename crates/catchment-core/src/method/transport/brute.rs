@@ -2,7 +2,7 @@
 //! contact is recomputed at every cell. Slow and plain: the reference for the fast path.
 
 use super::links::{CROSSINGS, LEAST, NEGLIGIBLE};
-use super::{Settings, surface};
+use super::{TransportSettings, surface};
 use crate::acceptance::Outcome;
 use crate::contact::Pair;
 use crate::landscape::{Grid, Landscape};
@@ -14,7 +14,7 @@ use crate::pose::CorPose;
 const TOUCHING: f64 = 1e-9;
 
 /// Fraction of every cell that arrives; grids as for [`super::run`].
-pub fn fractions(pair: &Pair, landscape: &Landscape, settings: &Settings) -> Vec<f64> {
+pub fn fractions(pair: &Pair, landscape: &Landscape, settings: &TransportSettings) -> Vec<f64> {
     let Landscape { grid, heights } = landscape;
     let velocities: Vec<Vec<f64>> = (0..grid.len()).map(|cell| velocity(pair, grid, cell)).collect();
     let mut order: Vec<usize> = (0..grid.len()).filter(|c| heights[*c].is_finite()).collect();

@@ -1,6 +1,6 @@
 //! Transport as a method: cells of a grid, with an arrival fraction for each.
 
-use super::{Arrival, Settings, TransportError, bytes, run};
+use super::{Arrival, TransportError, TransportSettings, bytes, run};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -19,9 +19,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<TransportSettings>(&INFO);
 
-impl Decide for Settings {
+impl Decide for TransportSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }

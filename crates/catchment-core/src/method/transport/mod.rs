@@ -52,17 +52,17 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct TransportSettings {
     /// Motions that leave the error box are followed exactly if the grid has at most this many cells at its
     /// surface.
     pub followed_out: usize,
     /// Settings of the exact motions that decide ends.
-    pub descent: descent::Settings,
+    pub descent: descent::DescentSettings,
 }
 
-impl Default for Settings {
+impl Default for TransportSettings {
     fn default() -> Self {
-        Self { followed_out: 50_000, descent: descent::Settings::default() }
+        Self { followed_out: 50_000, descent: descent::DescentSettings::default() }
     }
 }
 
@@ -180,7 +180,12 @@ pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
 ///
 /// # Errors
 /// When the grid does not suit the pair, does not fit into memory, or the computation is cancelled.
-pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result<Arrival, TransportError> {
+pub fn run(
+    pair: &Pair,
+    grid: &Grid,
+    settings: &TransportSettings,
+    exec: &Exec,
+) -> Result<Arrival, TransportError> {
     if let Some(dof) = pair.alignment.free.iter().find(|dof| grid.axis(*dof).is_none()) {
         return Err(TransportError::NotSampled { dof });
     }
@@ -215,7 +220,7 @@ fn surface(grid: &Grid) -> usize {
 struct Judge<'a> {
     pair: &'a Pair,
     relief: &'a Relief,
-    settings: &'a Settings,
+    settings: &'a TransportSettings,
     /// Whether motion that leaves the box is followed.
     follow_out: bool,
     /// Whether some motion left that was not.

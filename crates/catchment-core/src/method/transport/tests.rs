@@ -18,7 +18,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Do
 
 fn arrival(pair: &Pair, cells: usize) -> Arrival {
     let grid = Grid::over(&pair.alignment, |_| cells);
-    run(pair, &grid, &Settings::default(), &Exec::new()).unwrap()
+    run(pair, &grid, &TransportSettings::default(), &Exec::new()).unwrap()
 }
 
 #[test]
@@ -33,13 +33,13 @@ fn fast_and_brute_agree_cell_by_cell() {
         (pair(Family::Pyramid, 0.5, 0.5, 0.5, None), 8),
     ] {
         let mut grid = Grid::over(&pair.alignment, |_| cells);
-        let folded = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+        let folded = run(&pair, &grid, &TransportSettings::default(), &Exec::new()).unwrap();
         for axis in &mut grid.axes {
             axis.hi += 1e-6; // not symmetric: nothing is folded, and no cell lies on a ridge exactly
         }
-        let arrival = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+        let arrival = run(&pair, &grid, &TransportSettings::default(), &Exec::new()).unwrap();
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
-        let brute = brute::fractions(&pair, &landscape, &Settings::default());
+        let brute = brute::fractions(&pair, &landscape, &TransportSettings::default());
         let differ = |arrival: &Arrival| {
             (0..brute.len()).filter(|c| (arrival.fraction(*c) - brute[*c]).abs() > 0.002).count()
         };
@@ -87,7 +87,7 @@ fn nearly_all_that_is_wrong_is_ambiguous() {
     let arrival = arrival(&pair, 20);
     let acceptance = arrival.acceptance(&Exec::new()).unwrap();
     let domain = Domain::Grid(arrival.grid().clone());
-    let (exact, _) = descent::run(&pair, domain, &descent::Settings::default(), &Exec::new()).unwrap();
+    let (exact, _) = descent::run(&pair, domain, &descent::DescentSettings::default(), &Exec::new()).unwrap();
     let wrong: Vec<usize> = (0..exact.outcomes.len())
         .filter(|c| (exact.outcomes[*c] == Outcome::Aligned) != (acceptance.outcomes[*c] == Outcome::Aligned))
         .collect();
@@ -105,7 +105,7 @@ fn threads_do_not_change_a_bit() {
     let grid = Grid::over(&pair.alignment, |_| 7);
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        run(&pair, &grid, &Settings::default(), &exec).unwrap().shares
+        run(&pair, &grid, &TransportSettings::default(), &exec).unwrap().shares
     };
     let one = with(1);
     assert_eq!(one, with(2));
@@ -115,7 +115,7 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn refusals() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
-    let settings = Settings::default();
+    let settings = TransportSettings::default();
     let mut grid = Grid::over(&pair.alignment, |_| 40);
     let small = Exec::new().with_memory_budget(1 << 20);
     let error = run(&pair, &grid, &settings, &small).unwrap_err().to_string();

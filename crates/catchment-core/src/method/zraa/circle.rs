@@ -31,7 +31,7 @@ mod tests {
     use crate::contact::Pair;
     use crate::design::{Alignment, Family};
     use crate::exec::Exec;
-    use crate::method::zraa::{Settings, run};
+    use crate::method::zraa::{ZraaSettings, run};
     use crate::pose::{Dof, DofSet, Mount};
     use std::f64::consts::FRAC_PI_4;
 
@@ -45,7 +45,7 @@ mod tests {
                 let alignment = Alignment::new(free, Mount::X);
                 let design = Design { name: "cone".into(), connector, width: 1.0, unit: None, alignment };
                 let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-                let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
+                let zraa = run(&pair, &ZraaSettings::default(), &Exec::new()).unwrap();
                 let [lower, upper] = circle_bounds(&design, &zraa).unwrap();
                 // The seam of the cells is 1e-11 D; a corner of the polygon lies on the x axis.
                 assert!(lower <= circle + 1e-9 && circle <= upper, "{lower} {circle} {upper}");

@@ -1,7 +1,7 @@
 //! The height of first contact over all lateral offsets, as a set of planes.
 
 use super::sheet::Sheet;
-use super::{MAX_SHEETS, Settings, ZraaError, cells, sheet};
+use super::{MAX_SHEETS, ZraaError, ZraaSettings, cells, sheet};
 use crate::connector::Half;
 use crate::exec::Exec;
 use glam::DVec2;
@@ -32,7 +32,7 @@ impl HeightFacet {
 pub fn heights(
     fixed: &Half,
     moving: &Half,
-    settings: &Settings,
+    settings: &ZraaSettings,
     exec: &Exec,
 ) -> Result<Vec<HeightFacet>, ZraaError> {
     let sheets = sheet::sheets(fixed, moving, MAX_SHEETS, exec)?.ok_or(ZraaError::TooManySheets)?;
@@ -46,7 +46,7 @@ pub fn heights(
 /// Where the planes are too many, or the run was stopped.
 pub fn highest(
     facets: impl IntoIterator<Item = HeightFacet>,
-    settings: &Settings,
+    settings: &ZraaSettings,
     exec: &Exec,
 ) -> Result<Vec<HeightFacet>, ZraaError> {
     let sheet = |facet: HeightFacet| Sheet {

@@ -58,13 +58,13 @@ const SEAMS: [f64; 5] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5];
 /// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct ZraaSettings {
     /// Positions closer than this, in D, count as equal. If exact motions over both translations disagree,
     /// coarser seams are tried.
     pub seam: f64,
 }
 
-impl Default for Settings {
+impl Default for ZraaSettings {
     fn default() -> Self {
         // Above the rounding of a few hundred cuts, far below any length that a design has.
         Self { seam: 1e-11 }
@@ -162,7 +162,7 @@ pub enum ZraaError {
 }
 
 /// The zero-rotation area of acceptance of a pair, over those of x and y that are free.
-pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
+pub fn run(pair: &Pair, settings: &ZraaSettings, exec: &Exec) -> Result<Zraa, ZraaError> {
     let Alignment { free, docked, .. } = &pair.alignment;
     let cut =
         play(pair).into_iter().find(|play| docked.limit(play.axis).is_some_and(|limit| play.most() > limit));

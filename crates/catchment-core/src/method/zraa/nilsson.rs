@@ -181,7 +181,7 @@ impl Curve<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{pair, pair_of};
-    use super::super::{Settings, Zraa, ZraaError, run};
+    use super::super::{Zraa, ZraaError, ZraaSettings, run};
     use super::*;
     use crate::connector::Connector;
     use crate::contact::mated::MatedProblem;
@@ -236,7 +236,7 @@ mod tests {
         let same = |(a, b): (&DVec2, &DVec2)| a.distance(*b) < 1e-12;
         assert_eq!(found.corners().len(), profile.corners().len());
         assert!(found.corners().iter().zip(profile.corners()).all(same), "{found:?} {profile:?}");
-        run(&pair, &Settings::default(), &Exec::new())
+        run(&pair, &ZraaSettings::default(), &Exec::new())
     }
 
     /// The reaches are those of the solids, which know nothing of extrema.

@@ -29,7 +29,7 @@ fn sheets_of(pair: &Pair) -> Vec<sheet::Sheet> {
 }
 
 fn run_family(spec: FamilySpec) -> Zraa {
-    run(&pair(spec), &Settings::default(), &Exec::new()).unwrap()
+    run(&pair(spec), &ZraaSettings::default(), &Exec::new()).unwrap()
 }
 
 fn area(spec: FamilySpec) -> f64 {
@@ -68,7 +68,9 @@ fn a_groove_accepts_its_length() {
         alignment,
     };
     let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-    let Zraa::Region { area, .. } = run(&pair, &Settings::default(), &Exec::new()).unwrap() else { panic!() };
+    let Zraa::Region { area, .. } = run(&pair, &ZraaSettings::default(), &Exec::new()).unwrap() else {
+        panic!()
+    };
     // |x| < ½, and |y| < 1 while the slabs meet at all.
     assert!((area - 2.0).abs() < 1e-9, "{area}");
 }
@@ -83,7 +85,7 @@ fn layers_accept_their_gap() {
         let connector = ConnectorSpec::Family(face.into());
         let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
         let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-        let found = run(&pair, &Settings::default(), &Exec::new());
+        let found = run(&pair, &ZraaSettings::default(), &Exec::new());
         let Ok(Zraa::Region { area, .. }) = found else { panic!("{thickness} {gap}: {found:?}") };
         // A gap wider than the layers are thick lets them pass each other before they meet the wrong one.
         let reach = f64::min(gap, thickness);
@@ -199,7 +201,7 @@ fn regions_agree_with_small_steps_downhill() {
     ];
     for spec in specs {
         let pair = pair(spec);
-        let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
+        let zraa = run(&pair, &ZraaSettings::default(), &Exec::new()).unwrap();
         let sheets = sheets_of(&pair);
         let mut wrong = 0;
         for k in 0..200u32 {
@@ -243,7 +245,7 @@ proptest! {
         let plug = rim.iter().map(|p| at(flipped(p), 0.0)).chain([at(DVec2::ZERO, height)]).collect();
         let own = OwnSpec::new(height / 2.0, HalfSpec::Pieces((0..n).map(wedge).collect()), HalfSpec::Pieces(vec![plug]));
         let Zraa::Region { area, .. } =
-            run(&pair_of(ConnectorSpec::Own(own), false), &Settings::default(), &Exec::new()).unwrap()
+            run(&pair_of(ConnectorSpec::Own(own), false), &ZraaSettings::default(), &Exec::new()).unwrap()
         else { panic!() };
         prop_assert!((area - sheet::area(&rim)).abs() < 1e-9, "{} {}", area, sheet::area(&rim));
     }
@@ -251,7 +253,7 @@ proptest! {
     #[test]
     fn a_shifted_seam_changes_nothing(seam in 1e-13..1e-9f64, aspect_ratio in 0.2..1.5f64) {
         let pair = pair(FamilySpec::new(Family::XFace3d).with_aspect_ratio(aspect_ratio));
-        let Zraa::Region { area, .. } = run(&pair, &Settings { seam }, &Exec::new()).unwrap() else { panic!() };
+        let Zraa::Region { area, .. } = run(&pair, &ZraaSettings { seam }, &Exec::new()).unwrap() else { panic!() };
         prop_assert!((area - 2.0).abs() < 1e-9);
     }
 }
@@ -275,7 +277,8 @@ fn meshes_give_the_familys_region() {
         let pair = pair(FamilySpec::new(family).with_aspect_ratio(0.7));
         for (format, tolerance) in [(stl::Format::Ascii, 1e-9), (stl::Format::Binary, 1e-6)] {
             let mesh = through_stl(&pair, format);
-            let Zraa::Region { area, .. } = run(&mesh, &Settings::default(), &Exec::new()).unwrap() else {
+            let Zraa::Region { area, .. } = run(&mesh, &ZraaSettings::default(), &Exec::new()).unwrap()
+            else {
                 panic!()
             };
             assert!((area - exact).abs() < tolerance, "{family:?} {format:?}: {area}");

@@ -77,7 +77,7 @@ fn on_grid(
     let grid = resolution.grid(alignment, &Resolution::DEFAULT_CELLS)?;
     let landscape = Landscape::compute(pair, &grid, exec).map_err(FloodError::from)?;
     let docks = flood::docks(pair, &grid);
-    let flooding = flood(&landscape, alignment, &docks, &flood::Settings::default(), exec)?;
+    let flooding = flood(&landscape, alignment, &docks, &flood::FloodSettings::default(), exec)?;
     let of = |(error, height): &(PoseError, f64)| {
         let values = error.to_array();
         let cell: Option<Vec<usize>> =

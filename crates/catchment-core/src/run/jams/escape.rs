@@ -93,7 +93,7 @@ struct Search<'a> {
 pub(in crate::run) fn way_out(
     pair: &Pair,
     rest: &Rested,
-    motions: &descent::Settings,
+    motions: &descent::DescentSettings,
     leaving: Leaving,
     seed: u64,
 ) -> Option<(WayOut, PoseError)> {

@@ -323,7 +323,7 @@ const BRANCH: u64 = 0x1a3;
 /// # }
 /// ```
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, JamsError> {
-    by(problem, settings, &descent::Settings::with_friction(settings.friction)?, exec)
+    by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
 /// The same; and the poses that a robot is expected to come at are those of its spread, each measured one once where there are no more of them than
@@ -341,7 +341,7 @@ pub fn run_for(
     let samples = u32::try_from(motions).unwrap_or(u32::MAX);
     let errors = draw::law(spread, samples, settings.seed ^ BRANCH);
     let settings = Settings { errors, ..settings.clone() };
-    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let followed_by = descent::DescentSettings::with_friction(settings.friction)?;
     let Spread::Measured { source, poses } = spread else {
         return by(problem, &settings, &followed_by, exec);
     };
@@ -351,14 +351,14 @@ pub fn run_for(
 }
 
 fn motions_of(problem: &Problem, settings: &Settings) -> usize {
-    settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()))
+    settings.motions.unwrap_or_else(|| descent::DescentSettings::default().default_samples(problem.pair()))
 }
 
 /// The same by motions of one's own, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
     settings: &Settings,
-    followed_by: &descent::Settings,
+    followed_by: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<Jams, JamsError> {
     let draw = |errors| {
@@ -372,7 +372,7 @@ pub(super) fn by(
 fn of(
     problem: &Problem,
     settings: &Settings,
-    followed_by: &descent::Settings,
+    followed_by: &descent::DescentSettings,
     drawn: Option<Vec<PoseError>>,
     exec: &Exec,
 ) -> Result<Jams, JamsError> {

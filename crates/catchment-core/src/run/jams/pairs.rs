@@ -37,11 +37,12 @@ pub fn what_sticks(
     exec: &Exec,
 ) -> Result<(usize, Vec<Sticks>), Cancelled> {
     let features = Features::of(problem.pair());
-    let motions = descent::Settings::default();
+    let motions = descent::DescentSettings::default();
     let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
     let rest = |(pose, friction): &(PoseError, f64)| {
         exec.check()?;
-        let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };
+        let settings =
+            descent::DescentSettings { friction: *friction, ..descent::DescentSettings::default() };
         let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
         Ok(rested.map(|rested| (rested, *friction)))
     };

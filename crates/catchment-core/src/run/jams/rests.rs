@@ -39,7 +39,7 @@ pub(in crate::run) struct Follow<'a> {
     pub(in crate::run) problem: &'a Problem,
     pub(in crate::run) features: &'a Features,
     /// How.
-    pub(in crate::run) motions: &'a descent::Settings,
+    pub(in crate::run) motions: &'a descent::DescentSettings,
     pub(in crate::run) which: Which,
 }
 

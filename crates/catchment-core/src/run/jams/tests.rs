@@ -68,7 +68,7 @@ fn a_tip_on_its_side_is_one_jam_at_two_places() {
 #[test]
 fn the_two_rests_are_mirror_images() {
     let problem = v_face();
-    let settings = descent::Settings::default();
+    let settings = descent::DescentSettings::default();
     let mut follower = descent::Follower::new(problem.pair(), &settings);
     let Domain::Poses(poses) = Domain::random(problem.alignment(), 1500, 9) else { panic!() };
     let mut sides = [0; 2];

@@ -159,15 +159,16 @@ const THERE: f64 = 0.1;
 /// # }
 /// ```
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests, RestsError> {
-    let motions =
-        settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()));
+    let motions = settings
+        .motions
+        .unwrap_or_else(|| descent::DescentSettings::default().default_samples(problem.pair()));
     if motions == 0 {
         return Err(RestsError::Nothing);
     }
     depth::check(problem, settings.certified, 0.0)?;
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
-    let motions_of = descent::Settings::default();
+    let motions_of = descent::DescentSettings::default();
     let follow = Follow { problem, features: &features, motions: &motions_of, which: Which::All };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(RestsError::Nothing);

@@ -56,7 +56,7 @@ fn a_rigid_body_comes_to_the_same_rests() {
         let exact = descent::settle(
             problem.pair(),
             &poses[usize::from(expected > 0.0)],
-            &descent::Settings::default(),
+            &descent::DescentSettings::default(),
         );
         assert!((exact.error.pitch - end.error.pitch).abs() < 0.03, "{exact:?} {end:?}");
     }

@@ -36,7 +36,7 @@ pub(in crate::run) struct Effort<'a> {
     pub(in crate::run) seed: u64,
     /// Random poses of a cube of which none may fail. After twice as many motions only random poses look for failures.
     pub(in crate::run) random: usize,
-    pub(in crate::run) motions: &'a descent::Settings,
+    pub(in crate::run) motions: &'a descent::DescentSettings,
 }
 
 /// Puts the cubes that motions find in the place of those of the cells; without cells there is the centred one alone. It may be known: as a
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn a_box_is_certified_when_the_search_has_taken_its_motions() {
         let problem = problem(Family::Pyramid, DofSet::ALL);
-        let motions = descent::Settings::default();
+        let motions = descent::DescentSettings::default();
         let by = Effort { seed: 1, random: 200, motions: &motions };
         let found = window_of(&problem, &Settings::default(), &by, &Exec::new()).unwrap().unwrap();
         let stream = crate::acceptance::Stream::new(5);

@@ -355,14 +355,14 @@ const OF_WINDOW: f64 = 0.4;
 /// # }
 /// ```
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window, WindowError> {
-    by(problem, settings, &descent::Settings::with_friction(settings.friction)?, exec)
+    by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
 /// The same by motions of one's own, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
     settings: &Settings,
-    motions_by: &descent::Settings,
+    motions_by: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<Window, WindowError> {
     let space = Space::of(problem, settings)?;
@@ -476,7 +476,7 @@ fn default_motions(problem: &Problem) -> usize {
 }
 
 impl Worst {
-    fn of(problem: &Problem, error: PoseError, motions: &descent::Settings) -> Self {
+    fn of(problem: &Problem, error: PoseError, motions: &descent::DescentSettings) -> Self {
         let path = descent::trace(problem.pair(), &error, motions);
         let last = path.waypoints.last();
         Self {

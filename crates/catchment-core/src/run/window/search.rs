@@ -66,7 +66,7 @@ pub(super) struct Shrunk {
 /// The search, and what it knows.
 pub(super) struct Search<'a> {
     problem: &'a Problem,
-    settings: descent::Settings,
+    settings: descent::DescentSettings,
     space: Space,
     nearest: Option<Failing>,
     /// No window below this scale is asked for.
@@ -79,7 +79,12 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(problem: &'a Problem, space: Space, seed: u64, settings: &descent::Settings) -> Self {
+    pub(super) fn new(
+        problem: &'a Problem,
+        space: Space,
+        seed: u64,
+        settings: &descent::DescentSettings,
+    ) -> Self {
         Self {
             problem,
             settings: settings.clone(),

@@ -60,7 +60,8 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
             PoseError::from_array(error)
         };
         let drawn = Domain::Poses((0..POSES).map(inside).collect());
-        let (motions, _) = descent::run(problem.pair(), drawn, &descent::Settings::default(), &exec).unwrap();
+        let (motions, _) =
+            descent::run(problem.pair(), drawn, &descent::DescentSettings::default(), &exec).unwrap();
         let docked = motions.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count();
         assert!(1000 * docked as u64 >= 999 * POSES, "{docked} of {POSES} in ±{widths:?}");
         let tight = found.sides.iter().find(|side| Some(side.axis) == found.tightest).unwrap();

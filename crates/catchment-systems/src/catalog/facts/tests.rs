@@ -5,7 +5,7 @@ use super::*;
 use catchment::design::family::PinHole;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::zraa::{Settings, Square, Zraa, circle_bounds, circle_square, run};
+use catchment::method::zraa::{Square, Zraa, ZraaSettings, circle_bounds, circle_square, run};
 use catchment::problem::Problem;
 
 fn fact(name: &str) -> Fact {
@@ -23,7 +23,7 @@ fn computed(spec: FamilySpec) -> (Design, Zraa, Square) {
     let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     let problem = Problem::of(design.clone()).unwrap();
-    let zraa = run(problem.pair(), &Settings::default(), &Exec::new()).unwrap();
+    let zraa = run(problem.pair(), &ZraaSettings::default(), &Exec::new()).unwrap();
     let square = Square::of(&zraa, &Exec::new()).unwrap();
     (design, zraa, square)
 }

@@ -7,7 +7,7 @@ use super::cells::{ACCEPTED, View, corners, dashed, dotted, face, filled};
 use super::{DrawError, problem};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::zraa::{Settings, Square, Zraa, run};
+use catchment::method::zraa::{Square, Zraa, ZraaSettings, run};
 use catchment::pose::PoseError;
 use catchment::problem::Problem;
 use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
@@ -124,7 +124,7 @@ fn of_family(
     let alignment = Alignment::default_for(Some(family));
     let design = Design { name: name.to_owned(), connector, width: 1.0, unit: None, alignment };
     let problem = Problem::of(design)?;
-    let zraa = run(problem.pair(), &Settings::default(), exec)?;
+    let zraa = run(problem.pair(), &ZraaSettings::default(), exec)?;
     let square = Square::of(&zraa, exec)?;
     let words = match (&zraa, family) {
         (Zraa::Interval { from, to, .. }, _) => {

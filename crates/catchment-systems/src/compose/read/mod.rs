@@ -120,7 +120,7 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<Read, ReadError> {
 fn of_connector(draft: Draft, exec: &Exec) -> Result<Read, ReadError> {
     let problem = draft.build()?;
     let design = problem.design();
-    let zraa = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
+    let zraa = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
     let (measure, factor) = match design.unit {
         Some(unit) => (Measure::Millimetres, design.width * unit.metres() / LengthUnit::Mm.metres()),
         None => (Measure::Widths, 1.0),

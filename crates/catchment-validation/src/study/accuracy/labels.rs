@@ -69,7 +69,7 @@ pub(super) fn labels(
             })
             .collect();
         let centres = Domain::Poses(cells.iter().map(|cell| grid.pose(*cell)).collect());
-        let (exact, _) = descent::run(problem.pair(), centres, &descent::Settings::default(), exec)
+        let (exact, _) = descent::run(problem.pair(), centres, &descent::DescentSettings::default(), exec)
             .map_err(|error| failed(error.into()))?;
         for (cell, own) in cells.iter().zip(&exact.outcomes) {
             labels.count(decided.acceptance.outcomes[*cell], *own);

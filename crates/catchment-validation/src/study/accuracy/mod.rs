@@ -188,7 +188,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     entries.sort_by_key(|entry| (entry.resolution, Way::all().iter().position(|way| *way == entry.way)));
     let mut exact = Exact { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
     if let Some(sampled) = finest {
-        let settings = correction::Settings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
+        let settings = correction::CorrectionSettings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
         let found = sampled.correct(&problem, &settings, exec).map_err(RefinementError::from)?;
         let unit = sampled.refinement(&problem, exec)?.unit;
         exact = Exact { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
@@ -230,7 +230,7 @@ impl Entry {
     ) -> Result<Self, RefinementError> {
         let started = Instant::now();
         let descents = method.default_samples(problem.pair());
-        let settings = correction::Settings { seed: SEEDS[1], stop: Stop::Samples(descents) };
+        let settings = correction::CorrectionSettings { seed: SEEDS[1], stop: Stop::Samples(descents) };
         let found = sampled.correct(problem, &settings, exec)?;
         let grid = Self::of(sampled, method, problem, exec)?;
         Ok(Self {

@@ -17,7 +17,7 @@ pub mod sdf;
 use super::engine::stays_locked;
 use super::mass::Mass;
 use super::pieces::{Part, parts};
-use super::settings::{Launch, Push, SettingError, Settings};
+use super::settings::{DropSettings, Launch, Push, SettingError};
 use super::turning::Turning;
 use crate::connector::{Half, Surface};
 use crate::contact::{Pair, Seat};
@@ -30,7 +30,7 @@ pub struct Scene<'a> {
     /// Name of the design, for the file's heading.
     pub name: &'a str,
     pair: &'a Pair,
-    settings: &'a Settings,
+    settings: &'a DropSettings,
     error: PoseError,
     cor: DVec3,
     rotation: DMat3,
@@ -81,7 +81,7 @@ impl<'a> Scene<'a> {
     pub fn new(
         name: &'a str,
         pair: &'a Pair,
-        settings: &'a Settings,
+        settings: &'a DropSettings,
         error: &PoseError,
     ) -> Result<Self, ExportError> {
         settings.check()?;

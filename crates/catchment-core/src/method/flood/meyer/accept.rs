@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct MeyerSettings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. The default lies in the widest gap
     /// between the depths, as in [`flood`](super::super::flood).
     pub depth_tolerance: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Settings {
     pub rules: Rules,
 }
 
-impl Settings {
+impl MeyerSettings {
     /// Depth tolerance of the text, as a share of the height H of the face.
     pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
 
@@ -87,7 +87,7 @@ pub fn accept(
     landscape: &Landscape,
     alignment: &Alignment,
     docks: &dyn Fn(usize) -> bool,
-    settings: &Settings,
+    settings: &MeyerSettings,
     exec: &Exec,
 ) -> Result<Flooding, FloodError> {
     let Landscape { grid, heights } = landscape;

@@ -1,6 +1,6 @@
 //! Meyer's flooding as a method: the dissertation's basins, with dams, on the error grid of any design.
 
-use super::{Settings, accept, bytes};
+use super::{MeyerSettings, accept, bytes};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -19,9 +19,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+pub(in crate::method) const ENTRY: Entry = Entry::of::<MeyerSettings>(&INFO);
 
-impl Settings {
+impl MeyerSettings {
     /// These settings with the tolerance of the text where none was given.
     fn for_problem(&self, problem: &Problem) -> Self {
         let depth_tolerance = self.depth_tolerance.or(Self::of(problem.design()).depth_tolerance);
@@ -29,7 +29,7 @@ impl Settings {
     }
 }
 
-impl Decide for Settings {
+impl Decide for MeyerSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }

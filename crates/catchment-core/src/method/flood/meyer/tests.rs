@@ -92,7 +92,7 @@ proptest! {
         let targets = target::cells(&grid, &alignment);
         let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
         let landscape = Landscape { grid: grid.clone(), heights: single };
-        let settings = Settings { depth_tolerance: Some(tolerance), rules };
+        let settings = MeyerSettings { depth_tolerance: Some(tolerance), rules };
         let found = accept(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap();
         let basins = brute::divide(&shape, &heights, &targets, tolerance, rules);
         let judged = brute::outcomes(&grid, &heights, &targets, &basins, tolerance);
@@ -144,9 +144,9 @@ fn what_cannot_be_flooded_is_refused() {
     let grid = Grid::over(&alignment, |_| 3);
     let landscape = Landscape { grid, heights: vec![1.0, 0.0, 1.0] };
     let with = |settings, exec: &Exec| accept(&landscape, &alignment, &|_| true, &settings, exec);
-    let bad = with(Settings::with_tolerance(f64::NAN), &Exec::new());
+    let bad = with(MeyerSettings::with_tolerance(f64::NAN), &Exec::new());
     assert!(matches!(bad, Err(FloodError::Tolerance { .. })));
     let little = Exec::new().with_memory_budget(10);
-    assert!(matches!(with(Settings::default(), &little), Err(FloodError::OutOfBudget(_))));
-    assert_eq!(with(Settings::default(), &Exec::new()).unwrap().acceptance.counts(), [3, 0, 0, 0]);
+    assert!(matches!(with(MeyerSettings::default(), &little), Err(FloodError::OutOfBudget(_))));
+    assert_eq!(with(MeyerSettings::default(), &Exec::new()).unwrap().acceptance.counts(), [3, 0, 0, 0]);
 }

@@ -24,7 +24,7 @@
 use super::compose::{self, Compartment};
 use super::pieces::{EVERYWHERE, Piece, PiecePair, Pieces};
 use super::space::unlocked;
-use super::{POLYTOPE_BYTES, PartitionError, Settings};
+use super::{POLYTOPE_BYTES, PartitionError, PartitionSettings};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
@@ -71,7 +71,7 @@ pub struct Solids {
     /// 3, or 2 where the bodies are flat.
     pub dimension: usize,
     /// How it was made.
-    pub settings: Settings,
+    pub settings: PartitionSettings,
     /// Convex pieces of the fixed half and of the moving one, before they were cut into strips.
     pub pieces: [usize; 2],
     /// The bodies.
@@ -119,7 +119,12 @@ impl From<OutOfBudget> for SolidError {
 ///
 /// # Errors
 /// [`SolidError`]; cancel is checked for every body.
-pub fn shapes(pair: &Pair, subject: Subject, settings: &Settings, exec: &Exec) -> Result<Solids, SolidError> {
+pub fn shapes(
+    pair: &Pair,
+    subject: Subject,
+    settings: &PartitionSettings,
+    exec: &Exec,
+) -> Result<Solids, SolidError> {
     settings.check()?;
     let free = pair.alignment.free;
     let width = if subject == Subject::Halves { f64::INFINITY } else { 1.0 / settings.strips as f64 };
@@ -144,7 +149,7 @@ pub fn shapes(pair: &Pair, subject: Subject, settings: &Settings, exec: &Exec) -
 }
 
 /// The slices of the angle that is free, if one is.
-fn slices(pair: &Pair, settings: &Settings) -> Vec<Compartment> {
+fn slices(pair: &Pair, settings: &PartitionSettings) -> Vec<Compartment> {
     Compartment::all(&settings.slices_of(&pair.alignment))
 }
 

@@ -34,7 +34,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, free: &[Dof]) -> Pair {
 }
 
 fn made(pair: &Pair, subject: Subject, slices: usize) -> Solids {
-    shapes(pair, subject, &Settings { slices, strips: 1 }, &Exec::new()).unwrap()
+    shapes(pair, subject, &PartitionSettings { slices, strips: 1 }, &Exec::new()).unwrap()
 }
 
 /// What lies behind the planes of these (normal, offset) is the body.
@@ -128,7 +128,8 @@ fn every_body_is_closed_and_faces_out() {
     ] {
         let pair = pair(family, 0.5, 0.2, free);
         for subject in [Subject::Halves, Subject::Swept, Subject::Collision] {
-            let Ok(shape) = shapes(&pair, subject, &Settings { slices: 3, strips: 1 }, &Exec::new()) else {
+            let Ok(shape) = shapes(&pair, subject, &PartitionSettings { slices: 3, strips: 1 }, &Exec::new())
+            else {
                 assert_eq!(subject, Subject::Swept);
                 continue;
             };
@@ -331,7 +332,7 @@ fn with_a_rotation_the_upper_side_is_first_contact_on_every_slice() {
 fn what_has_no_shape_is_refused() {
     let ask = |free: &[Dof], subject| {
         let pair = pair(Family::Pyramid, 0.5, 0.0, free);
-        shapes(&pair, subject, &Settings { slices: 3, strips: 1 }, &Exec::new()).unwrap_err()
+        shapes(&pair, subject, &PartitionSettings { slices: 3, strips: 1 }, &Exec::new()).unwrap_err()
     };
     assert_eq!(ask(XY, Subject::Swept), SolidError::NothingTurns);
     assert_eq!(ask(&[], Subject::Collision), SolidError::NothingMoves);
@@ -343,11 +344,11 @@ fn what_has_no_shape_is_refused() {
     assert_eq!(of(ask(&[Dof::X, Dof::Y, Dof::Yaw], Subject::Collision)), 4);
     assert_eq!(of(ask(&[Dof::Pitch, Dof::Yaw], Subject::Collision)), 4);
     let planar = pair(Family::VFace, 1.0, 0.0, X_PITCH);
-    let many = Settings { slices: 1000, strips: 200 };
+    let many = PartitionSettings { slices: 1000, strips: 200 };
     let small = Exec::new().with_memory_budget(1 << 20);
     let refused = shapes(&planar, Subject::Collision, &many, &small).unwrap_err();
     assert!(matches!(refused, SolidError::Partition(PartitionError::OutOfBudget(_))), "{refused:?}");
-    let none = Settings { slices: 0, strips: 1 };
+    let none = PartitionSettings { slices: 0, strips: 1 };
     let refused = shapes(&planar, Subject::Halves, &none, &Exec::new()).unwrap_err();
     assert!(matches!(refused, SolidError::Partition(PartitionError::Setting { .. })), "{refused:?}");
 }
