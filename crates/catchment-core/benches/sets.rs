@@ -64,7 +64,7 @@ fn labels(rates: &mut Rates, name: &str, cells: usize) {
 /// A window with its certificate: so many motions in all.
 fn windows(rates: &mut Rates, name: &str) {
     let problem = problem(name);
-    let settings = window::Settings { motions: Some(MOTIONS), ..window::Settings::default() };
+    let settings = window::WindowSettings { motions: Some(MOTIONS), ..window::WindowSettings::default() };
     let find = || window::run(&problem, &settings, &Exec::new()).expect("a window");
     let known = find();
     let worst = known.worst.as_ref().map_or(PoseError::default(), |worst| worst.error);

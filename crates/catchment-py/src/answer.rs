@@ -6,7 +6,7 @@ use crate::rendered::PNG_SCALE;
 use crate::work::{How, work};
 use catchment::report::figure::Drawn;
 use catchment::report::{Report, save, save_group};
-use catchment::run::{self, Part, PartAnswer, Run};
+use catchment::run::{self, PartAnswer, Run, RunPart};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ impl Problem {
     /// Decides one part of a run: JSON for `merge`.
     fn part(&self, py: Python<'_>, run: &str, number: usize, of: usize, how: How) -> PyResult<String> {
         work(py, &how, |exec| {
-            let part = read(run)?.part(&self.inner, Part { number, of }, exec)?;
+            let part = read(run)?.part(&self.inner, RunPart { number, of }, exec)?;
             Ok(serde_json::to_string(&part)?)
         })
     }

@@ -58,7 +58,7 @@ impl Problem {
             }
             let proportions =
                 proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default)));
-            let settings = window::Settings { fixed, proportions, motions, seed, friction };
+            let settings = window::WindowSettings { fixed, proportions, motions, seed, friction };
             let found = window::run(problem, &settings, exec)?;
             let report =
                 WindowReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
@@ -85,8 +85,15 @@ impl Problem {
             let problem = &self.inner;
             let errors = expected.distribution(problem)?;
             let resolution = resolution(cells.as_deref())?;
-            let settings =
-                jams::Settings { motions, seed, errors, examined: examine, friction, resolution, certified };
+            let settings = jams::JamsSettings {
+                motions,
+                seed,
+                errors,
+                examined: examine,
+                friction,
+                resolution,
+                certified,
+            };
             let found = jams::run(problem, &settings, exec)?;
             let report =
                 JamsReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));

@@ -10,7 +10,7 @@ use super::schema::{
 use catchment_core::acceptance::Domain;
 use catchment_core::pose::DofSet;
 use catchment_core::problem::Problem;
-use catchment_core::run::{Answer, Over, Requirement, RequirementError, Run, RunError, Verdict};
+use catchment_core::run::{Answer, Over, Requirement, RequirementCheck, RequirementError, Run, RunError};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -53,7 +53,7 @@ impl<T: Body + Serialize> Envelope<T> {
     ///
     /// # Errors
     /// The report has no such place, or no number there.
-    pub fn verdicts(&self, requirements: &[Requirement]) -> Result<Vec<Verdict>, RequirementError> {
+    pub fn verdicts(&self, requirements: &[Requirement]) -> Result<Vec<RequirementCheck>, RequirementError> {
         let value = serde_json::to_value(self).unwrap_or(Value::Null);
         requirements.iter().map(|requirement| requirement.judge(&value)).collect()
     }

@@ -47,7 +47,7 @@ subjects! {
     /// A prediction beside the trials of a robot.
     ValidationReport = catchment_study::validate::Validation;
     /// The largest box of errors that all dock.
-    WindowReport = catchment_core::run::window::Window;
+    WindowReport = catchment_core::run::window::ToleranceWindow;
     /// Offsets that are corrected without rotation.
     ZraaReport = crate::AcceptedOffsets;
 }

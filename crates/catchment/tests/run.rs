@@ -12,7 +12,7 @@ use catchment::pose::{Dof, DofSet, PoseError};
 use catchment::poses::Distribution;
 use catchment::problem::Problem;
 use catchment::report::{Report, UnanswerableError, check_requirements};
-use catchment::run::{Answer, Over, Part, PartAnswer, PartError, Run, RunError, Sample};
+use catchment::run::{Answer, Over, PartAnswer, Run, RunError, RunPart, RunPartError, Sample};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
@@ -120,7 +120,7 @@ fn parts_of_a_run_in_five_dimensions_give_the_bits_of_the_whole() {
     let expected = told(&whole.on(&problem, &Exec::new()).unwrap());
     for of in [1, 2, 7] {
         let mut parts: Vec<PartAnswer> = (0..of)
-            .map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap())
+            .map(|number| whole.part(&problem, RunPart { number, of }, &Exec::new()).unwrap())
             // Through the wire, as from another machine.
             .map(|part| serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap())
             .collect();
@@ -139,7 +139,7 @@ fn parts_of_a_random_stream_give_the_bits_of_the_whole() {
         assert!(answer.sum_ci95().is_some() && answer.onaa().is_none());
         for of in [1, 2, 7] {
             let parts =
-                (0..of).map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap());
+                (0..of).map(|number| whole.part(&problem, RunPart { number, of }, &Exec::new()).unwrap());
             let merged = whole.merge(&problem, parts.collect(), &Exec::new()).unwrap();
             assert_eq!(merged.acceptance.outcomes, answer.acceptance.outcomes);
             assert_eq!(told(&merged), told(&answer), "{method}, {of} parts");
@@ -151,7 +151,7 @@ fn parts_of_a_random_stream_give_the_bits_of_the_whole() {
 fn parts_that_make_no_whole_are_refused() {
     let problem = planar();
     let whole = run("descent", 5, 0);
-    let part = |run: &Run, number, of| run.part(&problem, Part { number, of }, &Exec::new());
+    let part = |run: &Run, number, of| run.part(&problem, RunPart { number, of }, &Exec::new());
     let merged = |parts: Vec<PartAnswer>| {
         whole.merge(&problem, parts, &Exec::new()).map(|_| ()).unwrap_err().to_string()
     };
@@ -165,9 +165,9 @@ fn parts_that_make_no_whole_are_refused() {
     assert_eq!(merged(vec![a.clone(), foreign, c.clone()]), "part 1 belongs to another problem");
     let short = PartAnswer { outcomes: vec![Outcome::Aligned], ..b };
     assert_eq!(merged(vec![a, short, c]), "part 1 has the wrong number of outcomes");
-    assert!(matches!(part(&whole, 3, 3), Err(PartError::NoSuchPart { number: 3, of: 3 })));
+    assert!(matches!(part(&whole, 3, 3), Err(RunPartError::NoSuchPart { number: 3, of: 3 })));
     let whole = part(&run("transport", 5, 0), 0, 2);
-    assert!(matches!(whole, Err(PartError::Indivisible { method: "transport" })));
+    assert!(matches!(whole, Err(RunPartError::Indivisible { method: "transport" })));
     assert!(serde_json::from_value::<PartAnswer>(json!({ "outcomes": "ajx" })).is_err());
 }
 
@@ -176,7 +176,7 @@ proptest! {
     fn parts_cover_everything_once(count in 0usize..1000, of in 1usize..50) {
         let mut next = 0;
         for number in 0..of {
-            let range = Part { number, of }.range(count);
+            let range = RunPart { number, of }.range(count);
             prop_assert_eq!(range.start, next);
             prop_assert!(range.len() <= count / of + 1);
             next = range.end;

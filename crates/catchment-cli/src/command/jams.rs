@@ -11,7 +11,7 @@ use crate::setting::number;
 use catchment::landscape::Resolution;
 use catchment::problem::Problem;
 use catchment::report::{JamsReport, figure};
-use catchment::run::jams::{Settings, run as find, run_for as find_for};
+use catchment::run::jams::{JamsSettings, run as find, run_for as find_for};
 use clap::Args;
 
 /// Why it jams: where motions come to rest that do not dock, and the features that hold them there
@@ -71,8 +71,8 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl JamsArgs {
-    fn settings(&self) -> Settings {
-        Settings {
+    fn settings(&self) -> JamsSettings {
+        JamsSettings {
             motions: self.motions.map(|motions| motions as usize),
             seed: self.seed,
             errors: None,

@@ -9,7 +9,7 @@ use crate::result_args::{ResultArgs, study};
 use catchment::landscape::Resolution;
 use catchment::problem::Problem;
 use catchment::report::{RestsReport, figure};
-use catchment::run::rests::{Settings, run as find};
+use catchment::run::rests::{RestsSettings, run as find};
 use clap::Args;
 
 /// Where a half rests under its load: every equilibrium, how it is held, and what it takes to leave
@@ -49,7 +49,7 @@ pub(crate) struct RestsArgs {
 }
 
 pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
-    let settings = Settings {
+    let settings = RestsSettings {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
         examined: args.examine as usize,

@@ -11,7 +11,7 @@ use crate::setting::number;
 use catchment::pose::{Dof, PoseError};
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
-use catchment::run::window::{Settings, WindowError, run as find, seconds as expected};
+use catchment::run::window::{WindowError, WindowSettings, run as find, seconds as expected};
 use clap::Args;
 
 /// The window one may ship: the largest box of errors that all dock
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl WindowArgs {
-    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+    fn settings(&self, problem: &Problem) -> Result<WindowSettings, Failure> {
         let sizes = |option: &str, text: &Option<String>| {
             let Some(text) = text else { return Ok(None) };
             let read = parse_sizes(text, problem.design()).map(Some);
@@ -89,7 +89,7 @@ impl WindowArgs {
                 return Err(Failure::with_help(message, Some("name it in one of them".to_owned())));
             }
         }
-        Ok(Settings {
+        Ok(WindowSettings {
             fixed: fixed.unwrap_or_default(),
             proportions: proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default))),
             motions: self.motions.map(|motions| motions as usize),

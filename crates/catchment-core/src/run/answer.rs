@@ -1,7 +1,7 @@
 //! The complete result of a run.
 
 use super::jams::Jams;
-use super::window::{Window, WindowError};
+use super::window::{ToleranceWindow, WindowError};
 use super::{Run, Seating, Upright};
 use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
@@ -25,7 +25,7 @@ pub struct Answer {
     /// The settings of the method as they were used.
     pub settings: Value,
     /// The Sum corrected by random poses, if any were drawn.
-    pub corrected: Option<Corrected>,
+    pub corrected: Option<RunCorrection>,
     /// What else the method knows.
     pub by_products: ByProducts,
     /// What the accepted cells are worth.
@@ -37,7 +37,7 @@ pub struct Answer {
     /// Where motions rest that do not dock, if that was asked.
     pub jams: Option<Jams>,
     /// The largest box of errors that all dock, or why there is none, if that was asked.
-    pub window: Option<Result<Window, WindowError>>,
+    pub window: Option<Result<ToleranceWindow, WindowError>>,
     /// What the seat is like, and how far off accepted poses rest in it.
     pub seating: Seating,
     /// Wall-clock time, in seconds.
@@ -48,7 +48,7 @@ pub struct Answer {
 
 /// An unbiased Sum, and what followed its random poses.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Corrected {
+pub struct RunCorrection {
     /// The estimate with its interval and strata.
     pub found: correction::Corrected,
     /// Seed of the poses.

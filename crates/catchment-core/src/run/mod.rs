@@ -36,13 +36,13 @@ mod upright;
 pub mod window;
 pub use stages::correct;
 
-pub use answer::{Answer, Corrected};
+pub use answer::{Answer, RunCorrection};
 pub use end_contact::{EndContact, EndContacts};
 pub use follow::Followed;
-pub use part::{Part, PartAnswer, PartError};
-pub use plan::{Afterwards, Plan};
+pub use part::{PartAnswer, RunPart, RunPartError};
+pub use plan::{Afterwards, RunPlan};
 pub use report_schema::ReportSchema;
-pub use requirement::{Requirement, RequirementError, Verdict};
+pub use requirement::{Requirement, RequirementCheck, RequirementError};
 pub use seat::{Deeper, Residual, Seating};
 pub use upright::Upright;
 

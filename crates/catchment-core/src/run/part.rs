@@ -21,7 +21,7 @@
 //!
 //! A part stores the digest of its problem and its run: parts that do not belong together are rejected.
 
-use super::{Answer, Plan, Run, RunError, stages};
+use super::{Answer, Run, RunError, RunPlan, stages};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::method::{DecideError, Decided};
@@ -31,14 +31,14 @@ use std::ops::Range;
 
 /// Number of a part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Part {
+pub struct RunPart {
     /// Number of the part, from 0.
     pub number: usize,
     /// Number of parts.
     pub of: usize,
 }
 
-impl Part {
+impl RunPart {
     /// The poses of this part among `count`; parts differ by one pose at most.
     pub fn range(self, count: usize) -> Range<usize> {
         let of = self.of.max(1);
@@ -56,7 +56,7 @@ pub struct PartAnswer {
     /// The run to which the part belongs.
     pub run: Run,
     /// Number of the part.
-    pub part: Part,
+    pub part: RunPart,
     /// Outcomes of its poses in order: for each the first letter of the outcome's name.
     #[serde(with = "letters")]
     pub outcomes: Vec<Outcome>,
@@ -64,7 +64,7 @@ pub struct PartAnswer {
 
 /// Why a run cannot be divided, or its parts make no whole.
 #[derive(Debug, thiserror::Error)]
-pub enum PartError {
+pub enum RunPartError {
     /// The method decides cells from one another.
     #[error(
         "{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses, \
@@ -108,9 +108,9 @@ impl Run {
     ///
     /// # Errors
     /// The run cannot be divided, there is no such part, or it gives no answer.
-    pub fn part(&self, problem: &Problem, part: Part, exec: &Exec) -> Result<PartAnswer, PartError> {
+    pub fn part(&self, problem: &Problem, part: RunPart, exec: &Exec) -> Result<PartAnswer, RunPartError> {
         if part.number >= part.of {
-            return Err(PartError::NoSuchPart { number: part.number, of: part.of });
+            return Err(RunPartError::NoSuchPart { number: part.number, of: part.of });
         }
         let plan = self.divisible(problem)?;
         plan.ensure_fits(exec).map_err(RunError::from)?;
@@ -135,7 +135,7 @@ impl Run {
         problem: &Problem,
         mut parts: Vec<PartAnswer>,
         exec: &Exec,
-    ) -> Result<Answer, PartError> {
+    ) -> Result<Answer, RunPartError> {
         let started = Stopwatch::start();
         let plan = self.divisible(problem)?;
         plan.ensure_fits(exec).map_err(RunError::from)?;
@@ -148,7 +148,7 @@ impl Run {
                     && parts.len() >= of;
                 let (number, what) =
                     if twice { (number - 1, "is there twice") } else { (number, "is missing") };
-                return Err(PartError::Incomplete { number, what });
+                return Err(RunPartError::Incomplete { number, what });
             };
             let foreign = [
                 (part.problem != problem.digest(), "problem"),
@@ -156,15 +156,15 @@ impl Run {
                 (part.part.of != of, "division"),
             ];
             if let Some((_, what)) = foreign.into_iter().find(|(differs, _)| *differs) {
-                return Err(PartError::Foreign { number, what });
+                return Err(RunPartError::Foreign { number, what });
             }
             if part.outcomes.len() != part.part.range(plan.domain.len()).len() {
-                return Err(PartError::Incomplete { number, what: "has the wrong number of outcomes" });
+                return Err(RunPartError::Incomplete { number, what: "has the wrong number of outcomes" });
             }
             outcomes.extend_from_slice(&part.outcomes);
         }
         if parts.len() > of {
-            return Err(PartError::Incomplete { number: parts[of].part.number, what: "is there twice" });
+            return Err(RunPartError::Incomplete { number: parts[of].part.number, what: "is there twice" });
         }
         let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
         let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
@@ -176,16 +176,16 @@ impl Run {
     }
 
     /// The plan, where it can be divided.
-    fn divisible(&self, problem: &Problem) -> Result<Plan, PartError> {
+    fn divisible(&self, problem: &Problem) -> Result<RunPlan, RunPartError> {
         let plan = self.plan(problem)?;
         match plan.method.follows() {
             Some(_) => Ok(plan),
-            None => Err(PartError::Indivisible { method: plan.method.name() }),
+            None => Err(RunPartError::Indivisible { method: plan.method.name() }),
         }
     }
 }
 
-impl From<DecideError> for PartError {
+impl From<DecideError> for RunPartError {
     fn from(error: DecideError) -> Self {
         Self::Run(error.into())
     }

@@ -13,7 +13,7 @@ use crate::problem::Problem;
 
 /// A run on a problem, with everything filled in.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct RunPlan {
     /// Decides the poses.
     pub method: Method,
     /// Which poses.
@@ -66,7 +66,7 @@ impl Run {
     /// # Errors
     /// The mated pose does not hold, the method does not apply to the design, its settings are out of range, or the resolution does not suit the
     /// free errors.
-    pub fn plan(&self, problem: &Problem) -> Result<Plan, RunError> {
+    pub fn plan(&self, problem: &Problem) -> Result<RunPlan, RunError> {
         problem.ensure_held()?;
         let pair = problem.pair();
         let within = match self.sample {
@@ -110,7 +110,7 @@ impl Run {
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
         let afterwards = self.afterwards(problem, &method, &domain);
-        Ok(Plan { method, domain, sample, heights, cost, afterwards })
+        Ok(RunPlan { method, domain, sample, heights, cost, afterwards })
     }
 
     /// What is followed after the decision.
@@ -155,15 +155,20 @@ impl Run {
     }
 
     /// How the window is looked for: in the proportions of the error box, with the friction of the method.
-    pub(crate) fn window_settings(&self) -> window::Settings {
+    pub(crate) fn window_settings(&self) -> window::WindowSettings {
         let friction = self.method.motions().friction;
-        window::Settings { seed: self.seed, friction, ..window::Settings::default() }
+        window::WindowSettings { seed: self.seed, friction, ..window::WindowSettings::default() }
     }
 
     /// How jams are looked for: by poses of the same seed and errors, with the friction of the method.
-    pub fn jams_settings(&self) -> jams::Settings {
+    pub fn jams_settings(&self) -> jams::JamsSettings {
         let friction = self.method.motions().friction;
-        jams::Settings { seed: self.seed, errors: self.errors.clone(), friction, ..jams::Settings::default() }
+        jams::JamsSettings {
+            seed: self.seed,
+            errors: self.errors.clone(),
+            friction,
+            ..jams::JamsSettings::default()
+        }
     }
 }
 
@@ -180,7 +185,7 @@ fn spans_cells(problem: &Problem, method: &Method, grid: &Grid) -> bool {
     })
 }
 
-impl Plan {
+impl RunPlan {
     /// Core-seconds that everything takes, about: the decision and the motions that follow it (Sum, limits, window, seat).
     pub fn seconds(&self, problem: &Problem) -> f64 {
         /// Motions of a window, as a multiple of its random poses; those of the seat and of what depends on the step.

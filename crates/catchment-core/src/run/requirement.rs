@@ -145,7 +145,7 @@ impl<'de> Deserialize<'de> for Requirement {
 
 /// What became of a requirement.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
+pub struct RequirementCheck {
     /// The requirement.
     pub requirement: Requirement,
     /// The number that it is about.
@@ -154,7 +154,7 @@ pub struct Verdict {
     pub met: bool,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for RequirementCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let met = if self.met { "met" } else { "not met" };
         write!(f, "{met}: {} (it is {})", self.requirement, self.value)
@@ -166,11 +166,11 @@ impl Requirement {
     ///
     /// # Errors
     /// If the report has no such place, or no number there.
-    pub fn judge(&self, report: &Value) -> Result<Verdict, RequirementError> {
+    pub fn judge(&self, report: &Value) -> Result<RequirementCheck, RequirementError> {
         let value = self.value(report)?;
         let bound = self.bound(report)?;
         let met = self.holds(value, bound);
-        Ok(Verdict { requirement: self.clone(), value, met })
+        Ok(RequirementCheck { requirement: self.clone(), value, met })
     }
 
     /// Whether a number that has no unit meets the bound as it is written.

@@ -2,7 +2,7 @@
 
 use super::plan::{Afterwards, GRID_PART};
 use super::window::WindowError;
-use super::{Answer, Corrected, Over, Plan, Run, RunError, Seating, Upright, jams, window};
+use super::{Answer, Over, Run, RunCorrection, RunError, RunPlan, Seating, Upright, jams, window};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
@@ -37,14 +37,14 @@ impl ExactFollower<'_> {
 }
 
 /// Decides every pose of the plan.
-pub(super) fn decide(plan: &Plan, problem: &Problem, exec: &Exec) -> Result<Decided, RunError> {
+pub(super) fn decide(plan: &RunPlan, problem: &Problem, exec: &Exec) -> Result<Decided, RunError> {
     Ok(plan.method.decide(problem, &plan.domain, exec)?)
 }
 
 /// What the connector tolerates with roll and pitch locked, where five errors are free and exact motions answer beside a grid.
 pub(super) fn upright(
     run: &Run,
-    plan: &Plan,
+    plan: &RunPlan,
     problem: &Problem,
     exec: &Exec,
 ) -> Result<Option<Upright>, RunError> {
@@ -64,7 +64,7 @@ const SHARES: [f64; 5] = [0.15, 0.3, 0.5, 0.95, 1.0];
 /// Everything after the decision: each stage gets what the stages before it gave, and gives one value.
 pub(super) fn finish(
     run: &Run,
-    plan: &Plan,
+    plan: &RunPlan,
     problem: &Problem,
     (upright, decided): (Option<Upright>, Decided),
     started: Stopwatch,
@@ -117,14 +117,14 @@ pub(super) fn finish(
 /// What every stage after the decision needs.
 struct Stages<'a> {
     run: &'a Run,
-    plan: &'a Plan,
+    plan: &'a RunPlan,
     problem: &'a Problem,
     follower: ExactFollower<'a>,
     motions: descent::DescentSettings,
 }
 
 /// The window of a run that computes one, or why there is none.
-type WindowOrNot = Result<window::Window, WindowError>;
+type WindowOrNot = Result<window::ToleranceWindow, WindowError>;
 
 impl Stages<'_> {
     /// The Sum of a grid, made unbiased by sampled poses, and the grid's ambiguous cells settled by them.
@@ -134,7 +134,7 @@ impl Stages<'_> {
         doubts: Option<&dyn Doubts>,
         started: Stopwatch,
         exec: &Exec,
-    ) -> Result<Option<Corrected>, RunError> {
+    ) -> Result<Option<RunCorrection>, RunError> {
         let Self { plan, problem, .. } = self;
         let Domain::Grid(grid) = &plan.domain else { return Ok(None) };
         let sample = plan.sample.map(|settings| left(settings, started));
@@ -163,7 +163,7 @@ impl Stages<'_> {
     fn merits(
         &self,
         acceptance: &Acceptance,
-        (corrected, window): (Option<&Corrected>, Option<&WindowOrNot>),
+        (corrected, window): (Option<&RunCorrection>, Option<&WindowOrNot>),
         [of_limits, of_boxes]: [&Exec; 2],
         exec: &Exec,
     ) -> Result<Merits, RunError> {
@@ -187,7 +187,7 @@ impl Stages<'_> {
             merits.warnings.extend(small);
         }
         if follower.is_descent() {
-            let centered = window.and_then(|window| window.as_ref().ok()).map(window::Window::cube);
+            let centered = window.and_then(|window| window.as_ref().ok()).map(window::ToleranceWindow::cube);
             let drawn = corrected.map_or(random, |corrected| corrected.found.descents);
             let random = random.min(drawn);
             let by = window::Effort { seed: run.seed, random, motions };
@@ -237,7 +237,7 @@ pub fn correct(
     doubts: Option<&dyn Doubts>,
     settings: &correction::CorrectionSettings,
     exec: &Exec,
-) -> Result<Corrected, CorrectionError> {
+) -> Result<RunCorrection, CorrectionError> {
     let follower = follower(method);
     let follower = follower.as_follow();
     let follow = |poses: Vec<_>, exec: &Exec| {
@@ -252,7 +252,12 @@ pub fn correct(
         let by = ByNeighbours::new(&acceptance.outcomes, shape);
         correction::estimate(grid, &by, settings, exec, follow)
     }?;
-    Ok(Corrected { found, seed: settings.seed, method: follower.info().name, settings: follower.settings() })
+    Ok(RunCorrection {
+        found,
+        seed: settings.seed,
+        method: follower.info().name,
+        settings: follower.settings(),
+    })
 }
 
 /// Follows the ambiguous cells exactly if they are at most `most`, else warns.

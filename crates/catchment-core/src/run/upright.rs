@@ -14,7 +14,7 @@
 //! angles in radians.
 
 use super::RunError;
-use super::window::{Effort, Settings, window_of, within};
+use super::window::{Effort, WindowSettings, window_of, within};
 use crate::acceptance::Domain;
 use crate::exec::Exec;
 use crate::landscape::Grid;
@@ -63,11 +63,11 @@ impl Upright {
         for tolerance in &tolerances {
             proportions[tolerance.dof.index()] = tolerance.symmetric();
         }
-        let settings = Settings {
+        let settings = WindowSettings {
             proportions: Some(PoseError::from_array(proportions)),
             seed: by.seed,
             friction: by.motions.friction,
-            ..Settings::default()
+            ..WindowSettings::default()
         };
         let window = window_of(&problem, &settings, by, exec)?;
         Ok(window.map(|window| Self { window: within(&window, &tolerances), tolerances }))

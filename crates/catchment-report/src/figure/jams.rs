@@ -224,13 +224,14 @@ mod tests {
     use catchment_core::design::read;
     use catchment_core::exec::Exec;
     use catchment_core::problem::Problem;
-    use catchment_core::run::jams::{Settings, run};
+    use catchment_core::run::jams::{JamsSettings, run};
     use std::path::Path;
 
     fn drawn(text: &str) -> Result<Picture, FigureError> {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let found =
-            run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
+            run(&problem, &JamsSettings { motions: Some(400), ..JamsSettings::default() }, &Exec::new())
+                .unwrap();
         jams(problem.design(), &found, problem.connector())
     }
 
@@ -249,7 +250,7 @@ mod tests {
         use catchment_core::run::rests;
         let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
-        let settings = rests::Settings { motions: Some(400), ..rests::Settings::default() };
+        let settings = rests::RestsSettings { motions: Some(400), ..rests::RestsSettings::default() };
         let found = rests::run(&problem, &settings, &Exec::new()).unwrap();
         let report = RestsReport::new(problem.design(), found, Vec::new(), None);
         let picture = super::rests(&report, problem.connector()).unwrap();

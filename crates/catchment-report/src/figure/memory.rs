@@ -12,7 +12,7 @@ use catchment_core::advice::Advice;
 use catchment_core::exec::{Exec, OutOfBudget};
 use catchment_core::landscape::Grid;
 use catchment_core::merit::slice;
-use catchment_core::run::Plan;
+use catchment_core::run::RunPlan;
 
 /// Bytes of a picture, and of the pictures of a run, without their maps.
 const PAGE_BYTES: u64 = 32 << 20;
@@ -40,7 +40,7 @@ pub fn ensure_grid_fits(grid: &Grid, exec: &Exec) -> Result<(), OutOfBudget> {
 ///
 /// # Errors
 /// They do not fit.
-pub fn ensure_run_fits(plan: &Plan, exec: &Exec) -> Result<(), OutOfBudget> {
+pub fn ensure_run_fits(plan: &RunPlan, exec: &Exec) -> Result<(), OutOfBudget> {
     ensure_domain_fits(&plan.domain, exec)
 }
 

@@ -16,7 +16,7 @@ use catchment_core::method::Method;
 use catchment_core::problem::Problem;
 use catchment_core::run::Answer;
 use catchment_core::run::jams::{self, JamsError};
-use catchment_core::run::window::Window;
+use catchment_core::run::window::ToleranceWindow;
 use catchment_core::run::window::{self, WindowError};
 use catchment_study::planes;
 use serde_json::json;
@@ -87,7 +87,7 @@ impl Parts {
             .clone()
             .map(|result| JamsReport::of(OfDesign { design: design(), result }, Vec::new(), None));
         let window = report.window.clone().map(|WindowSection { half_widths, found }| {
-            let result = Window { window: half_widths, found };
+            let result = ToleranceWindow { window: half_widths, found };
             WindowReport::of(OfDesign { design: design(), result }, Vec::new(), None)
         });
         Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })
@@ -108,14 +108,19 @@ impl Parts {
             }
         }
         if studies.jams {
-            match jams::run(problem, &jams::Settings { friction, ..jams::Settings::default() }, exec) {
+            match jams::run(problem, &jams::JamsSettings { friction, ..jams::JamsSettings::default() }, exec)
+            {
                 Ok(found) => self.jams = Some(JamsReport::new(design, found, Vec::new(), None)),
                 Err(JamsError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no jams: {why}")),
             }
         }
         if studies.window {
-            match window::run(problem, &window::Settings { friction, ..window::Settings::default() }, exec) {
+            match window::run(
+                problem,
+                &window::WindowSettings { friction, ..window::WindowSettings::default() },
+                exec,
+            ) {
                 Ok(found) => self.window = Some(WindowReport::new(design, found, Vec::new(), None)),
                 Err(WindowError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no window: {why}")),

@@ -15,7 +15,7 @@ use catchment_core::method::certified::Certificate;
 use catchment_core::method::confluence::Joined;
 use catchment_core::pose::Dof;
 use catchment_core::run::jams::Jams;
-use catchment_core::run::window::{HalfWidths, Window, WindowDetails};
+use catchment_core::run::window::{HalfWidths, ToleranceWindow, WindowDetails};
 use catchment_core::run::{Seating, Upright};
 use serde::{Deserialize, Serialize};
 
@@ -87,8 +87,8 @@ pub struct WindowSection {
     pub found: WindowDetails,
 }
 
-impl From<&Window> for WindowSection {
-    fn from(window: &Window) -> Self {
+impl From<&ToleranceWindow> for WindowSection {
+    fn from(window: &ToleranceWindow) -> Self {
         Self { half_widths: window.window.clone(), found: window.found.clone() }
     }
 }

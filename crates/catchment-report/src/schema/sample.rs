@@ -6,7 +6,7 @@
 use super::Report;
 use catchment_core::method::certified::Certificate;
 use catchment_core::method::correction::Stratum;
-use catchment_core::run::Corrected;
+use catchment_core::run::RunCorrection;
 use serde::{Deserialize, Serialize};
 
 /// Sampled poses, followed exactly, behind the Sum and its interval.
@@ -56,9 +56,9 @@ impl Report {
 
     /// Replaces the Sum by the corrected one.
     #[must_use]
-    pub fn with_sample(mut self, corrected: &Corrected) -> Self {
+    pub fn with_sample(mut self, corrected: &RunCorrection) -> Self {
         let acceptance = &mut self.body.acceptance;
-        let Corrected { found, seed, method, settings } = corrected;
+        let RunCorrection { found, seed, method, settings } = corrected;
         acceptance.sum = found.sum;
         acceptance.sum_ci95 = Some(found.ci95);
         acceptance.fraction = found.fraction;

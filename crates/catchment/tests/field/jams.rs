@@ -1,11 +1,11 @@
 //! Why real-shaped docks jam: the features that a person would name from the drawing.
 
 use catchment::prelude::*;
-use catchment::run::jams::{Firmness, Jams, Settings, run};
+use catchment::run::jams::{Firmness, Jams, JamsSettings, run};
 use std::path::Path;
 
 fn found(problem: &Problem, motions: usize) -> Jams {
-    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+    run(problem, &JamsSettings { motions: Some(motions), ..JamsSettings::default() }, &Exec::new()).unwrap()
 }
 
 /// The pair of features that touches in most of the jams, the moving half's first, and in which share of them it does.

@@ -21,7 +21,7 @@ use catchment::landscape::Resolution;
 use catchment::pose::{Dof, DofSet};
 use catchment::problem::Problem;
 use catchment::report::{self, Report, UnanswerableError, figure, first_look};
-use catchment::run::{Over, Plan, Run, RunError, Sample, Upright};
+use catchment::run::{Over, Run, RunError, RunPlan, Sample, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
 
@@ -148,8 +148,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 pub(super) const LONG: f64 = 20.0;
 
 /// How long it will take, and what would be faster.
-fn said_before(run: &Run, plan: &Plan, problem: &Problem, threads: usize) -> Vec<String> {
-    let wall = |plan: &Plan, problem: &Problem| plan.seconds(problem) / threads as f64;
+fn said_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> Vec<String> {
+    let wall = |plan: &RunPlan, problem: &Problem| plan.seconds(problem) / threads as f64;
     let seconds = wall(plan, problem);
     if seconds < LONG {
         return Vec::new();

@@ -62,7 +62,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct JamsSettings {
     /// Number of poses sampled from the error box. Default: 4000 for simple halves, fewer for halves with
     /// many facets.
     pub motions: Option<usize>,
@@ -81,7 +81,7 @@ pub struct Settings {
     pub certified: bool,
 }
 
-impl Default for Settings {
+impl Default for JamsSettings {
     fn default() -> Self {
         Self {
             motions: None,
@@ -103,7 +103,7 @@ pub const PUSH: f64 = 0.01;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Jams {
     /// The settings, with all defaults filled in.
-    pub settings: Settings,
+    pub settings: JamsSettings,
     /// Number of poses sampled from the error box and followed.
     pub motions: usize,
     /// Outcomes of the sampled poses.
@@ -312,17 +312,17 @@ const BRANCH: u64 = 0x1a3;
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::problem::Problem;
-/// use catchment_core::run::jams::{self, Settings};
+/// use catchment_core::run::jams::{self, JamsSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let found = jams::run(&problem, &Settings { motions: Some(500), ..Settings::default() }, &Exec::new())?;
+/// let found = jams::run(&problem, &JamsSettings { motions: Some(500), ..JamsSettings::default() }, &Exec::new())?;
 /// // The tip lies on its side in the notch, either way.
 /// assert_eq!(found.jams[0].places, 2);
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, JamsError> {
+pub fn run(problem: &Problem, settings: &JamsSettings, exec: &Exec) -> Result<Jams, JamsError> {
     by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
@@ -333,14 +333,14 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
 /// See [`JamsError`].
 pub fn run_for(
     problem: &Problem,
-    settings: &Settings,
+    settings: &JamsSettings,
     spread: &Spread,
     exec: &Exec,
 ) -> Result<Jams, JamsError> {
     let motions = motions_of(problem, settings);
     let samples = u32::try_from(motions).unwrap_or(u32::MAX);
     let errors = draw::law(spread, samples, settings.seed ^ BRANCH);
-    let settings = Settings { errors, ..settings.clone() };
+    let settings = JamsSettings { errors, ..settings.clone() };
     let followed_by = descent::DescentSettings::with_friction(settings.friction)?;
     let Spread::Measured { source, poses } = spread else {
         return by(problem, &settings, &followed_by, exec);
@@ -350,14 +350,14 @@ pub fn run_for(
     Ok(Jams { measured: Some(source.clone()), ..found })
 }
 
-fn motions_of(problem: &Problem, settings: &Settings) -> usize {
+fn motions_of(problem: &Problem, settings: &JamsSettings) -> usize {
     settings.motions.unwrap_or_else(|| descent::DescentSettings::default().default_samples(problem.pair()))
 }
 
 /// The same by motions of one's own, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
-    settings: &Settings,
+    settings: &JamsSettings,
     followed_by: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<Jams, JamsError> {
@@ -371,7 +371,7 @@ pub(super) fn by(
 /// The same; with the poses at which a robot is expected to come.
 fn of(
     problem: &Problem,
-    settings: &Settings,
+    settings: &JamsSettings,
     followed_by: &descent::DescentSettings,
     drawn: Option<Vec<PoseError>>,
     exec: &Exec,
@@ -381,7 +381,7 @@ fn of(
         return Err(JamsError::Nothing);
     }
     depth::check(problem, settings.certified, followed_by.friction)?;
-    let settings = Settings { motions: Some(motions), ..settings.clone() };
+    let settings = JamsSettings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
     let follow = Follow { problem, features: &features, motions: followed_by, which: Which::Jams };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {

@@ -21,7 +21,7 @@ fn by_outcome(of: &BTreeMap<Outcome, Share>) -> [usize; 4] {
 }
 
 fn found(problem: &Problem, motions: usize) -> Jams {
-    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+    run(problem, &JamsSettings { motions: Some(motions), ..JamsSettings::default() }, &Exec::new()).unwrap()
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn every_pose_is_in_one_outcome_and_every_jammed_one_in_one_jam() {
         mean: PoseError::default(),
         sigma: PoseError { x: 0.3, pitch: 0.6, ..PoseError::default() },
     };
-    let settings = Settings { motions: Some(1500), errors: Some(errors), ..Settings::default() };
+    let settings = JamsSettings { motions: Some(1500), errors: Some(errors), ..JamsSettings::default() };
     let found = run(&v_face(), &settings, &Exec::new()).unwrap();
     assert_eq!(by_outcome(&found.outcomes).iter().sum::<usize>(), 1500);
     assert_eq!(found.jammed(), by_outcome(&found.outcomes)[1]);
@@ -145,7 +145,7 @@ fn a_peg_beside_its_hole_rests_on_level_ground() {
 #[test]
 fn threads_change_nothing() {
     let problem = v_face();
-    let settings = Settings { motions: Some(300), ..Settings::default() };
+    let settings = JamsSettings { motions: Some(300), ..JamsSettings::default() };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let one = with(1);
     assert_eq!(one, with(2));
@@ -155,11 +155,11 @@ fn threads_change_nothing() {
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let problem = v_face();
-    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
-    assert_eq!(refused(Settings { motions: Some(0), ..Settings::default() }), JamsError::Nothing);
+    let refused = |settings: JamsSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    assert_eq!(refused(JamsSettings { motions: Some(0), ..JamsSettings::default() }), JamsError::Nothing);
     let normal = |sigma: PoseError| {
         let errors = Some(Distribution::Normal { mean: PoseError::default(), sigma });
-        refused(Settings { motions: Some(10), errors, ..Settings::default() })
+        refused(JamsSettings { motions: Some(10), errors, ..JamsSettings::default() })
     };
     let sigma = PoseError { yaw: 0.1, ..PoseError::default() };
     assert_eq!(normal(sigma), JamsError::Locked { axis: Dof::Yaw });
@@ -167,7 +167,7 @@ fn what_cannot_be_asked_is_refused() {
     assert_eq!(normal(sigma), JamsError::NoSize { axis: Dof::X, value: -0.1 });
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(matches!(run(&problem, &Settings::default(), &exec), Err(JamsError::Cancelled(_))));
+    assert!(matches!(run(&problem, &JamsSettings::default(), &exec), Err(JamsError::Cancelled(_))));
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn friction_above_the_slope_jams_all_over_it() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
     let problem = Problem::of(crate::design::read(text, ".".as_ref()).unwrap().design).unwrap();
     let with = |friction: f64| {
-        let settings = Settings { motions: Some(300), friction, ..Settings::default() };
+        let settings = JamsSettings { motions: Some(300), friction, ..JamsSettings::default() };
         run(&problem, &settings, &Exec::new()).unwrap()
     };
     assert_eq!(with(0.1).outcomes, with(0.0).outcomes);
@@ -219,7 +219,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
         "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n[errors]\npitch = \"170 deg\"\n",
     );
     let resolution = Some("120".parse().unwrap());
-    let settings = Settings { motions: Some(400), resolution, ..Settings::default() };
+    let settings = JamsSettings { motions: Some(400), resolution, ..JamsSettings::default() };
     let found = run(&wide, &settings, &Exec::new()).unwrap();
     let jam = found.jams.iter().find(|jam| (jam.pose.pitch.abs() - 0.5 * PI).abs() < 1e-3).unwrap();
     let examined = jam.examined.unwrap();
@@ -234,7 +234,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
 #[test]
 fn a_jam_is_as_deep_as_is_certain() {
     let problem = v_face();
-    let settings = Settings { motions: Some(600), certified: true, ..Settings::default() };
+    let settings = JamsSettings { motions: Some(600), certified: true, ..JamsSettings::default() };
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     for jam in &found.jams {
         let (at_least, examined) = (jam.depth_at_least_d.unwrap(), jam.examined.unwrap());
@@ -246,7 +246,7 @@ fn a_jam_is_as_deep_as_is_certain() {
             assert!(at_least > 0.5 * climb, "{at_least} {climb}");
         }
     }
-    let rough = Settings { friction: 0.1, ..settings };
+    let rough = JamsSettings { friction: 0.1, ..settings };
     assert_eq!(run(&problem, &rough, &Exec::new()).unwrap_err(), JamsError::Depth(DepthError::Friction));
 }
 
@@ -255,7 +255,7 @@ fn a_jam_is_as_deep_as_is_certain() {
 fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
     let problem = problem(text);
-    let settings = Settings { motions: Some(50), friction: 0.3, ..Settings::default() };
+    let settings = JamsSettings { motions: Some(50), friction: 0.3, ..JamsSettings::default() };
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     assert!(!found.jams.is_empty());
     for examined in found.jams.iter().filter_map(|jam| jam.examined) {

@@ -48,7 +48,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct RestsSettings {
     /// Number of poses sampled from the error box. Default: 4000 for simple halves, fewer for halves with
     /// many facets.
     pub motions: Option<usize>,
@@ -63,7 +63,7 @@ pub struct Settings {
     pub certified: bool,
 }
 
-impl Default for Settings {
+impl Default for RestsSettings {
     fn default() -> Self {
         Self { motions: None, seed: 1, examined: 6, resolution: None, certified: false }
     }
@@ -74,7 +74,7 @@ impl Default for Settings {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rests {
     /// The settings, with all defaults filled in.
-    pub settings: Settings,
+    pub settings: RestsSettings,
     /// Number of poses sampled from the error box and followed.
     pub motions: usize,
     /// Outcomes of the sampled poses.
@@ -148,17 +148,17 @@ const THERE: f64 = 0.1;
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::problem::Problem;
-/// use catchment_core::run::rests::{self, Settings};
+/// use catchment_core::run::rests::{self, RestsSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let found = rests::run(&problem, &Settings { motions: Some(500), ..Settings::default() }, &Exec::new())?;
+/// let found = rests::run(&problem, &RestsSettings { motions: Some(500), ..RestsSettings::default() }, &Exec::new())?;
 /// // Docked, and with the tip on its side in the notch.
 /// assert!(found.rests.len() >= 2 && found.rests[0].docked > 0);
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests, RestsError> {
+pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<Rests, RestsError> {
     let motions = settings
         .motions
         .unwrap_or_else(|| descent::DescentSettings::default().default_samples(problem.pair()));
@@ -166,7 +166,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
         return Err(RestsError::Nothing);
     }
     depth::check(problem, settings.certified, 0.0)?;
-    let settings = Settings { motions: Some(motions), ..settings.clone() };
+    let settings = RestsSettings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
     let motions_of = descent::DescentSettings::default();
     let follow = Follow { problem, features: &features, motions: &motions_of, which: Which::All };

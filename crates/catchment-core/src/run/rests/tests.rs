@@ -12,7 +12,7 @@ fn problem(text: &str) -> Problem {
 }
 
 fn found(problem: &Problem, motions: usize) -> Rests {
-    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+    run(problem, &RestsSettings { motions: Some(motions), ..RestsSettings::default() }, &Exec::new()).unwrap()
 }
 
 fn depth(place: &RestPlace) -> f64 {
@@ -72,7 +72,7 @@ fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
             "[connector]\nfamily = \"{family}\n[alignment]\ncenter_of_rotation = 0.5\nrotation_length = 0.5\n"
         ));
         for seed in 1..=3 {
-            let settings = Settings { motions: Some(120), seed, ..Settings::default() };
+            let settings = RestsSettings { motions: Some(120), seed, ..RestsSettings::default() };
             let found = run(&problem, &settings, &Exec::new()).unwrap();
             let held = found.rests[0].examined.unwrap();
             let immobility = held.immobility.unwrap();
@@ -180,7 +180,7 @@ fn a_rigid_body_comes_back_to_every_kind_of_rest() {
 /// Over an edge of a cube, and over the rim of a V: at least, certainly, is hardly less than what a way that exists climbs at most.
 #[test]
 fn certified_depths_are_below_those_of_ways_and_near_them() {
-    let settings = Settings { motions: Some(200), certified: true, ..Settings::default() };
+    let settings = RestsSettings { motions: Some(200), certified: true, ..RestsSettings::default() };
     let exec = Exec::new();
     for place in &run(&problem(CUBE), &settings, &exec).unwrap().rests {
         let at_least = place.depth_at_least_d.unwrap();
@@ -208,7 +208,7 @@ fn a_peg_is_as_deep_as_its_hole() {
 #[test]
 fn the_merge_tree_agrees() {
     let resolution = Some(Resolution::uniform(801).unwrap());
-    let settings = Settings { motions: Some(200), resolution, ..Settings::default() };
+    let settings = RestsSettings { motions: Some(200), resolution, ..RestsSettings::default() };
     let found = run(&problem(CUBE), &settings, &Exec::new()).unwrap();
     // Heights differ by at most ½ per radian from cell to cell, 0.3° here.
     for place in &found.rests {
@@ -239,7 +239,7 @@ fn curvature_is_the_rise_of_a_push() {
 fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
     let problem = problem(text);
-    let settings = Settings { motions: Some(200), ..Settings::default() };
+    let settings = RestsSettings { motions: Some(200), ..RestsSettings::default() };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let one = with(1);
     assert_eq!(one, with(2));
@@ -253,7 +253,7 @@ fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
         one.rests.iter().map(|place| place.docked).sum::<usize>(),
         one.outcomes[&Outcome::Aligned].count
     );
-    let none = Settings { motions: Some(0), ..Settings::default() };
+    let none = RestsSettings { motions: Some(0), ..RestsSettings::default() };
     assert_eq!(run(&problem, &none, &Exec::new()).unwrap_err(), RestsError::Nothing);
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);

@@ -17,7 +17,7 @@
 //! and about twice as many poses of a search for failures. Nor that no larger cube exists elsewhere. Its
 //! centre is that of the largest cube of cells, or zero if the cube there is larger.
 
-use super::Settings;
+use super::WindowSettings;
 use super::search::Search;
 use super::space::Space;
 use crate::acceptance::Outcome;
@@ -91,7 +91,7 @@ pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> Cente
 /// The largest box in the proportions of `settings`, by as many motions as a cube; `None` where there is none.
 pub(in crate::run) fn window_of(
     problem: &Problem,
-    settings: &Settings,
+    settings: &WindowSettings,
     by: &Effort<'_>,
     exec: &Exec,
 ) -> Result<Option<CenteredBox>, Cancelled> {
@@ -167,7 +167,7 @@ mod tests {
         let problem = problem(Family::Pyramid, DofSet::ALL);
         let motions = descent::DescentSettings::default();
         let by = Effort { seed: 1, random: 200, motions: &motions };
-        let found = window_of(&problem, &Settings::default(), &by, &Exec::new()).unwrap().unwrap();
+        let found = window_of(&problem, &WindowSettings::default(), &by, &Exec::new()).unwrap().unwrap();
         let stream = crate::acceptance::Stream::new(5);
         let fails = (0..200).filter(|k| {
             let mut error = [0.0; 5];

@@ -51,7 +51,7 @@ use std::ops::Deref;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct WindowSettings {
     /// Given half-widths, in the order of [`Dof::ALL`], in D and radians: these errors have this range, and
     /// the window is sought for the others.
     pub fixed: [Option<f64>; 5],
@@ -67,7 +67,7 @@ pub struct Settings {
     pub friction: f64,
 }
 
-impl Default for Settings {
+impl Default for WindowSettings {
     fn default() -> Self {
         Self { fixed: [None; 5], proportions: None, motions: None, seed: 1, friction: 0.0 }
     }
@@ -77,7 +77,7 @@ impl Default for Settings {
 /// motions show.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Window {
+pub struct ToleranceWindow {
     /// Half-width of every free error, by its name, in D and radians.
     pub window: HalfWidths,
     /// The settings of the search and all its other results.
@@ -95,9 +95,9 @@ pub struct HalfWidths(pub BTreeMap<Dof, f64>);
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowDetails {
     /// The settings, with all defaults filled in.
-    pub settings: Settings,
+    pub settings: WindowSettings,
     /// Every free error.
-    pub sides: Vec<Side>,
+    pub sides: Vec<WindowAxis>,
     /// Factor between `proportions` and the half-widths that were not given.
     pub scale: f64,
     /// The error with the least room to its limit while all others vary within the window; null if every
@@ -106,7 +106,7 @@ pub struct WindowDetails {
     /// The nearest failure, measured in proportions of the window; null if the window reaches the error box.
     pub worst: Option<Worst>,
     /// The certificate from sampled poses.
-    pub certificate: Certificate,
+    pub certificate: WindowCertificate,
     /// Number of exact motions in total.
     pub motions: usize,
 }
@@ -114,7 +114,7 @@ pub struct WindowDetails {
 /// One error of a window, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Side {
+pub struct WindowAxis {
     /// The error.
     pub axis: Dof,
     /// Half-width of the window in this error.
@@ -158,7 +158,7 @@ pub struct Worst {
 /// The certificate: sampled poses of the window, none of which failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Certificate {
+pub struct WindowCertificate {
     /// Number of sampled poses.
     pub motions: usize,
     /// Upper bound on the failing share of the window, at 95 % confidence; 1 if no pose was sampled.
@@ -238,7 +238,7 @@ pub enum WindowError {
     Cancelled(#[from] Cancelled),
 }
 
-impl Window {
+impl ToleranceWindow {
     /// The same as a cube, of a window in the proportions of the error box.
     pub(super) fn cube(&self) -> CenteredBox {
         CenteredBox {
@@ -250,7 +250,7 @@ impl Window {
     }
 }
 
-impl Deref for Window {
+impl Deref for ToleranceWindow {
     type Target = WindowDetails;
 
     fn deref(&self) -> &WindowDetails {
@@ -344,30 +344,34 @@ const OF_WINDOW: f64 = 0.4;
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::problem::Problem;
-/// use catchment_core::run::window::{self, Settings};
+/// use catchment_core::run::window::{self, WindowSettings};
 ///
 /// let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let found = window::run(&problem, &Settings { motions: Some(1000), ..Settings::default() }, &Exec::new())?;
+/// let found = window::run(&problem, &WindowSettings { motions: Some(1000), ..WindowSettings::default() }, &Exec::new())?;
 /// // Without rotations a pyramid corrects offsets up to D/2 along both axes at once.
 /// assert!((found.sides[0].half_width - 0.5).abs() < 0.002);
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window, WindowError> {
+pub fn run(
+    problem: &Problem,
+    settings: &WindowSettings,
+    exec: &Exec,
+) -> Result<ToleranceWindow, WindowError> {
     by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
 /// The same by motions of one's own, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
-    settings: &Settings,
+    settings: &WindowSettings,
     motions_by: &descent::DescentSettings,
     exec: &Exec,
-) -> Result<Window, WindowError> {
+) -> Result<ToleranceWindow, WindowError> {
     let space = Space::of(problem, settings)?;
     let motions = settings.motions.unwrap_or_else(|| default_motions(problem));
-    let settings = &Settings { motions: Some(motions), ..settings.clone() };
+    let settings = &WindowSettings { motions: Some(motions), ..settings.clone() };
     let outcome_of = |error: &PoseError| descent::outcome(problem.pair(), error, motions_by).outcome;
     let home = outcome_of(&PoseError::default());
     if home != Outcome::Aligned {
@@ -387,7 +391,7 @@ pub(super) fn by(
         });
     };
     let at_most = if motions == 0 { 1.0 } else { ((1.0 / chance(redrawn)).ln() / motions as f64).min(1.0) };
-    let certificate = Certificate { motions, failing_at_most: at_most, redrawn };
+    let certificate = WindowCertificate { motions, failing_at_most: at_most, redrawn };
     let half_widths = search.space().half_widths(scale);
     let mut followed = search.followed();
     let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
@@ -411,7 +415,7 @@ pub(super) fn by(
         // Alone it goes no less far than in company.
         let alone = if beside.to > alone.to { beside } else { alone };
         let given = settings.fixed[axis.index()].is_some();
-        sides.push(Side {
+        sides.push(WindowAxis {
             axis,
             half_width,
             given,
@@ -421,11 +425,11 @@ pub(super) fn by(
             beside_reaches_border: beside.is_border,
         });
     }
-    let spare = |side: &&Side| side.beside / side.half_width;
+    let spare = |side: &&WindowAxis| side.beside / side.half_width;
     let tightest = sides.iter().filter(|side| side.half_width > 0.0 && !side.beside_reaches_border);
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
     let worst = search.worst().map(|error| Worst::of(problem, error, motions_by));
-    Ok(Window {
+    Ok(ToleranceWindow {
         window: HalfWidths(sides.iter().map(|side| (side.axis, side.half_width)).collect()),
         found: WindowDetails {
             settings: settings.clone(),
@@ -445,7 +449,7 @@ fn beyond(motions: usize) -> usize {
 }
 
 /// Core-seconds that it takes, to within a factor of two or three: motions as counted for grids of three and five errors.
-pub fn seconds(problem: &Problem, settings: &Settings) -> f64 {
+pub fn seconds(problem: &Problem, settings: &WindowSettings) -> f64 {
     /// Per direction of {−1, 0, 1}ⁿ: looks along it, and bisections where it fails. Per error: its reach.
     const DIRECTION: usize = 12;
     const ERROR: usize = 250;

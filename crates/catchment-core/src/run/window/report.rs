@@ -1,6 +1,6 @@
 //! Text form of a window.
 
-use super::{Certificate, Window, WindowDetails};
+use super::{ToleranceWindow, WindowCertificate, WindowDetails};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::document::{Cell, Column, Document, Subject, Table, Units, grouped};
@@ -10,7 +10,7 @@ const MOST_TOUCHES: usize = 4;
 /// An error that may grow by less than this share while the others stay in the window limits it.
 const LIMITING: f64 = 0.01;
 
-impl Subject for Window {
+impl Subject for ToleranceWindow {
     const KIND: &'static str = "window";
 
     fn document(&self, design: &Design) -> Document {
@@ -39,7 +39,7 @@ impl WindowDetails {
             document.paragraph("* the error box ends here: the limit may be larger");
         }
         document.section(None);
-        let Certificate { motions, failing_at_most, redrawn } = self.certificate;
+        let WindowCertificate { motions, failing_at_most, redrawn } = self.certificate;
         if motions == 0 {
             document.row("certificate", "none: no random poses were sampled");
             return;

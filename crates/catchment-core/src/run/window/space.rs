@@ -1,6 +1,6 @@
 //! The family of boxes in which a window is sought: given half-widths, and others that grow with a scale.
 
-use super::{Settings, WindowError};
+use super::{WindowError, WindowSettings};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 
@@ -21,7 +21,7 @@ pub(super) struct Space {
 }
 
 impl Space {
-    pub(super) fn of(problem: &Problem, settings: &Settings) -> Result<Self, WindowError> {
+    pub(super) fn of(problem: &Problem, settings: &WindowSettings) -> Result<Self, WindowError> {
         let alignment = problem.alignment();
         let proportions = settings.proportions.map(PoseError::to_array);
         let (mut fixed, mut growing) = ([0.0; 5], [0.0; 5]);

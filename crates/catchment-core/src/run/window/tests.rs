@@ -9,8 +9,8 @@ fn free(dofs: &[Dof]) -> DofSet {
     dofs.iter().copied().collect()
 }
 
-fn quick() -> Settings {
-    Settings { motions: Some(4000), ..Settings::default() }
+fn quick() -> WindowSettings {
+    WindowSettings { motions: Some(4000), ..WindowSettings::default() }
 }
 
 /// V-Face, x alone: D/2 to either side, closed form.
@@ -38,7 +38,7 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
     let exec = Exec::new();
     let all = DofSet::ALL;
     let given = [None, None, Some(0.05), Some(0.05), None];
-    let fixed = Settings { fixed: given, ..quick() };
+    let fixed = WindowSettings { fixed: given, ..quick() };
     let cases = [
         (problem(Family::VFace, free(&[Dof::X, Dof::Pitch])), quick()),
         (problem(Family::Pyramid, free(&[Dof::X, Dof::Y, Dof::Yaw])), quick()),
@@ -103,30 +103,30 @@ fn what_is_given_stays_and_the_others_grow() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     let exec = Exec::new();
     let with = |x: f64| {
-        let settings = Settings { fixed: [Some(x), None, None, None, None], ..quick() };
+        let settings = WindowSettings { fixed: [Some(x), None, None, None, None], ..quick() };
         run(&problem, &settings, &exec).unwrap()
     };
     let (small, large) = (with(0.05), with(0.3));
-    let pitch = |found: &Window| found.sides[1].half_width;
+    let pitch = |found: &ToleranceWindow| found.sides[1].half_width;
     assert!(pitch(&small) > 1.1 * pitch(&large), "{small:?} {large:?}");
     assert_eq!((large.sides[0].half_width, large.sides[0].given), (0.3, true));
-    let too_much = Settings { fixed: [Some(0.9), None, None, None, None], ..quick() };
+    let too_much = WindowSettings { fixed: [Some(0.9), None, None, None, None], ..quick() };
     assert!(matches!(run(&problem, &too_much, &exec), Err(WindowError::GivenFails { .. })));
 }
 
 #[test]
 fn what_makes_no_window_is_refused() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
-    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err().to_string();
+    let refused = |settings: WindowSettings| run(&problem, &settings, &Exec::new()).unwrap_err().to_string();
     let fixed = |k: usize, value: f64| {
         let mut fixed = [None; 5];
         fixed[k] = Some(value);
-        Settings { fixed, ..quick() }
+        WindowSettings { fixed, ..quick() }
     };
     assert!(refused(fixed(0, 1.5)).contains("error box ends at ±1.0000"));
     assert!(refused(fixed(1, 0.1)).starts_with("y: the design locks it"));
     assert!(refused(fixed(0, -0.1)).contains("no half-width"));
-    let none = Settings { proportions: Some(PoseError::default()), ..quick() };
+    let none = WindowSettings { proportions: Some(PoseError::default()), ..quick() };
     assert!(refused(none).starts_with("nothing is asked"));
 }
 
@@ -135,7 +135,7 @@ fn it_is_the_same_on_any_number_of_threads() {
     let problem = problem(Family::Pyramid, DofSet::ALL);
     let on = |threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        run(&problem, &Settings { motions: Some(5000), ..Settings::default() }, &exec).unwrap()
+        run(&problem, &WindowSettings { motions: Some(5000), ..WindowSettings::default() }, &exec).unwrap()
     };
     let one = on(1);
     assert_eq!(one, on(2));

@@ -168,10 +168,10 @@ mod tests {
         body.certificate = Some(Certificate { yes: 0.3, no: 0.6, undecided: 0.1, ..Certificate::default() });
         body.joined = Some(Joined { cells: 9, joined: 7, tried: 5, ..Joined::default() });
         let problem = Problem::of(design.clone()).unwrap();
-        let asked = jams::Settings { motions: Some(300), ..jams::Settings::default() };
+        let asked = jams::JamsSettings { motions: Some(300), ..jams::JamsSettings::default() };
         let found = jams::run(&problem, &asked, &Exec::new()).unwrap();
         body.jams = Some(found);
-        let asked = window::Settings { motions: Some(100), ..window::Settings::default() };
+        let asked = window::WindowSettings { motions: Some(100), ..window::WindowSettings::default() };
         let found = window::run(&problem, &asked, &Exec::new()).unwrap();
         body.window = Some(WindowSection::from(&found));
         let stratum = |share| Stratum {
