@@ -13,7 +13,7 @@ use catchment::exec::{Exec, Stopwatch};
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{Parts, SweepReport, figure};
-use catchment::study::sweep::{Axis, Found, Keep, Nowhere, Plan, Settings, SweepError};
+use catchment::study::sweep::{Axis, Found, Keep, Nowhere, Plan, SweepError, SweepSettings};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::io;
@@ -82,7 +82,7 @@ impl Sweep {
             if let Some(path) = &output {
                 StudyFolder { path, name: "sweep" }.check(&Exec::new())?;
             }
-            let settings = Settings { axes, run };
+            let settings = SweepSettings { axes, run };
             Plan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)
         };
         let plan = plan().map_err(|refusal| refusal.raise(py))?;

@@ -7,7 +7,7 @@ use catchment_core::document::{
     Cell, Column, Document, Format, Subject, Table, grouped, percent, significant,
 };
 use catchment_core::merit::estimate::Estimate;
-use catchment_study::slices::{Settings, Slice, Slices};
+use catchment_study::slices::{Slice, Slices, SlicesSettings};
 use serde::Serialize;
 
 /// Slices of a design; fields as in [`Report`](super::Report).
@@ -16,7 +16,7 @@ use serde::Serialize;
 pub struct SlicesFound {
     /// Settings that change the result.
     #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
-    pub settings: Settings,
+    pub settings: SlicesSettings,
     /// A slice for each pair of errors.
     pub slices: Vec<SliceReport>,
     /// Estimated edge of the largest full-dimensional cube, in [0, 1]; null if a required slice is missing.
@@ -41,7 +41,7 @@ pub struct SliceReport {
 
 impl SlicesFound {
     /// Of slices that were computed with these settings.
-    pub fn of(found: &Slices, settings: Settings) -> Self {
+    pub fn of(found: &Slices, settings: SlicesSettings) -> Self {
         Self {
             settings,
             slices: found.slices.iter().map(SliceReport::from).collect(),
@@ -167,7 +167,7 @@ mod tests {
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });
         let found = Slices { slices: vec![slice], estimate };
         let report =
-            SlicesReport::new(&design, SlicesFound::of(&found, Settings::default()), Vec::new(), None);
+            SlicesReport::new(&design, SlicesFound::of(&found, SlicesSettings::default()), Vec::new(), None);
         let text = report.table();
         for line in text.lines() {
             assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");

@@ -32,8 +32,8 @@ use serde::{Serialize, Serializer};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Cells per axis; [`Settings::CELLS`] on axes of which it says nothing.
+pub struct SlicesSettings {
+    /// Cells per axis; [`SlicesSettings::CELLS`] on axes of which it says nothing.
     pub resolution: Resolution,
     /// The pairs of errors to vary, the first to the right in pictures; empty: all pairs of free errors.
     pub pairs: Vec<[Dof; 2]>,
@@ -42,7 +42,7 @@ pub struct Settings {
 }
 
 /// The settings of the method stand under its name.
-impl Serialize for Settings {
+impl Serialize for SlicesSettings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(3))?;
         map.serialize_entry("resolution", &self.resolution)?;
@@ -52,12 +52,12 @@ impl Serialize for Settings {
     }
 }
 
-impl Settings {
+impl SlicesSettings {
     /// Cells per axis: what the dissertation's drop tests used. Odd, so that a cell is centred on the mated pose.
     pub const CELLS: usize = 71;
 }
 
-impl Default for Settings {
+impl Default for SlicesSettings {
     fn default() -> Self {
         let resolution = Resolution::uniform(Self::CELLS).unwrap_or_default();
         Self { resolution, pairs: Vec::new(), method: Method::new(descent::DescentSettings::default()) }
@@ -138,7 +138,7 @@ pub enum SlicesError {
 ///
 /// # Errors
 /// They do not fit, or a pair is not free in the design.
-pub fn ensure_fits(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<u64, SlicesError> {
+pub fn ensure_fits(problem: &Problem, settings: &SlicesSettings, exec: &Exec) -> Result<u64, SlicesError> {
     let planes = planes(problem, settings)?;
     let cells = |grid: &Grid| grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let largest = planes.iter().map(|(_, grid)| cells(grid)).max().unwrap_or(0);
@@ -155,7 +155,7 @@ pub fn ensure_fits(problem: &Problem, settings: &Settings, exec: &Exec) -> Resul
 ///
 /// # Errors
 /// A pair that the design does not free, a grid that does not fit into memory, a cancelled run.
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices, SlicesError> {
+pub fn run(problem: &Problem, settings: &SlicesSettings, exec: &Exec) -> Result<Slices, SlicesError> {
     let planes = planes(problem, settings)?;
     let method = settings.method.name();
     let judge = settings.method.follows().ok_or(SlicesError::NotByPose { method })?;
@@ -194,12 +194,12 @@ impl From<DecideError> for SlicesError {
 }
 
 /// The pairs to vary, each once and in the order of [`Dof::ALL`], with their grids.
-fn planes(problem: &Problem, settings: &Settings) -> Result<Vec<([Dof; 2], Grid)>, SlicesError> {
+fn planes(problem: &Problem, settings: &SlicesSettings) -> Result<Vec<([Dof; 2], Grid)>, SlicesError> {
     let free = problem.alignment().free;
     if free.len() < 2 {
         return Err(SlicesError::OneError { free: free.len() });
     }
-    let whole = settings.resolution.grid(problem.alignment(), &[Settings::CELLS; 5])?;
+    let whole = settings.resolution.grid(problem.alignment(), &[SlicesSettings::CELLS; 5])?;
     let all = slice::pairs(&whole);
     let asked = if settings.pairs.is_empty() { &all } else { &settings.pairs };
     let mut planes: Vec<([Dof; 2], Grid)> = Vec::with_capacity(asked.len());
@@ -232,9 +232,9 @@ mod tests {
     use catchment_core::design::Family;
     use catchment_core::pose::DofSet;
 
-    fn settings(cells: usize, pairs: &[[Dof; 2]]) -> Settings {
+    fn settings(cells: usize, pairs: &[[Dof; 2]]) -> SlicesSettings {
         let resolution = Resolution::uniform(cells).unwrap();
-        Settings { resolution, pairs: pairs.to_vec(), ..Settings::default() }
+        SlicesSettings { resolution, pairs: pairs.to_vec(), ..SlicesSettings::default() }
     }
 
     #[test]

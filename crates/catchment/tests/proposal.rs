@@ -6,7 +6,9 @@ use catchment::connector::{Half, Surface, convex_hull, stl};
 use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
-use catchment::study::proposal::{Beside, Frames, Lie, PartFile, Proposal, ProposalError, Settings, propose};
+use catchment::study::proposal::{
+    Beside, Frames, Lie, PartFile, Proposal, ProposalError, ProposalSettings, propose,
+};
 use glam::{DAffine3, DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
 use std::fs;
@@ -78,11 +80,11 @@ fn difference(a: &Problem, b: &Problem) -> f64 {
     [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y].into_iter().map(seen).fold(f64::INFINITY, f64::min)
 }
 
-fn settings(frames: Frames) -> Settings {
-    Settings { frames, unit: Some(LengthUnit::Mm), ..Settings::default() }
+fn settings(frames: Frames) -> ProposalSettings {
+    ProposalSettings { frames, unit: Some(LengthUnit::Mm), ..ProposalSettings::default() }
 }
 
-fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &Settings) -> Proposal {
+fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &ProposalSettings) -> Proposal {
     let found = propose(parts, settings, &folder.join("design.toml"), &Exec::new());
     found.unwrap_or_else(|error| panic!("{error}"))
 }
@@ -227,7 +229,7 @@ fn a_pinned_choice_is_kept() {
         write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY),
         write(folder.path(), "b.stl", &upright, &DAffine3::IDENTITY),
     ];
-    let ways = |fixed: &str, moving: &str| Settings {
+    let ways = |fixed: &str, moving: &str| ProposalSettings {
         facing: [Some(fixed.parse().unwrap()), Some(moving.parse().unwrap())],
         free: Some(DofSet::EMPTY.with(Dof::X).with(Dof::Y)),
         name: Some("a \"pair\"".to_owned()),
@@ -248,8 +250,8 @@ fn a_unit_that_nobody_says_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let part = write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY);
     let parts = [part.clone(), part];
-    let refused =
-        propose(&parts, &Settings::default(), &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
+    let refused = propose(&parts, &ProposalSettings::default(), &folder.path().join("d.toml"), &Exec::new())
+        .unwrap_err();
     assert!(matches!(&refused, ProposalError::NoUnit { guess: LengthUnit::Mm, .. }), "{refused}");
     assert!(refused.to_string().contains("the part is 40 × 40 × "), "{refused}");
 }
@@ -277,7 +279,7 @@ fn a_bought_ball_is_part_of_a_half() {
     assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
     let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
     let with = [Vec::new(), vec![Beside::Part(ball.clone())]];
-    let found = proposed(&parts, folder.path(), &Settings { with, ..settings(Frames::Facing) });
+    let found = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(Frames::Facing) });
     assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
     assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
     let free = found.problem.alignment().free;
@@ -286,7 +288,7 @@ fn a_bought_ball_is_part_of_a_half() {
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
     // What is wrong with a part is said as of a design.
     let with = [vec![Beside::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
-    let wrong = Settings { with, ..settings(Frames::Facing) };
+    let wrong = ProposalSettings { with, ..settings(Frames::Facing) };
     let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
     // The plate in two files is the plate; a file whose unit nobody says is named with its own size.
@@ -298,10 +300,10 @@ fn a_bought_ball_is_part_of_a_half() {
     let second = write(folder.path(), "second.stl", &half(0.24), &frame);
     let parts = [parts[0].clone(), first];
     let with = [Vec::new(), vec![Beside::File(second), Beside::Part(ball)]];
-    let settings = Settings { with, ..settings(Frames::Facing) };
+    let settings = ProposalSettings { with, ..settings(Frames::Facing) };
     let found = proposed(&parts, folder.path(), &settings);
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
-    let nobody = Settings { unit: None, ..settings };
+    let nobody = ProposalSettings { unit: None, ..settings };
     let refused = propose(&parts, &nobody, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(
         matches!(&refused, ProposalError::NoUnit { path, .. } if path.ends_with("hollow.stl")),

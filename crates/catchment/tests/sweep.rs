@@ -6,7 +6,7 @@ use catchment::design::{Finding, SourceText};
 use catchment::exec::OutOfBudget;
 use catchment::prelude::*;
 use catchment::report::SweepReport;
-use catchment::study::sweep::{Found, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
+use catchment::study::sweep::{Found, Keep, Nowhere, Plan, Sweep, SweepError, SweepSettings};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Mutex;
@@ -25,7 +25,7 @@ fn plan(text: &str, axes: &[&str], cells: &str, samples: usize) -> Result<Plan, 
         ..Run::default()
     };
     let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
-    Plan::new(&SourceText::new("d.toml", text), Settings { axes, run }, Ok)
+    Plan::new(&SourceText::new("d.toml", text), SweepSettings { axes, run }, Ok)
 }
 
 fn family(name: &str, free: &str) -> String {

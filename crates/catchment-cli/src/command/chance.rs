@@ -16,7 +16,7 @@ use catchment::pose::Dof;
 use catchment::poses::{Circumstance, Dynamics, OffsetsAt, PoseTable, parse_draw, parse_pose, read_dynamics};
 use catchment::problem::Problem;
 use catchment::report::figure;
-use catchment::study::chance::{Chance, Question, Settings, run as fall};
+use catchment::study::chance::{Chance, ChanceSettings, Question, run as fall};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -120,9 +120,9 @@ pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl ChanceArgs {
-    fn settings(&self, design: &Design) -> Result<Settings, Failure> {
-        let default = Settings::default();
-        Ok(Settings {
+    fn settings(&self, design: &Design) -> Result<ChanceSettings, Failure> {
+        let default = ChanceSettings::default();
+        Ok(ChanceSettings {
             drop: self.drop.on(default.drop)?,
             dynamics: self.declared(design)?,
             held: !self.drop.pushes(),

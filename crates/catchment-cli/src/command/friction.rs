@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use catchment::report::figure;
-use catchment::study::friction::{FrictionError, Settings, run as follow};
+use catchment::study::friction::{FrictionError, FrictionSettings, run as follow};
 use clap::Args;
 
 /// What friction takes: what docks at each, from which on poses no longer do, and what sticks first
@@ -51,10 +51,10 @@ pub(crate) fn run(args: &FrictionArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl FrictionArgs {
-    fn settings(&self) -> Settings {
-        let default = Settings::default();
+    fn settings(&self) -> FrictionSettings {
+        let default = FrictionSettings::default();
         let frictions = if self.frictions.is_empty() { default.frictions } else { self.frictions.clone() };
-        Settings { frictions, motions: self.motions.map(|motions| motions as usize), seed: self.seed }
+        FrictionSettings { frictions, motions: self.motions.map(|motions| motions as usize), seed: self.seed }
     }
 }
 

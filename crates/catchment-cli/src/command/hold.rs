@@ -10,7 +10,7 @@ use catchment::design::Quantity;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
 use catchment::report::figure;
-use catchment::study::hold::{Hold, HoldError, Settings, run as find};
+use catchment::study::hold::{Hold, HoldError, HoldSettings, run as find};
 use clap::Args;
 
 /// How hard a docked half may be pushed and twisted until it leaves
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl HoldArgs {
-    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+    fn settings(&self, problem: &Problem) -> Result<HoldSettings, Failure> {
         let design = problem.design();
         let length = |option: &str, quantity: &Quantity| {
             quantity
@@ -83,8 +83,8 @@ impl HoldArgs {
             ),
         };
         let play = self.play.as_ref().map(|play| length("--play", play)).transpose()?;
-        let defaults = Settings::default();
-        Ok(Settings {
+        let defaults = HoldSettings::default();
+        Ok(HoldSettings {
             friction: self.friction,
             directions: self.directions as usize,
             lever: length("--lever", &self.lever)?,

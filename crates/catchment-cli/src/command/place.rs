@@ -10,7 +10,7 @@ use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
 use catchment::study::proposal::{
-    Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose, shown_length,
+    Beside, Frames, PartFile, Proposal, ProposalError, ProposalSettings, Way, propose, shown_length,
 };
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
@@ -181,7 +181,7 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     })
 }
 
-fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
+fn settings(args: &PlaceArgs) -> Result<ProposalSettings, Failure> {
     let frames = match args.drawn {
         Drawn::Auto => Frames::Any,
         Drawn::Assembled => Frames::Assembled,
@@ -201,7 +201,7 @@ fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
             help("--drawn facing; parts that are drawn docked have --approach"),
         ));
     }
-    Ok(Settings {
+    Ok(ProposalSettings {
         frames,
         approach: args.approach,
         facing,

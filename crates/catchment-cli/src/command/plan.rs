@@ -15,7 +15,7 @@ use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
 use catchment::report::schema::Timing;
 use catchment::report::{PlanReport, figure};
-use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
+use catchment::study::plan::{Pattern, Plan, PlanError, TrialPlanSettings, panels, run as make};
 use clap::{Args, ValueEnum};
 use std::time::Instant;
 
@@ -158,9 +158,9 @@ pub(super) fn accuracy(text: &str, problem: &Problem) -> Result<PoseError, Failu
 }
 
 impl PlanArgs {
-    fn settings(&self, problem: &Problem, decided_with: f64) -> Result<Settings, Failure> {
+    fn settings(&self, problem: &Problem, decided_with: f64) -> Result<TrialPlanSettings, Failure> {
         let pattern = self.pattern.of(problem)?;
-        Ok(Settings {
+        Ok(TrialPlanSettings {
             symmetric: self.pattern.symmetric,
             repeats: self.repeats as usize,
             blocks: self.blocks as usize,
@@ -168,7 +168,7 @@ impl PlanArgs {
             stop_at_first_failure: self.stop_at_first_failure,
             seed: self.seed,
             friction: self.friction.unwrap_or(decided_with),
-            ..Settings::new(pattern, accuracy(&self.accuracy, problem)?)
+            ..TrialPlanSettings::new(pattern, accuracy(&self.accuracy, problem)?)
         })
     }
 }

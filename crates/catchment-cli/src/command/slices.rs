@@ -12,7 +12,7 @@ use catchment::landscape::Resolution;
 use catchment::pose::Dof;
 use catchment::report::schema::Timing;
 use catchment::report::{SlicesFound, SlicesReport, figure, save_slices};
-use catchment::study::slices::{Settings, SlicesError, ensure_fits, run as compute};
+use catchment::study::slices::{SlicesError, SlicesSettings, ensure_fits, run as compute};
 use catchment::terminal::escaped;
 use clap::Args;
 use std::path::Path;
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let output = args.result.check(SlicesFound::KIND, true)?;
     let problem = args.design.problem()?;
     let settings =
-        Settings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };
+        SlicesSettings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };
     let running = args.exec.start()?;
     let exec = &running.exec;
     let refused = |error| match error {

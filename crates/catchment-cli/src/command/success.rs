@@ -12,7 +12,7 @@ use catchment::design::{Design, Findings};
 use catchment::poses::{Distribution, Robot, Spread};
 use catchment::problem::Problem;
 use catchment::report::figure;
-use catchment::study::success::{Settings, run as follow};
+use catchment::study::success::{SuccessSettings, run as follow};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -94,8 +94,8 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl SuccessArgs {
-    fn settings(&self) -> Settings {
-        Settings {
+    fn settings(&self) -> SuccessSettings {
+        SuccessSettings {
             motions: self.motions.map(|motions| motions as usize),
             seed: self.seed,
             required: self.required,

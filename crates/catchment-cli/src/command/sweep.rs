@@ -18,7 +18,7 @@ use catchment::report::figure::{sweep_map, sweep_outlines};
 use catchment::report::schema::Timing;
 use catchment::report::{Parts, SweepReport};
 use catchment::run::{Over, Run, RunError};
-use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
+use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Sweep, SweepError, SweepSettings};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use std::path::Path;
@@ -116,7 +116,7 @@ fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
         errors: args.errors.distribution(base.design())?,
         ..Run::default()
     };
-    let settings = Settings { axes: args.over.clone(), run };
+    let settings = SweepSettings { axes: args.over.clone(), run };
     Plan::new(&source, settings, |draft| args.design.change(draft)).map_err(refused)
 }
 

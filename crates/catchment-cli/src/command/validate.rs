@@ -17,7 +17,7 @@ use catchment::poses::TriedTable;
 use catchment::report::schema::Timing;
 use catchment::report::{ValidationReport, figure};
 use catchment::study::plan::panels;
-use catchment::study::validate::{Settings, Validation, run as judge};
+use catchment::study::validate::{Validation, ValidationSettings, run as judge};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     running.may_be_left();
     let (problem, decided_with) = args.design.decided(&running.exec)?;
-    let settings = Settings {
+    let settings = ValidationSettings {
         accuracy: accuracy(&args.accuracy, &problem)?,
         limit: args.limit,
         friction: args.friction.unwrap_or(decided_with),

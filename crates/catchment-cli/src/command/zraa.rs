@@ -167,7 +167,7 @@ fn beside(args: &ZraaArgs, method: Method) -> Result<ExitStatus, Failure> {
         figure::ensure_fits(0, &running.exec)?;
     }
     let resolutions = args.resolution.clone();
-    let settings = trials::Settings { method, resolutions, halvings: args.halvings, seed: args.seed };
+    let settings = trials::TrialsSettings { method, resolutions, halvings: args.halvings, seed: args.seed };
     let found = trials::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

@@ -294,7 +294,7 @@ mod tests {
     use catchment_core::method::descent;
     use catchment_core::poses::Tried;
     use catchment_core::problem::Problem;
-    use catchment_study::plan::{Pattern, Settings, panels, run};
+    use catchment_study::plan::{Pattern, TrialPlanSettings, panels, run};
     use catchment_study::validate;
 
     #[test]
@@ -302,7 +302,7 @@ mod tests {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let accuracy = PoseError { x: 0.03, pitch: 0.06, ..PoseError::default() };
         let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
-        let found = run(&problem, &Settings::new(pattern, accuracy), &Exec::new()).unwrap();
+        let found = run(&problem, &TrialPlanSettings::new(pattern, accuracy), &Exec::new()).unwrap();
         let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
         let motions = descent::DescentSettings::default();
         let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
@@ -321,7 +321,8 @@ mod tests {
         };
         let tried: Vec<Tried> = poses.iter().enumerate().map(tried).collect();
         let judged =
-            validate::run(&problem, &tried, &validate::Settings::new(accuracy), &Exec::new()).unwrap();
+            validate::run(&problem, &tried, &validate::ValidationSettings::new(accuracy), &Exec::new())
+                .unwrap();
         let report = ValidationReport::new(problem.design(), judged, Vec::new(), None);
         let picture = validation(&report, &slices);
         look("validation", &picture);

@@ -205,7 +205,7 @@ mod tests {
     use catchment_core::pose::{Dof, PoseError};
     use catchment_core::poses::{Dynamics, Law, Spread};
     use catchment_core::problem::Problem;
-    use catchment_study::chance::{Question, Settings, run};
+    use catchment_study::chance::{ChanceSettings, Question, run};
 
     #[test]
     fn maps_and_curves_are_drawn() {
@@ -213,7 +213,7 @@ mod tests {
         let dynamics = Dynamics::default()
             .with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.2 })
             .with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.5 });
-        let settings = Settings { dynamics, trials: 4, overall: 100, ..Settings::default() };
+        let settings = ChanceSettings { dynamics, trials: 4, overall: 100, ..ChanceSettings::default() };
         let sigma = PoseError { x: 0.2, pitch: 0.4, ..PoseError::default() };
         let asked =
             Question { errors: Some(Spread::normal(sigma)), times: vec![0.1, 4.0], ..Question::default() };

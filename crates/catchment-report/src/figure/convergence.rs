@@ -65,7 +65,7 @@ mod tests {
     use crate::schema::testing::design;
     use catchment_core::method::Method;
     use catchment_core::pose::Dof;
-    use catchment_study::convergence::{Convergence, Settings, StopReason};
+    use catchment_study::convergence::{Convergence, ConvergenceSettings, StopReason};
 
     #[test]
     fn every_method_has_a_line_in_every_chart() {
@@ -91,7 +91,7 @@ mod tests {
             corrected: None,
         };
         let found = Convergence {
-            settings: Settings::default(),
+            settings: ConvergenceSettings::default(),
             unit: "D·rad".to_owned(),
             sequences: Method::on_grids().iter().enumerate().map(sequence).collect(),
         };

@@ -135,7 +135,7 @@ mod tests {
     use catchment_core::exec::Exec;
     use catchment_core::pose::Dof;
     use catchment_core::problem::Problem;
-    use catchment_study::friction::{Settings, run};
+    use catchment_study::friction::{FrictionSettings, run};
 
     /// The curve was that of all poses that dock, those among them that dock only with friction, under a mark that counts the lost alone.
     fn the_curve_is_that_of_the_mark(report: &FrictionReport, picture: &Picture) {
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn the_curve_and_what_sticks_are_drawn() {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
-        let settings = Settings { motions: Some(200), ..Settings::default() };
+        let settings = FrictionSettings { motions: Some(200), ..FrictionSettings::default() };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
         let mut report = FrictionReport::new(problem.design(), found, Vec::new(), None);
         let picture = friction(&report);

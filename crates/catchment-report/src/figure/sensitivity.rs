@@ -45,12 +45,12 @@ mod tests {
     use super::*;
     use crate::schema::testing::design;
     use catchment_core::pose::Dof;
-    use catchment_study::sensitivity::{AtRho, Sensitivity, Settings};
+    use catchment_study::sensitivity::{AtRho, Sensitivity, SensitivitySettings};
 
     #[test]
     fn the_sum_is_drawn_over_rho() {
         let design = design([Dof::X, Dof::Pitch].into_iter().collect());
-        let settings = Settings::default();
+        let settings = SensitivitySettings::default();
         let at = |rho: f64| {
             let sum = 2.0 + 0.4 * (-rho).exp();
             AtRho { rotation_length: rho, sum, ci95: [sum - 0.06, sum + 0.06] }

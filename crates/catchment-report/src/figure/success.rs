@@ -138,7 +138,7 @@ mod tests {
     use catchment_core::pose::{Dof, PoseError};
     use catchment_core::poses::{Robot, Spread};
     use catchment_core::problem::Problem;
-    use catchment_study::success::{Factor, Settings, run};
+    use catchment_study::success::{Factor, SuccessSettings, run};
 
     #[test]
     fn curves_and_gains_are_drawn() {
@@ -147,7 +147,7 @@ mod tests {
             name: name.to_owned(),
             errors: Spread::normal(PoseError { x: sigma, pitch: 2.0 * sigma, ..PoseError::default() }),
         };
-        let settings = Settings { motions: Some(400), required: 0.9, ..Settings::default() };
+        let settings = SuccessSettings { motions: Some(400), required: 0.9, ..SuccessSettings::default() };
         let found = run(&problem, &[robot("arm A", 0.15), robot("arm B", 0.1)], &settings, &Exec::new());
         let report = SuccessesReport::new(problem.design(), found.unwrap(), Vec::new(), None);
         let picture = success(&report);
@@ -166,7 +166,7 @@ mod tests {
         let problem = Problem::of(design([Dof::X].into_iter().collect())).unwrap();
         let errors = Spread::normal(PoseError { x: 0.2, ..PoseError::default() });
         let robots = [Robot { name: "robot".to_owned(), errors }];
-        let settings = Settings { motions: Some(100), ..Settings::default() };
+        let settings = SuccessSettings { motions: Some(100), ..SuccessSettings::default() };
         let found = run(&problem, &robots, &settings, &Exec::new()).unwrap();
         let mut report = SuccessesReport::new(problem.design(), found, Vec::new(), None);
         let all = &mut report.robots[0].tolerable.all;

@@ -230,13 +230,13 @@ mod tests {
     use catchment_core::design::SourceText;
     use catchment_core::exec::Exec;
     use catchment_core::run::{Over, Run, Sample};
-    use catchment_study::sweep::{Nowhere, Plan, Settings};
+    use catchment_study::sweep::{Nowhere, Plan, SweepSettings};
 
     fn swept(text: &str, axes: &[&str]) -> SweepReport {
         let source = SourceText::new("d.toml", text);
         let run = Run { over: Over::Grid("15".parse().unwrap()), sample: Sample::None, ..Run::default() };
         let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
-        let plan = Plan::new(&source, Settings { axes, run }, Ok).unwrap();
+        let plan = Plan::new(&source, SweepSettings { axes, run }, Ok).unwrap();
         let design = plan.base().clone();
         SweepReport::new(&design, plan.run(&Nowhere, &Exec::new()).unwrap(), Vec::new(), None)
     }

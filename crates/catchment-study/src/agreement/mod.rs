@@ -26,7 +26,7 @@ use std::time::Duration;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct AgreementSettings {
     /// The methods, each with its settings.
     pub methods: Vec<Method>,
     /// Cells per axis; an even number that exact descent affords where nothing is said.
@@ -39,7 +39,7 @@ pub struct Settings {
     pub time_limit: Duration,
 }
 
-impl Default for Settings {
+impl Default for AgreementSettings {
     fn default() -> Self {
         Self {
             methods: Method::all().collect(),
@@ -148,7 +148,11 @@ pub fn even_cells(problem: &Problem) -> [usize; 5] {
 ///
 /// # Errors
 /// The resolution does not suit the problem, or it was asked to stop.
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Agreement, AgreementError> {
+pub fn run(
+    problem: &Problem,
+    settings: &AgreementSettings,
+    exec: &Exec,
+) -> Result<Agreement, AgreementError> {
     let grid = settings.resolution.grid(problem.alignment(), &even_cells(problem))?;
     let resolution = Resolution::of(&grid);
     let total = settings.methods.len() as f64;

@@ -3,7 +3,7 @@
 use super::found::{Chance, Declared, Map, PoseChance, PresetOpen};
 use super::spread;
 use super::trial::{Draw, check, nominal};
-use super::{ChanceError, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question, Settings};
+use super::{ChanceError, ChanceSettings, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question};
 use catchment_core::acceptance::{Outcome, Stream};
 use catchment_core::exec::Exec;
 use catchment_core::landscape::Grid;
@@ -23,7 +23,7 @@ pub(super) const OF_ERRORS: u64 = 2;
 /// Everything that trials are made with.
 pub(super) struct Trials<'a> {
     pub(super) problem: &'a Problem,
-    pub(super) settings: &'a Settings,
+    pub(super) settings: &'a ChanceSettings,
     pub(super) bench: Bench<'a>,
     pub(super) nominal: f64,
 }
@@ -41,12 +41,12 @@ pub(super) struct Trials<'a> {
 /// use catchment_core::pose::PoseError;
 /// use catchment_core::poses::{Circumstance, Dynamics, Law};
 /// use catchment_core::problem::Problem;
-/// use catchment_study::chance::{self, Question, Settings};
+/// use catchment_study::chance::{self, Question, ChanceSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
 /// let dynamics = Dynamics::default().with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.2 });
-/// let settings = Settings { dynamics, trials: 10, ..Settings::default() };
+/// let settings = ChanceSettings { dynamics, trials: 10, ..ChanceSettings::default() };
 /// let at = |x: f64| PoseError { x, ..PoseError::default() };
 /// let asked = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };
 /// let found = chance::run(&problem, &asked, &settings, &Exec::new())?;
@@ -57,7 +57,7 @@ pub(super) struct Trials<'a> {
 pub fn run(
     problem: &Problem,
     asked: &Question,
-    settings: &Settings,
+    settings: &ChanceSettings,
     exec: &Exec,
 ) -> Result<Chance, ChanceError> {
     check(problem, settings)?;
@@ -102,7 +102,7 @@ pub fn run(
     })
 }
 
-fn sound(problem: &Problem, asked: &Question, settings: &Settings) -> Result<(), ChanceError> {
+fn sound(problem: &Problem, asked: &Question, settings: &ChanceSettings) -> Result<(), ChanceError> {
     if asked.poses.is_empty() && asked.map.is_empty() && asked.errors.is_none() {
         return Err(ChanceError::Nothing);
     }

@@ -1,6 +1,6 @@
 //! Results of drop tests.
 
-use super::Settings;
+use super::ChanceSettings;
 use crate::success::Stratum;
 use catchment_core::acceptance::Outcome;
 use catchment_core::landscape::GridAxis;
@@ -17,7 +17,7 @@ pub type ByOutcome<N> = [N; Outcome::ALL.len()];
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Chance {
     /// The settings.
-    pub settings: Settings,
+    pub settings: ChanceSettings,
     /// Every declared parameter with its distribution.
     pub declared: Vec<Declared>,
     /// Distance that a half with the mean speed coasts until damping stops it, in D; null without speed or

@@ -55,7 +55,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct ChanceSettings {
     /// Constants of the drop test for all parameters without a distribution; its trials and seed are ignored,
     /// and its push too if the speed is held.
     pub drop: drop::DropSettings,
@@ -75,7 +75,7 @@ pub struct Settings {
 /// Rate at which velocities decay where nothing is said, in 1/s: an arm under force control gives way within a tenth of a second.
 pub const DAMPING: f64 = 10.0;
 
-impl Default for Settings {
+impl Default for ChanceSettings {
     fn default() -> Self {
         let drop = drop::DropSettings {
             damping: DAMPING,
@@ -86,7 +86,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl ChanceSettings {
     /// How far a half coasts that comes with the mean speed, in D; none without damping or speed.
     pub fn coasting(&self) -> Option<f64> {
         let speed = self.dynamics.mean(Circumstance::Speed).unwrap_or(self.drop.launch.speed);
@@ -229,7 +229,7 @@ impl Question {
     }
 
     /// Trials in all.
-    pub fn trials(&self, settings: &Settings) -> usize {
+    pub fn trials(&self, settings: &ChanceSettings) -> usize {
         let cells = self.map.iter().map(|axis| axis.cells).fold(1usize, usize::saturating_mul);
         let cells = if self.map.is_empty() { 0 } else { cells };
         let places = self.poses.len().saturating_add(cells);
@@ -238,7 +238,7 @@ impl Question {
     }
 
     /// That it takes long on so many threads, if it does.
-    pub fn doubt(&self, settings: &Settings, threads: usize) -> Option<String> {
+    pub fn doubt(&self, settings: &ChanceSettings, threads: usize) -> Option<String> {
         let trials = self.trials(settings);
         let seconds = trials as f64 * TRIAL_SECONDS / threads.max(1) as f64;
         (seconds > LONG).then(|| {

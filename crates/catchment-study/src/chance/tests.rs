@@ -31,11 +31,11 @@ fn normal(x: f64, pitch: f64) -> Spread {
     Spread::normal(PoseError { x, pitch, ..PoseError::default() })
 }
 
-fn ask(problem: &Problem, asked: &Question, settings: &Settings) -> Chance {
+fn ask(problem: &Problem, asked: &Question, settings: &ChanceSettings) -> Chance {
     run(problem, asked, settings, &Exec::new()).unwrap()
 }
 
-fn of_poses(problem: &Problem, poses: &[PoseError], settings: &Settings) -> Vec<PoseChance> {
+fn of_poses(problem: &Problem, poses: &[PoseError], settings: &ChanceSettings) -> Vec<PoseChance> {
     ask(problem, &Question { poses: poses.to_vec(), ..Question::default() }, settings).poses
 }
 
@@ -50,7 +50,7 @@ fn what_drifts_lands_where_the_closed_form_says() {
     let dynamics = speed(0.1)
         .with(Circumstance::DriftX, Law::Uniform { from: 0.0, to: 4.0 })
         .with(Circumstance::Height, Law::constant(0.5));
-    let settings = Settings { dynamics, trials: 200, ..Settings::default() };
+    let settings = ChanceSettings { dynamics, trials: 200, ..ChanceSettings::default() };
     let pose = of_poses(&sliding(), &[x(0.3)], &settings)[0];
     assert!(holds(pose.ci95, 0.5), "{pose:?}");
     assert_eq!(pose.quasi_static, 1.0);
@@ -66,7 +66,8 @@ fn slow_halves_have_the_probability_of_the_closed_form() {
     let asked = Question { errors: Some(normal(0.3, 0.0)), ..Question::default() };
     let mut held = 0;
     for seed in 0..20 {
-        let settings = Settings { dynamics: speed(0.02), overall: 100, seed, ..Settings::default() };
+        let settings =
+            ChanceSettings { dynamics: speed(0.02), overall: 100, seed, ..ChanceSettings::default() };
         let found = ask(&sliding(), &asked, &settings).overall.unwrap();
         held += usize::from(holds(found.ci95, exact));
         assert!(holds(found.quasi_static_ci95, exact) || (found.quasi_static - exact).abs() < 0.02);
@@ -85,7 +86,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
             .with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.0 })
             .with(Circumstance::Friction, Law::constant(friction))
             .with(Circumstance::Restitution, Law::constant(0.2));
-        let settings = Settings { dynamics, overall: 300, ..Settings::default() };
+        let settings = ChanceSettings { dynamics, overall: 300, ..ChanceSettings::default() };
         let errors = Some(normal(0.3, 0.5));
         let asked = Question { errors, times: vec![16.0, 0.01], ..Question::default() };
         let found = ask(&problem, &asked, &settings);
@@ -113,7 +114,8 @@ fn a_given_push_is_taken_as_it_is() {
         ..drop::DropSettings::default()
     };
     let dynamics = speed(2.0).with(Circumstance::DriftX, Law::constant(3.0));
-    let settings = Settings { drop: drop.clone(), dynamics, held: false, trials: 1, ..Settings::default() };
+    let settings =
+        ChanceSettings { drop: drop.clone(), dynamics, held: false, trials: 1, ..ChanceSettings::default() };
     let by_hand =
         drop::DropSettings { launch: Launch { speed: 2.0, drift: [3.0, 0.0], spin: [0.0; 3] }, ..drop };
     let bench = drop::Bench::new(problem.pair()).unwrap();
@@ -135,9 +137,9 @@ fn a_heavy_half_coasts_as_a_fast_one() {
         let law = Law::Measured { measured: vec![mass, mass] };
         // Its mean is that of the settings where the law is a constant.
         let nominal = Law::Measured { measured: vec![1.0] };
-        let drop = drop::DropSettings { perturbation: 0.0, ..Settings::default().drop };
+        let drop = drop::DropSettings { perturbation: 0.0, ..ChanceSettings::default().drop };
         let dynamics = Dynamics::default().with(Circumstance::Mass, nominal);
-        let settings = Settings { drop, dynamics, ..Settings::default() };
+        let settings = ChanceSettings { drop, dynamics, ..ChanceSettings::default() };
         let dynamics = Dynamics::default()
             .with(Circumstance::Speed, Law::constant(speed))
             .with(Circumstance::DriftX, Law::constant(2.0 * speed))
@@ -164,7 +166,7 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     let dynamics = Dynamics::default()
         .with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.3 })
         .with(Circumstance::Friction, Law::Uniform { from: 0.0, to: 0.3 });
-    let settings = Settings { dynamics, trials: 8, overall: 100, ..Settings::default() };
+    let settings = ChanceSettings { dynamics, trials: 8, overall: 100, ..ChanceSettings::default() };
     let axis = |dof, cells| GridAxis { dof, lo: -0.6, hi: 0.6, cells };
     let poses = vec![x(0.3), x(0.45), PoseError { pitch: 0.4, ..x(0.2) }];
     let asked = Question {
@@ -188,7 +190,7 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     let map = one.map.unwrap();
     assert_eq!(map.cells.len(), 6);
     assert!((map.cells[0].error.x + 0.4).abs() < 1e-12 && (map.cells[1].error.x).abs() < 1e-12);
-    let other = Settings { seed: 2, ..settings };
+    let other = ChanceSettings { seed: 2, ..settings };
     assert_ne!(ask(&problem, &asked, &other).overall, one.overall);
 }
 
@@ -197,7 +199,7 @@ fn neither_threads_nor_other_poses_change_a_bit() {
 fn mirror_images_are_as_likely() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     let dynamics = speed(2.0).with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.0 });
-    let settings = Settings { dynamics, trials: 60, ..Settings::default() };
+    let settings = ChanceSettings { dynamics, trials: 60, ..ChanceSettings::default() };
     for [at, pitch] in [[0.4, 0.2], [0.3, -0.5], [0.5, 0.3]] {
         let pose = |side: f64| PoseError { pitch: side * pitch, ..x(side * at) };
         let [one, other] = of_poses(&problem, &[pose(1.0), pose(-1.0)], &settings)[..] else { panic!() };
@@ -222,29 +224,29 @@ fn the_majority_of_three_errs_seldom() {
 fn what_is_asked_in_vain_is_refused() {
     let problem = sliding();
     let pose = || Question { poses: vec![x(0.1)], ..Question::default() };
-    let refused = |asked: &Question, settings: &Settings| {
+    let refused = |asked: &Question, settings: &ChanceSettings| {
         run(&problem, asked, settings, &Exec::new()).unwrap_err().to_string()
     };
-    let sound = Settings { dynamics: speed(1.0), ..Settings::default() };
+    let sound = ChanceSettings { dynamics: speed(1.0), ..ChanceSettings::default() };
     assert!(refused(&Question::default(), &sound).starts_with("nothing is asked"));
-    assert!(refused(&pose(), &Settings::default()).contains("approach speed may be 0"));
-    let stands = Settings { dynamics: speed(0.0), ..Settings::default() };
+    assert!(refused(&pose(), &ChanceSettings::default()).contains("approach speed may be 0"));
+    let stands = ChanceSettings { dynamics: speed(0.0), ..ChanceSettings::default() };
     assert!(refused(&pose(), &stands).contains("approach speed may be 0"));
     let mut undamped = sound.clone();
     undamped.drop.damping = 0.0;
     assert!(refused(&pose(), &undamped).contains("without damping"));
     let turns = speed(1.0).with(Circumstance::SpinYaw, Law::constant(1.0));
-    let turning = Settings { dynamics: turns, ..Settings::default() };
+    let turning = ChanceSettings { dynamics: turns, ..ChanceSettings::default() };
     assert!(refused(&pose(), &turning).contains("spin_yaw is declared, and the design locks yaw"));
-    assert!(refused(&pose(), &Settings { trials: 0, ..sound.clone() }).contains("too few"));
-    assert!(refused(&pose(), &Settings { trials: 1 << 40, ..sound.clone() }).contains("days"));
+    assert!(refused(&pose(), &ChanceSettings { trials: 0, ..sound.clone() }).contains("too few"));
+    assert!(refused(&pose(), &ChanceSettings { trials: 1 << 40, ..sound.clone() }).contains("days"));
     let errors =
         |errors: Spread, times: Vec<f64>| Question { errors: Some(errors), times, ..Question::default() };
     assert!(refused(&errors(normal(0.1, 0.1), Vec::new()), &sound).contains("pitch does not vary"));
     assert!(refused(&errors(normal(0.0, 0.0), Vec::new()), &sound).contains("none of the expected errors"));
     assert!(refused(&errors(normal(0.1, 0.0), vec![0.0]), &sound).contains("multiplied by 0"));
     assert!(refused(&errors(normal(0.1, 0.0), vec![f64::NAN]), &sound).contains("multiplied by NaN"));
-    let few = Settings { overall: 10, ..sound.clone() };
+    let few = ChanceSettings { overall: 10, ..sound.clone() };
     assert!(refused(&errors(normal(0.1, 0.0), Vec::new()), &few).contains("10 trials"));
     let yaw = GridAxis { dof: Dof::Yaw, lo: -1.0, hi: 1.0, cells: 3 };
     assert!(

@@ -1,6 +1,6 @@
 //! A trial: its random draw, and the resulting settings.
 
-use super::{ChanceError, Settings};
+use super::{ChanceError, ChanceSettings};
 use catchment_core::acceptance::Stream;
 use catchment_core::method::drop::{self, Bench, Body, Launch, Push};
 use catchment_core::pose::{Dof, PoseError};
@@ -37,12 +37,12 @@ impl Draw {
     }
 
     /// Friction between the halves in a trial.
-    pub(super) fn friction(&self, settings: &Settings) -> f64 {
+    pub(super) fn friction(&self, settings: &ChanceSettings) -> f64 {
         self.get(Circumstance::Friction).unwrap_or(settings.drop.friction)
     }
 
     /// Where a trial starts that is of this pose.
-    pub(super) fn start(&self, problem: &Problem, settings: &Settings, error: &PoseError) -> PoseError {
+    pub(super) fn start(&self, problem: &Problem, settings: &ChanceSettings, error: &PoseError) -> PoseError {
         let alignment = problem.alignment();
         let mut start = error.to_array();
         for dof in alignment.free.iter() {
@@ -53,7 +53,12 @@ impl Draw {
     }
 
     /// The settings of a trial, with every velocity times `factor`; `nominal` is the mass whose damping is declared, in kg.
-    pub(super) fn settings(&self, settings: &Settings, factor: f64, nominal: f64) -> drop::DropSettings {
+    pub(super) fn settings(
+        &self,
+        settings: &ChanceSettings,
+        factor: f64,
+        nominal: f64,
+    ) -> drop::DropSettings {
         let mut drop = settings.drop.clone();
         let of = |of: Circumstance, rest: f64| self.get(of).unwrap_or(rest);
         let mass = of(Circumstance::Mass, nominal);
@@ -92,7 +97,7 @@ impl Draw {
 }
 
 /// The mass whose damping is declared: the mean of the law, or what the settings say, in kg.
-pub(super) fn nominal(settings: &Settings, bench: &Bench<'_>) -> f64 {
+pub(super) fn nominal(settings: &ChanceSettings, bench: &Bench<'_>) -> f64 {
     settings.dynamics.mean(Circumstance::Mass).unwrap_or_else(|| bench.mass(&settings.drop))
 }
 
@@ -109,7 +114,7 @@ const fn moves(of: Circumstance) -> Option<Dof> {
 }
 
 /// Refuses laws that no trial can be made with.
-pub(super) fn check(problem: &Problem, settings: &Settings) -> Result<(), ChanceError> {
+pub(super) fn check(problem: &Problem, settings: &ChanceSettings) -> Result<(), ChanceError> {
     settings.drop.check().map_err(|error| ChanceError::Drop(error.into()))?;
     for (of, _) in settings.dynamics.declared() {
         if let Some(axis) = moves(of).filter(|axis| !problem.alignment().free.contains(*axis)) {

@@ -25,7 +25,7 @@ use serde::Serialize;
 /// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct ConvergenceSettings {
     /// Largest change that counts as stable: as a share of the Sum, and as a share of the error box's edge
     /// for the ONAA.
     pub tolerance: f64,
@@ -48,7 +48,7 @@ fn names<S: serde::Serializer>(methods: &[Method], serializer: S) -> Result<S::O
     serializer.collect_seq(methods.iter().map(Method::name))
 }
 
-impl Default for Settings {
+impl Default for ConvergenceSettings {
     fn default() -> Self {
         Self {
             tolerance: 0.01,
@@ -120,7 +120,7 @@ pub enum StopReason {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Convergence {
     /// Settings that change the result.
-    pub settings: Settings,
+    pub settings: ConvergenceSettings,
     /// Unit of the Sums, like `D²·rad³`.
     pub unit: String,
     /// The sequence of each method.
@@ -148,14 +148,20 @@ const FIRST: [usize; 5] = [51, 11, 9, 7, 5];
 ///
 /// # Errors
 /// A tolerance that is none, a coarsest grid that does not fit into memory, a cancelled run.
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Convergence, ConvergenceError> {
+pub fn run(
+    problem: &Problem,
+    settings: &ConvergenceSettings,
+    exec: &Exec,
+) -> Result<Convergence, ConvergenceError> {
     let tolerance = settings.tolerance;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(ConvergenceError::Tolerance { tolerance });
     }
     let affordable = || descent::DescentSettings::default().default_samples(problem.pair());
-    let settings =
-        &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
+    let settings = &ConvergenceSettings {
+        descents: Some(settings.descents.unwrap_or_else(affordable)),
+        ..settings.clone()
+    };
     let total = settings.methods.len() as f64;
     let sequences = settings
         .methods
@@ -174,7 +180,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Conver
 fn sequence(
     method: &Method,
     problem: &Problem,
-    settings: &Settings,
+    settings: &ConvergenceSettings,
     exec: &Exec,
 ) -> Result<Sequence, ConvergenceError> {
     let axes = problem.alignment().free.len().clamp(1, 5);
@@ -280,11 +286,11 @@ mod tests {
     #[test]
     fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
         let problem = problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
-        let settings = Settings {
+        let settings = ConvergenceSettings {
             tolerance: 0.1,
             time_limit_s: f64::INFINITY,
             descents: Some(200),
-            ..Settings::default()
+            ..ConvergenceSettings::default()
         };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
         assert_eq!(
@@ -302,7 +308,8 @@ mod tests {
                 assert!(t.bracket[0] <= t.sum && t.sum <= t.bracket[1]);
             }
         }
-        let few = Settings { most_cells: 300, tolerance: 1e-9, descents: Some(0), ..settings.clone() };
+        let few =
+            ConvergenceSettings { most_cells: 300, tolerance: 1e-9, descents: Some(0), ..settings.clone() };
         let found = run(&problem, &few, &Exec::new()).unwrap();
         assert!(
             found
@@ -310,20 +317,20 @@ mod tests {
                 .iter()
                 .all(|s| s.end == StopReason::Cells { resolution: 21 } && s.trials.len() == 2)
         );
-        let hasty = Settings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
+        let hasty = ConvergenceSettings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &hasty, &Exec::new()).unwrap();
         let once =
             |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
         assert!(found.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
-        let strict = Settings { tolerance: 1e-9, ..settings.clone() };
+        let strict = ConvergenceSettings { tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &strict, &small).unwrap();
         assert!(found.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{found:?}");
         assert!(matches!(
             run(&problem, &settings, &Exec::new().with_memory_budget(10)),
             Err(ConvergenceError::Refinement(RefinementError::OutOfBudget(_)))
         ));
-        let none = Settings { tolerance: 0.0, ..settings };
+        let none = ConvergenceSettings { tolerance: 0.0, ..settings };
         assert!(matches!(run(&problem, &none, &Exec::new()), Err(ConvergenceError::Tolerance { .. })));
     }
 }

@@ -50,7 +50,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct FrictionSettings {
     /// Friction coefficients at which poses are followed, besides 0.
     pub frictions: Vec<f64>,
     /// Number of poses sampled from the error box. Default: 1000 for simple halves, fewer for halves with
@@ -60,7 +60,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-impl Default for Settings {
+impl Default for FrictionSettings {
     fn default() -> Self {
         Self { frictions: vec![0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5], motions: None, seed: 1 }
     }
@@ -81,7 +81,7 @@ const AT_LEAST: usize = 20;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Friction {
     /// The settings, with all defaults filled in.
-    pub settings: Settings,
+    pub settings: FrictionSettings,
     /// Number of poses sampled from the error box, the same at every friction coefficient.
     pub motions: usize,
     /// Outcomes of the poses at every friction coefficient, 0 first.
@@ -210,11 +210,11 @@ struct Way {
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::problem::Problem;
-/// use catchment_study::friction::{self, Settings};
+/// use catchment_study::friction::{self, FrictionSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let settings = Settings { frictions: vec![0.1, 0.3], motions: Some(100), seed: 1 };
+/// let settings = FrictionSettings { frictions: vec![0.1, 0.3], motions: Some(100), seed: 1 };
 /// let found = friction::run(&problem, &settings, &Exec::new())?;
 /// // The facets of this V-Face have a slope of 0.2: half of the box docks below it, and nothing above
 /// assert_eq!(found.curve[1].lost, 0);
@@ -223,7 +223,7 @@ struct Way {
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Friction, FrictionError> {
+pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Result<Friction, FrictionError> {
     let settings = settings.filled(problem)?;
     let Domain::Poses(poses) =
         Domain::random(problem.alignment(), settings.motions.unwrap_or_default(), settings.seed)
@@ -269,7 +269,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Fricti
     })
 }
 
-impl Settings {
+impl FrictionSettings {
     /// Everything filled in, the ladder from below.
     fn filled(&self, problem: &Problem) -> Result<Self, FrictionError> {
         for friction in &self.frictions {

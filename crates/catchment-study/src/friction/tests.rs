@@ -13,7 +13,7 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
         );
         let problem = Problem::of(catchment_core::design::read(&text, ".".as_ref()).unwrap().design).unwrap();
         let settings =
-            Settings { frictions: vec![0.1, 0.15, 1.05 * slope, 0.4], motions: Some(200), seed: 2 };
+            FrictionSettings { frictions: vec![0.1, 0.15, 1.05 * slope, 0.4], motions: Some(200), seed: 2 };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
         let docked = found.curve[0].aligned.count;
         assert!(docked > 50);
@@ -48,7 +48,7 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
 #[test]
 fn tallies_add_up_and_threads_change_nothing() {
     let problem = problem(Family::XFace3d, DofSet::ALL);
-    let settings = Settings { frictions: vec![0.3, 0.1, 0.3, 0.0], motions: Some(120), seed: 3 };
+    let settings = FrictionSettings { frictions: vec![0.3, 0.1, 0.3, 0.0], motions: Some(120), seed: 3 };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let found = with(1);
     assert_eq!(found, with(2));
@@ -110,9 +110,15 @@ fn the_interval_of_a_quantile_holds_it() {
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let problem = problem(Family::VFace, [Dof::X].into_iter().collect());
-    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
-    let base = Settings { motions: Some(10), ..Settings::default() };
-    assert_eq!(refused(Settings { motions: Some(0), ..base.clone() }), FrictionError::NoMotions);
-    assert_eq!(refused(Settings { frictions: vec![0.0], ..base.clone() }), FrictionError::NoFrictions);
-    assert!(matches!(refused(Settings { frictions: vec![-0.1], ..base }), FrictionError::Friction(_)));
+    let refused = |settings: FrictionSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    let base = FrictionSettings { motions: Some(10), ..FrictionSettings::default() };
+    assert_eq!(refused(FrictionSettings { motions: Some(0), ..base.clone() }), FrictionError::NoMotions);
+    assert_eq!(
+        refused(FrictionSettings { frictions: vec![0.0], ..base.clone() }),
+        FrictionError::NoFrictions
+    );
+    assert!(matches!(
+        refused(FrictionSettings { frictions: vec![-0.1], ..base }),
+        FrictionError::Friction(_)
+    ));
 }

@@ -44,7 +44,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct HoldSettings {
     /// Friction coefficient between the halves; 0 for a frictionless contact.
     pub friction: f64,
     /// Number of lateral directions that are tried if both x and y are free.
@@ -57,7 +57,7 @@ pub struct Settings {
     pub pose: Option<PoseError>,
 }
 
-impl Default for Settings {
+impl Default for HoldSettings {
     fn default() -> Self {
         Self { friction: 0.0, directions: 72, lever: 0.0, play: TOUCHING, pose: None }
     }
@@ -132,7 +132,7 @@ pub struct Weakest {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hold {
     /// The settings.
-    pub settings: Settings,
+    pub settings: HoldSettings,
     /// The preload, in N; null if it is not known. If it is, texts state forces in N.
     pub preload_n: Option<f64>,
     /// Pose error of the rest.
@@ -203,18 +203,18 @@ pub enum HoldError {
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::problem::Problem;
-/// use catchment_study::hold::{self, Settings};
+/// use catchment_study::hold::{self, HoldSettings};
 ///
 /// // Flanks of slope 2 AR.
 /// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 1.0\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let found = hold::run(&problem, &Settings::default(), &Exec::new())?;
+/// let found = hold::run(&problem, &HoldSettings::default(), &Exec::new())?;
 /// let guided = found.sideways[0].withstood.smooth.and_then(|of| of.guided);
 /// assert!((guided.unwrap_or_default() - 1.0).abs() < 1e-6);
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Hold, HoldError> {
+pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Hold, HoldError> {
     let motion = settings.check()?;
     let pair = problem.pair();
     let (pose, outcome, rest) = match &settings.pose {
@@ -310,7 +310,7 @@ const COLUMNS: usize = 4;
 /// The weakest direction is found to so much of the step between two that are tried.
 const FINEST: f64 = 1e-4;
 
-impl Settings {
+impl HoldSettings {
     fn check(&self) -> Result<descent::DescentSettings, HoldError> {
         if !(DIRECTIONS[0]..=DIRECTIONS[1]).contains(&self.directions) {
             return Err(HoldError::Directions { directions: self.directions });

@@ -13,7 +13,7 @@ fn problem(connector: &str, rest: &str) -> Problem {
     Problem::of(read(&text, Path::new("")).unwrap().design).unwrap()
 }
 
-fn found(problem: &Problem, settings: &Settings) -> Hold {
+fn found(problem: &Problem, settings: &HoldSettings) -> Hold {
     run(problem, settings, &Exec::new()).unwrap()
 }
 
@@ -30,7 +30,7 @@ fn free(of: &Both) -> f64 {
 fn the_spatial_x_face_at_thirty_degrees() {
     let ratio = 3f64.sqrt().recip();
     let problem = problem(&format!("family = \"x-face-3d\"\naspect_ratio = {ratio}"), "");
-    let found = found(&problem, &Settings::default());
+    let found = found(&problem, &HoldSettings::default());
     for side in &found.sideways {
         // |x| + |y| = AR bounds what is withstood, as h = AR·max(|x|, |y|).
         let expected = ratio / (side.direction_rad.cos().abs() + side.direction_rad.sin().abs());
@@ -50,7 +50,7 @@ fn the_spatial_x_face_at_thirty_degrees() {
 #[test]
 fn columns_are_in_order_and_sides_alike() {
     let problem = problem("family = \"pyramid\"\naspect_ratio = 0.5", "center_of_rotation = 0.3\n");
-    let settings = Settings { friction: 0.2, directions: 24, ..Settings::default() };
+    let settings = HoldSettings { friction: 0.2, directions: 24, ..HoldSettings::default() };
     let found = found(&problem, &settings);
     let all =
         found.sideways.iter().map(|side| side.withstood).chain(found.torques.iter().map(|t| t.withstood));
@@ -80,7 +80,7 @@ fn a_long_lever_tips_it() {
                 [docked]\nx = 1.0\n[errors]\nx = 0.1\n";
     let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
     let at = |lever: f64| {
-        let settings = Settings { lever, friction: 0.4, ..Settings::default() };
+        let settings = HoldSettings { lever, friction: 0.4, ..HoldSettings::default() };
         found(&problem, &settings).sideways[0].withstood.rough.unwrap().free.unwrap()
     };
     // Slides at the friction, or tips about the edge.
@@ -93,9 +93,9 @@ fn a_long_lever_tips_it() {
 fn a_half_is_held_where_it_comes_to_rest() {
     let problem = problem("family = \"v-face\"\naspect_ratio = 1.0", "");
     let pose = PoseError { x: 0.1, pitch: 0.05, ..PoseError::default() };
-    let home = found(&problem, &Settings { pose: Some(pose), ..Settings::default() });
+    let home = found(&problem, &HoldSettings { pose: Some(pose), ..HoldSettings::default() });
     assert_eq!(home.outcome, Outcome::Aligned);
-    let mated = found(&problem, &Settings::default());
+    let mated = found(&problem, &HoldSettings::default());
     for (a, b) in home.sideways.iter().zip(&mated.sideways) {
         assert!((guided(&a.withstood) - guided(&b.withstood)).abs() < 1e-3, "{a:?} {b:?}");
     }
@@ -106,9 +106,9 @@ fn a_half_is_held_where_it_comes_to_rest() {
     ] {
         let problem = self::problem(connector, "");
         for friction in [0.0, 0.2] {
-            let settings = Settings { friction, directions: 8, ..Settings::default() };
+            let settings = HoldSettings { friction, directions: 8, ..HoldSettings::default() };
             let mated = found(&problem, &settings);
-            let home = found(&problem, &Settings { pose: Some(PoseError::from_array(pose)), ..settings });
+            let home = found(&problem, &HoldSettings { pose: Some(PoseError::from_array(pose)), ..settings });
             for (a, b) in home.sideways.iter().zip(&mated.sideways) {
                 let (a, b) = (guided(&a.withstood), guided(&b.withstood));
                 assert!((a - b).abs() < 1e-6, "{connector}, friction {friction}: {a} {b}");
@@ -116,30 +116,33 @@ fn a_half_is_held_where_it_comes_to_rest() {
         }
     }
     let off = PoseError { x: 3.0, ..PoseError::default() };
-    let refused = run(&problem, &Settings { pose: Some(off), ..Settings::default() }, &Exec::new());
+    let refused = run(&problem, &HoldSettings { pose: Some(off), ..HoldSettings::default() }, &Exec::new());
     assert_eq!(refused.unwrap_err(), HoldError::NoRest { outcome: Outcome::Missed });
 }
 
 #[test]
 fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
     let problem = problem("family = \"pyramid\"", "");
-    let settings = Settings { friction: 0.1, directions: 12, ..Settings::default() };
+    let settings = HoldSettings { friction: 0.1, directions: 12, ..HoldSettings::default() };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let one = with(1);
     assert_eq!(one, with(2));
     assert_eq!(one, with(4));
-    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
-    let default = Settings::default;
-    assert!(matches!(refused(Settings { friction: -0.1, ..default() }), HoldError::Friction(_)));
+    let refused = |settings: HoldSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    let default = HoldSettings::default;
+    assert!(matches!(refused(HoldSettings { friction: -0.1, ..default() }), HoldError::Friction(_)));
     assert!(matches!(
-        refused(Settings { directions: 3, ..default() }),
+        refused(HoldSettings { directions: 3, ..default() }),
         HoldError::Directions { directions: 3 }
     ));
     assert!(matches!(
-        refused(Settings { lever: f64::NAN, ..default() }),
+        refused(HoldSettings { lever: f64::NAN, ..default() }),
         HoldError::Length { what: "lever", .. }
     ));
-    assert!(matches!(refused(Settings { play: 0.0, ..default() }), HoldError::Length { what: "play", .. }));
+    assert!(matches!(
+        refused(HoldSettings { play: 0.0, ..default() }),
+        HoldError::Length { what: "play", .. }
+    ));
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(matches!(run(&problem, &settings, &exec), Err(HoldError::Cancelled(_))));

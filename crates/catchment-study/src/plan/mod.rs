@@ -45,7 +45,7 @@ use crate::validate::LIMIT;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct TrialPlanSettings {
     /// Pattern of the trial poses.
     pub pattern: Pattern,
     /// Standard deviation of each error of the robot, in D and radians; 0 for exact errors.
@@ -66,7 +66,7 @@ pub struct Settings {
     pub friction: f64,
 }
 
-impl Settings {
+impl TrialPlanSettings {
     /// A pattern for a robot of this accuracy; everything tried once, in random order.
     pub const fn new(pattern: Pattern, accuracy: PoseError) -> Self {
         Self {
@@ -91,7 +91,7 @@ pub const MOST_TRIALS: usize = 10_000;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Plan {
     /// The settings.
-    pub settings: Settings,
+    pub settings: TrialPlanSettings,
     /// The point of the moving half at which the table for the robot gives x and y; the offsets of this
     /// report are those of the face centre.
     pub offsets_at: OffsetsAt,
@@ -257,13 +257,13 @@ const STAGE: &str = "motions";
 /// use catchment_core::exec::Exec;
 /// use catchment_core::pose::PoseError;
 /// use catchment_core::problem::Problem;
-/// use catchment_study::plan::{self, Pattern, Settings};
+/// use catchment_study::plan::{self, Pattern, TrialPlanSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
 /// let accuracy = PoseError { x: 0.01, ..PoseError::default() };
 /// let pattern = Pattern::Bracket { trials: 6, lines: None, resolution: [None; 5] };
-/// let plan = plan::run(&problem, &Settings::new(pattern, accuracy), &Exec::new())?;
+/// let plan = plan::run(&problem, &TrialPlanSettings::new(pattern, accuracy), &Exec::new())?;
 /// // Without rotations a V-Face corrects offsets up to D/2: two accuracies inside and outside on either side, and two controls.
 /// let mut x: Vec<f64> = plan.points.iter().map(|point| (1e3 * point.error.x).round() / 1e3).collect();
 /// x.sort_by(f64::total_cmp);
@@ -271,7 +271,7 @@ const STAGE: &str = "motions";
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, PlanError> {
+pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Result<Plan, PlanError> {
     check_accuracy(problem, &settings.accuracy)?;
     for (count, what) in [(settings.repeats, "repeats"), (settings.blocks, "blocks")] {
         if count == 0 {
@@ -401,7 +401,7 @@ fn other_signs(
 }
 
 /// The order of the trials: every pose once, then again; each time shuffled by itself. Blocks are runs of that order.
-fn order(points: usize, settings: &Settings) -> Vec<Trial> {
+fn order(points: usize, settings: &TrialPlanSettings) -> Vec<Trial> {
     let total = points * settings.repeats;
     let mut trials = Vec::with_capacity(total);
     for repeat in 1..=settings.repeats {

@@ -19,14 +19,14 @@ fn offsets(problem: &Problem, value: f64) -> PoseError {
     PoseError { x: mm(problem, value), y: mm(problem, value), ..PoseError::default() }
 }
 
-fn planned(problem: &Problem, settings: &Settings) -> Plan {
+fn planned(problem: &Problem, settings: &TrialPlanSettings) -> Plan {
     run(problem, settings, &Exec::new()).unwrap()
 }
 
-fn x_face_lattice(problem: &Problem) -> Settings {
+fn x_face_lattice(problem: &Problem) -> TrialPlanSettings {
     let step = [Some(mm(problem, 5.0)), Some(mm(problem, 5.0)), None, None, None];
     let pattern = Pattern::Lattice { step, max: [None; 5], along_border: true };
-    Settings { symmetric: true, ..Settings::new(pattern, offsets(problem, 1.0)) }
+    TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(pattern, offsets(problem, 1.0)) }
 }
 
 /// Sliding alone a 3-D X-Face docks from |x| + |y| < D. Of the lattice of 5 mm in a quadrant, 13 points have x + y = 60 mm (3.89 mm inside), 14 have 65 mm
@@ -69,7 +69,10 @@ fn the_grid_of_the_pyramid_has_150_points_of_which_96_dock() {
         max: [Some(inch), Some(inch), None, None, Some(30f64.to_radians())],
     };
     let accuracy = PoseError { yaw: 0.1f64.to_radians(), ..offsets(&problem, 0.1) };
-    let plan = planned(&problem, &Settings { symmetric: true, ..Settings::new(pattern.clone(), accuracy) });
+    let plan = planned(
+        &problem,
+        &TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(pattern.clone(), accuracy) },
+    );
     assert_eq!(plan.points.len(), 150);
     let on_border = |point: &Point| point.error.x.max(point.error.y) > 0.5 - 1e-9;
     for point in &plan.points {
@@ -84,7 +87,11 @@ fn the_grid_of_the_pyramid_has_150_points_of_which_96_dock() {
     // Lines along x end with the first failure: of each yaw 4 rows of 5, and of the row on the border its first pose.
     let stopped = planned(
         &problem,
-        &Settings { symmetric: true, stop_at_first_failure: true, ..Settings::new(pattern, accuracy) },
+        &TrialPlanSettings {
+            symmetric: true,
+            stop_at_first_failure: true,
+            ..TrialPlanSettings::new(pattern, accuracy)
+        },
     );
     assert_eq!(stopped.points.len(), 6 * (4 * 5 + 1));
 }
@@ -134,7 +141,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
     let pitch: Vec<f64> = (0..=20).map(|k| (2.25 * f64::from(k)).to_radians()).collect();
     let yaw = vec![0.0, 20f64.to_radians()];
     let accuracy = PoseError { x: mm(&problem, 1.2), ..PoseError::default() };
-    let plan = planned(&problem, &Settings::new(Pattern::Arc { lever, pitch, yaw }, accuracy));
+    let plan = planned(&problem, &TrialPlanSettings::new(Pattern::Arc { lever, pitch, yaw }, accuracy));
     assert_eq!((plan.points.len(), plan.points.iter().map(|p| p.line).max()), (42, Some(2)));
     for Point { error, .. } in &plan.points {
         let back = lever * error.pitch.sin();
@@ -148,7 +155,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
     assert_eq!((docking(1), docking(2)), (7, 8));
     // Another joint would have to move sideways what is locked.
     let elsewhere = Pattern::Arc { lever: 0.5 * lever, pitch: vec![0.3], yaw: vec![0.2] };
-    let refused = run(&problem, &Settings::new(elsewhere, accuracy), &Exec::new()).unwrap_err();
+    let refused = run(&problem, &TrialPlanSettings::new(elsewhere, accuracy), &Exec::new()).unwrap_err();
     assert!(matches!(refused, PlanError::JointElsewhere { axis: Dof::Y, .. }), "{refused}");
 }
 
@@ -160,10 +167,12 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     let half = [Some(0.5 * step), Some(0.5 * step), None, None, None];
     let exact = offsets(&problem, 0.2);
     let grid = Pattern::Grid { steps: [Some(17), Some(17), None, None, None], max: [None; 5] };
-    let grid = planned(&problem, &Settings { symmetric: true, ..Settings::new(grid, exact) });
+    let grid =
+        planned(&problem, &TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(grid, exact) });
     let lines = 13;
     let bracket = Pattern::Bracket { trials: 32, lines: Some(lines), resolution: half };
-    let bracket = planned(&problem, &Settings { symmetric: true, ..Settings::new(bracket, exact) });
+    let bracket =
+        planned(&problem, &TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(bracket, exact) });
     // Along each line the widest gap between the last pose that docks and the first that does not.
     let uncertainty = |plan: &Plan| {
         let mut widths = Vec::new();
@@ -193,7 +202,8 @@ fn threads_change_nothing_and_every_pose_is_tried_as_often() {
     let problem = problem("v-face.toml");
     let accuracy = PoseError { x: 0.01, pitch: 0.02, ..PoseError::default() };
     let pattern = Pattern::Bracket { trials: 26, lines: None, resolution: [None; 5] };
-    let settings = Settings { repeats: 3, blocks: 4, seed: 7, ..Settings::new(pattern, accuracy) };
+    let settings =
+        TrialPlanSettings { repeats: 3, blocks: 4, seed: 7, ..TrialPlanSettings::new(pattern, accuracy) };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let plan = with(1);
     assert!(plan == with(2) && plan == with(4));
@@ -241,20 +251,20 @@ fn what_cannot_be_planned_is_refused() {
     let problem = problem("v-face.toml");
     let accuracy = PoseError { x: 0.01, ..PoseError::default() };
     let grid = Pattern::Grid { steps: [Some(3), None, None, None, None], max: [None; 5] };
-    let with = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
-    let none = Settings::new(grid.clone(), PoseError::default());
+    let with = |settings: TrialPlanSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    let none = TrialPlanSettings::new(grid.clone(), PoseError::default());
     assert!(matches!(with(none), PlanError::NoAccuracy));
-    let locked = Settings::new(grid.clone(), PoseError { yaw: 0.1, ..accuracy });
+    let locked = TrialPlanSettings::new(grid.clone(), PoseError { yaw: 0.1, ..accuracy });
     assert!(matches!(with(locked), PlanError::Accuracy { axis: Dof::Yaw, .. }));
     assert!(matches!(
-        with(Settings { repeats: 0, ..Settings::new(grid.clone(), accuracy) }),
+        with(TrialPlanSettings { repeats: 0, ..TrialPlanSettings::new(grid.clone(), accuracy) }),
         PlanError::None { .. }
     ));
     assert!(matches!(
-        with(Settings { friction: -1.0, ..Settings::new(grid, accuracy) }),
+        with(TrialPlanSettings { friction: -1.0, ..TrialPlanSettings::new(grid, accuracy) }),
         PlanError::Friction(_)
     ));
-    let pattern = |pattern| with(Settings::new(pattern, accuracy));
+    let pattern = |pattern| with(TrialPlanSettings::new(pattern, accuracy));
     assert!(matches!(pattern(Pattern::Grid { steps: [None; 5], max: [None; 5] }), PlanError::Nothing));
     let many = [Some(5000), None, None, Some(5000), None];
     assert!(matches!(pattern(Pattern::Grid { steps: many, max: [None; 5] }), PlanError::TooMany { .. }));
@@ -283,7 +293,7 @@ fn a_bracket_has_the_trials_that_were_asked_for() {
     ] {
         let problem = problem(design);
         let pattern = Pattern::Bracket { trials, lines: None, resolution: [None; 5] };
-        let plan = planned(&problem, &Settings::new(pattern, accuracy));
+        let plan = planned(&problem, &TrialPlanSettings::new(pattern, accuracy));
         assert_eq!(plan.trials.len(), trials, "{design}");
         let mut poses: Vec<_> =
             plan.points.iter().map(|point| point.error.to_array().map(f64::to_bits)).collect();

@@ -11,7 +11,7 @@
 
 use super::halves::file_unit;
 use super::sink::{self, Drawn, Grain, Triangles, together};
-use super::{PartFile, Settings, Way};
+use super::{PartFile, ProposalSettings, Way};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
@@ -141,7 +141,7 @@ fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: Dis
 pub(super) fn of_files(
     parts: &[PartFile; 2],
     halves: [&Half; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     scale: f64,
 ) -> Option<String> {
     let [fixed, moving] = halves;
@@ -209,7 +209,7 @@ fn is_same(one: &Half, other: &Half) -> bool {
 const SHORT: f64 = 6.0;
 
 /// That files which say no unit, and of which somebody said millimetres, are rather in inches.
-pub(super) fn inches(halves: [&Half; 2], settings: &Settings, scale: f64) -> Option<String> {
+pub(super) fn inches(halves: [&Half; 2], settings: &ProposalSettings, scale: f64) -> Option<String> {
     let longest = halves.map(|half| {
         let (low, high) = half.bounds();
         (high - low).max_element() * scale

@@ -2,7 +2,7 @@
 //! size that suggests another unit.
 
 use super::halves::design_unit;
-use super::{Candidate, Frames, Held, Lie, NEARLY, Settings, file};
+use super::{Candidate, Frames, Held, Lie, NEARLY, ProposalSettings, file};
 use catchment_core::design::LengthUnit;
 
 /// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
@@ -40,7 +40,7 @@ fn is_twin(one: &Candidate, other: &Candidate) -> bool {
 }
 
 /// What a person should look at.
-pub(super) fn of(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
+pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<String> {
     let [best, others @ ..] = candidates else { return Vec::new() };
     let mut doubts = Vec::new();
     let rivals = |other: &&Candidate| {

@@ -8,7 +8,7 @@
 //! Not promised: that no pose beyond it docks in combination with other errors.
 
 use super::judge::{Judged, Seat};
-use super::{PartFile, ProposalError, Settings, file};
+use super::{PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::acceptance::Outcome;
 use catchment_core::contact::Pair;
 use catchment_core::design::SourceText;
@@ -22,7 +22,7 @@ use std::path::Path;
 /// The design of a seat, as text and as a problem that was checked; lengths of the seat times `unit` are in the unit of the design.
 pub(super) fn designed(
     parts: &[PartFile; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     (best, seat): (&Judged, &Seat),
     unit: f64,
     place: &Path,

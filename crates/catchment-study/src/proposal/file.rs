@@ -3,7 +3,7 @@
 use super::halves::{design_unit, file_unit, says_its_unit};
 use super::judge::{Judged, Seat};
 use super::way::Lie;
-use super::{Beside, PartFile, Settings};
+use super::{Beside, PartFile, ProposalSettings};
 use catchment_core::design::{FileSpec, LengthUnit};
 use catchment_core::pose::{Dof, DofSet, Mount};
 use glam::DVec2;
@@ -67,7 +67,7 @@ fn element(beside: &Beside, unit: LengthUnit) -> String {
 }
 
 /// What draws a half: its file, or a list of parts that begins with it.
-fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
+fn drawn(part: &PartFile, with: &[Beside], settings: &ProposalSettings) -> Vec<String> {
     let unit = file_unit(settings);
     let is_step = FileSpec::new(&part.path, 1.0).is_step();
     let meshed = is_step.then(|| MESHED.to_owned());
@@ -90,7 +90,7 @@ fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
 }
 
 /// A design that says no more than what draws the halves.
-pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
+pub(super) fn halves(parts: &[PartFile; 2], settings: &ProposalSettings) -> String {
     let unit = design_unit(settings);
     let mut text = format!("[connector]\nunit = \"{}\"\n", unit.symbol());
     for ((name, part), with) in ["fixed", "moving"].into_iter().zip(parts).zip(&settings.with) {
@@ -102,7 +102,7 @@ pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
 /// The design; lengths of `judged` times `scale` are in its unit, and errors are looked at up to these shares of 1 D and 90 degrees.
 pub(super) fn text(
     parts: &[PartFile; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     judged: &Judged,
     seat: Seat,
     scale: f64,
@@ -192,7 +192,7 @@ pub(super) fn text(
 }
 
 /// `[alignment]` and `[docked]`.
-fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit: LengthUnit) {
+fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSettings, unit: LengthUnit) {
     line("\n[alignment]");
     let left: DofSet = Dof::ALL
         .into_iter()

@@ -1,7 +1,7 @@
 //! The halves of a proposal: a file for each, with its settings, in the unit of the design.
 
 use super::candidate::shown_unit;
-use super::{Beside, PartFile, ProposalError, Settings, file};
+use super::{Beside, PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::connector::{Half, Side, of_half};
 use catchment_core::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
 use catchment_core::exec::Exec;
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Reads them.
 pub(super) fn read(
     parts: &[PartFile; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     place: &Path,
     exec: &Exec,
 ) -> Result<[Half; 2], ProposalError> {
@@ -42,7 +42,7 @@ pub(super) fn read(
 }
 
 /// Whether one file holds both halves, and more than these.
-pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> bool {
+pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettings, exec: &Exec) -> bool {
     let [one, other] = parts;
     let third = PartFile { body: Some(3), ..one.clone() };
     let is_one_file = one.written == other.written && one.body.is_some();
@@ -66,7 +66,11 @@ fn no_unit(part: &PartFile, half: &Half) -> ProposalError {
 }
 
 /// What the halves are, lengths in the unit of the design: a file, or, where more belongs to one of them, what a design would say.
-fn specs(parts: &[PartFile; 2], settings: &Settings, place: &Path) -> Result<[HalfSpec; 2], ProposalError> {
+fn specs(
+    parts: &[PartFile; 2],
+    settings: &ProposalSettings,
+    place: &Path,
+) -> Result<[HalfSpec; 2], ProposalError> {
     let files = parts.each_ref().map(|part| mesh(part, settings));
     if settings.with.iter().all(Vec::is_empty) {
         return Ok(files);
@@ -79,7 +83,7 @@ fn specs(parts: &[PartFile; 2], settings: &Settings, place: &Path) -> Result<[Ha
 }
 
 /// A file as a half.
-fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
+fn mesh(part: &PartFile, settings: &ProposalSettings) -> HalfSpec {
     let unit = design_unit(settings).metres();
     let scale = file_unit(settings).metres() / unit;
     let mut spec = FileSpec::new(&part.path, scale);
@@ -92,12 +96,12 @@ fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
 }
 
 /// The unit of files that do not say theirs.
-pub(super) fn file_unit(settings: &Settings) -> LengthUnit {
+pub(super) fn file_unit(settings: &ProposalSettings) -> LengthUnit {
     settings.unit.unwrap_or(LengthUnit::Mm)
 }
 
 /// The unit of the design, in which answers are given: millimetres where files are in metres, unless parts are written in the unit of the files beside them.
-pub(super) fn design_unit(settings: &Settings) -> LengthUnit {
+pub(super) fn design_unit(settings: &ProposalSettings) -> LengthUnit {
     let unit = file_unit(settings);
     let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, Beside::Part(_)));
     if has_parts { unit } else { shown_unit(unit) }

@@ -72,7 +72,7 @@ pub enum Frames {
 
 /// What is known already.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Settings {
+pub struct ProposalSettings {
     /// In which frames the parts are drawn.
     pub frames: Frames,
     /// The direction in which the moving half comes, of parts drawn docked.
@@ -184,13 +184,18 @@ struct Parts<'a> {
     /// Directions half way between two axes along which each may enter or be entered.
     diagonals: [Vec<Way>; 2],
     grain: sink::Grain,
-    settings: &'a Settings,
+    settings: &'a ProposalSettings,
     /// How lengths are told.
     told: DisplayUnit,
 }
 
 impl<'a> Parts<'a> {
-    fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: DisplayUnit) -> Self {
+    fn new(
+        halves: [&'a Half; 2],
+        grain: sink::Grain,
+        settings: &'a ProposalSettings,
+        told: DisplayUnit,
+    ) -> Self {
         let triangles = halves.map(sink::triangles);
         let diagonals = triangles.each_ref().map(sink::diagonals);
         Self { halves, triangles, diagonals, grain, settings, told }
@@ -229,7 +234,7 @@ impl Looked {
 /// A part that is none or whose unit nobody says, parts that do not dock.
 pub fn propose(
     parts: &[PartFile; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     place: &Path,
     exec: &Exec,
 ) -> Result<Proposal, ProposalError> {
@@ -384,7 +389,7 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, C
 /// Parts in frames of their own, judged wherever one may sink into the other.
 fn facing(
     pair: [&Half; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     told: DisplayUnit,
     exec: &Exec,
 ) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {

@@ -8,7 +8,7 @@
 //! Not promised: that parts which dock mirrored were meant to be mirrored, or that the reported obstacle is
 //! the only one.
 
-use super::{Parts, Settings, is_seat, rank, search, sunk, ways};
+use super::{Parts, ProposalSettings, is_seat, rank, search, sunk, ways};
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::contact::relief;
@@ -47,7 +47,7 @@ pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, Str
 /// Whether the parts would dock without something narrow that is in the way, in words.
 fn obstacle(
     pair: [&Half; 2],
-    settings: &Settings,
+    settings: &ProposalSettings,
     told: DisplayUnit,
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {

@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
-pub struct Settings {
+pub struct SensitivitySettings {
     /// Number of samples. Default: three times as many as a run with `descent` draws, because slopes need
     /// more.
     pub poses: Option<usize>,
@@ -52,7 +52,7 @@ pub struct Settings {
     pub descent: descent::DescentSettings,
 }
 
-impl Settings {
+impl SensitivitySettings {
     /// Least and greatest ρ of the spread, in D.
     pub const RHO: [f64; 2] = [0.25, 2.0];
     /// Values of ρ from the least to the greatest, each a fixed factor (the fourth root of two) above the last.
@@ -61,7 +61,7 @@ impl Settings {
     const RHOS_PER_OCTAVE: f64 = 4.0;
 }
 
-impl Default for Settings {
+impl Default for SensitivitySettings {
     fn default() -> Self {
         let [least, _] = Self::RHO;
         // The system's power, folded by the compiler or not, has other last bits.
@@ -129,7 +129,7 @@ pub struct AtRho {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
     /// Settings that change the result.
-    pub settings: Settings,
+    pub settings: SensitivitySettings,
     /// Unit of the Sum, like `D²·rad³`.
     pub unit: String,
     /// The Sum of the design itself, from the same poses.
@@ -181,13 +181,17 @@ pub enum SensitivityError {
 ///
 /// # Errors
 /// See [`SensitivityError`].
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensitivity, SensitivityError> {
+pub fn run(
+    problem: &Problem,
+    settings: &SensitivitySettings,
+    exec: &Exec,
+) -> Result<Sensitivity, SensitivityError> {
     /// As a multiple of those of a run.
     const POSES_PER_SAMPLE: usize = 3;
     let design = problem.design();
     let default = || POSES_PER_SAMPLE * descent::DescentSettings::default().default_samples(problem.pair());
     let poses = settings.poses.unwrap_or_else(default);
-    let settings = &Settings { poses: Some(poses), ..settings.clone() };
+    let settings = &SensitivitySettings { poses: Some(poses), ..settings.clone() };
     if poses == 0 || settings.rotation_lengths.is_empty() {
         return Err(SensitivityError::Nothing);
     }
@@ -278,7 +282,7 @@ impl Parameter {
 /// The same poses, followed again and again.
 struct CommonPoses<'a> {
     problem: &'a Problem,
-    settings: &'a Settings,
+    settings: &'a SensitivitySettings,
     exec: &'a Exec,
     poses: Domain,
     /// Of the error box, Dᵃ·radᵇ.
@@ -288,7 +292,7 @@ struct CommonPoses<'a> {
 }
 
 impl<'a> CommonPoses<'a> {
-    fn new(problem: &'a Problem, settings: &'a Settings, exec: &'a Exec) -> Self {
+    fn new(problem: &'a Problem, settings: &'a SensitivitySettings, exec: &'a Exec) -> Self {
         let alignment = problem.alignment();
         Self {
             problem,
@@ -390,9 +394,9 @@ mod tests {
 
     #[test]
     fn every_fourth_rho_is_twice_the_last_to_the_bit() {
-        let rhos = Settings::default().rotation_lengths;
+        let rhos = SensitivitySettings::default().rotation_lengths;
         assert_eq!(rhos.iter().copied().step_by(4).collect::<Vec<_>>(), [0.25, 0.5, 1.0, 2.0]);
-        assert_eq!([rhos[0], rhos[Settings::RHOS - 1]], Settings::RHO);
+        assert_eq!([rhos[0], rhos[SensitivitySettings::RHOS - 1]], SensitivitySettings::RHO);
         assert_eq!(rhos[1..4], [0.297_301_778_750_680_26, 0.353_553_390_593_273_8, 0.420_448_207_626_857_25]);
     }
 
@@ -416,8 +420,11 @@ mod tests {
 
     #[test]
     fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
-        let settings =
-            Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
+        let settings = SensitivitySettings {
+            poses: Some(200),
+            rotation_lengths: vec![2.0, 0.25],
+            ..SensitivitySettings::default()
+        };
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
             run(&Problem::of(planar()).unwrap(), &settings, &exec).unwrap()
@@ -438,7 +445,7 @@ mod tests {
         let design = Design::of_family(Family::VFace, DofSet::EMPTY.with(Dof::X));
         let found = run(
             &Problem::of(design).unwrap(),
-            &Settings { poses: Some(300), ..Settings::default() },
+            &SensitivitySettings { poses: Some(300), ..SensitivitySettings::default() },
             &Exec::new(),
         )
         .unwrap();
@@ -448,14 +455,18 @@ mod tests {
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let refused = |settings: Settings, exec: &Exec| {
+        let refused = |settings: SensitivitySettings, exec: &Exec| {
             run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err()
         };
-        let none = Settings { poses: Some(0), ..Settings::default() };
+        let none = SensitivitySettings { poses: Some(0), ..SensitivitySettings::default() };
         assert!(matches!(refused(none, &Exec::new()), SensitivityError::Nothing));
         let small = Exec::new().with_memory_budget(1000);
-        assert!(matches!(refused(Settings::default(), &small), SensitivityError::OutOfBudget(_)));
-        let beyond = Settings { rotation_lengths: vec![1e9], poses: Some(2), ..Settings::default() };
+        assert!(matches!(refused(SensitivitySettings::default(), &small), SensitivityError::OutOfBudget(_)));
+        let beyond = SensitivitySettings {
+            rotation_lengths: vec![1e9],
+            poses: Some(2),
+            ..SensitivitySettings::default()
+        };
         assert!(matches!(refused(beyond, &Exec::new()), SensitivityError::Value(_)));
     }
 }

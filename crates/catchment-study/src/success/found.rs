@@ -1,6 +1,6 @@
 //! Results of robots.
 
-use super::Settings;
+use super::SuccessSettings;
 use catchment_core::acceptance::Outcome;
 use catchment_core::method::descent::Touch;
 use catchment_core::pose::{Dof, PoseError};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Success {
     /// The settings, with all defaults filled in.
-    pub settings: Settings,
+    pub settings: SuccessSettings,
     /// The robot with the lowest success probability.
     pub success: Headline,
     /// Results for each robot, in the order of the file; at least one.

@@ -62,7 +62,7 @@ use tolerable::Curve;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Settings {
+pub struct SuccessSettings {
     /// Number of exact motions for the probability of each robot; gains use half as many each, factors a
     /// quarter. Default: 8000 for simple halves, fewer for halves with many facets.
     pub motions: Option<usize>,
@@ -77,7 +77,7 @@ pub struct Settings {
     pub friction: f64,
 }
 
-impl Default for Settings {
+impl Default for SuccessSettings {
     fn default() -> Self {
         Self { motions: None, seed: 1, required: 0.99, cells: None, friction: 0.0 }
     }
@@ -148,13 +148,13 @@ const PER_SAMPLE: usize = 2;
 /// use catchment_core::pose::PoseError;
 /// use catchment_core::poses::{Robot, Spread};
 /// use catchment_core::problem::Problem;
-/// use catchment_study::success::{self, Settings};
+/// use catchment_study::success::{self, SuccessSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
 /// let errors = Spread::normal(PoseError { x: 0.25, ..PoseError::default() });
 /// let robots = [Robot { name: "arm".to_owned(), errors }];
-/// let found = success::run(&problem, &robots, &Settings { motions: Some(500), ..Settings::default() }, &Exec::new())?;
+/// let found = success::run(&problem, &robots, &SuccessSettings { motions: Some(500), ..SuccessSettings::default() }, &Exec::new())?;
 /// // Without rotations a V-Face corrects offsets up to D/2, here two standard deviations: 95.45 %.
 /// let [lo, hi] = found.robots[0].ci95;
 /// assert!(lo < 0.9545 && 0.9545 < hi && hi - lo < 0.03);
@@ -164,7 +164,7 @@ const PER_SAMPLE: usize = 2;
 pub fn run(
     problem: &Problem,
     robots: &[Robot],
-    settings: &Settings,
+    settings: &SuccessSettings,
     exec: &Exec,
 ) -> Result<Success, SuccessError> {
     let by_method = || {
@@ -173,7 +173,7 @@ pub fn run(
     };
     let motions = settings.motions.unwrap_or_else(by_method);
     check(problem, robots, settings, motions)?;
-    let settings = Settings { motions: Some(motions), ..settings.clone() };
+    let settings = SuccessSettings { motions: Some(motions), ..settings.clone() };
     let mut found = Vec::new();
     let mut followed = 0;
     for (number, robot) in robots.iter().enumerate() {
@@ -190,7 +190,7 @@ const STAGE: &str = "motions";
 fn check(
     problem: &Problem,
     robots: &[Robot],
-    settings: &Settings,
+    settings: &SuccessSettings,
     motions: usize,
 ) -> Result<(), SuccessError> {
     let required = settings.required;
@@ -220,7 +220,7 @@ fn check(
 fn of_robot(
     problem: &Problem,
     robot: &Robot,
-    settings: &Settings,
+    settings: &SuccessSettings,
     motions: usize,
     exec: &Exec,
 ) -> Result<(Docking, usize), SuccessError> {

@@ -49,8 +49,8 @@ fn one(errors: Spread) -> [Robot; 1] {
     [Robot { name: "arm".to_owned(), errors }]
 }
 
-fn quick() -> Settings {
-    Settings { motions: Some(1000), ..Settings::default() }
+fn quick() -> SuccessSettings {
+    SuccessSettings { motions: Some(1000), ..SuccessSettings::default() }
 }
 
 /// As many plain motions of random errors, each followed exactly.
@@ -186,7 +186,8 @@ fn it_is_the_same_on_any_number_of_threads() {
     let robots = one(of(0.2, 0.3, &[Dof::Yaw], true));
     let on = |threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        run(&problem, &robots, &Settings { motions: Some(500), ..Settings::default() }, &exec).unwrap()
+        run(&problem, &robots, &SuccessSettings { motions: Some(500), ..SuccessSettings::default() }, &exec)
+            .unwrap()
     };
     let one = on(1);
     assert_eq!(one, on(2));
@@ -206,7 +207,7 @@ fn alike_errors_gain_alike() {
 #[test]
 fn what_is_asked_in_vain_is_refused() {
     let problem = v_face();
-    let refused = |robots: &[Robot], settings: &Settings| {
+    let refused = |robots: &[Robot], settings: &SuccessSettings| {
         run(&problem, robots, settings, &Exec::new()).unwrap_err().to_string()
     };
     assert_eq!(refused(&[], &quick()), "there is no robot to ask about");
@@ -215,9 +216,13 @@ fn what_is_asked_in_vain_is_refused() {
     let still = one(Spread::normal(PoseError::default()));
     assert!(refused(&still, &quick()).contains("none of its errors varies"));
     let sound = one(of(0.1, 0.0, &[], false));
-    assert!(refused(&sound, &Settings { required: 1.0, ..quick() }).contains("cannot be required"));
-    assert!(refused(&sound, &Settings { required: f64::NAN, ..quick() }).contains("cannot be required"));
-    assert!(refused(&sound, &Settings { motions: Some(10), ..quick() }).contains("10 motions are too few"));
+    assert!(refused(&sound, &SuccessSettings { required: 1.0, ..quick() }).contains("cannot be required"));
+    assert!(
+        refused(&sound, &SuccessSettings { required: f64::NAN, ..quick() }).contains("cannot be required")
+    );
+    assert!(
+        refused(&sound, &SuccessSettings { motions: Some(10), ..quick() }).contains("10 motions are too few")
+    );
 }
 
 #[test]
@@ -353,14 +358,18 @@ fn friction_above_the_slope_leaves_what_starts_in_the_seat() {
     let errors = Spread::normal(PoseError { x: 0.25, ..PoseError::default() });
     let robots = [Robot { name: "arm".to_owned(), errors }];
     let of = |friction: f64| {
-        let settings = Settings { motions: Some(400), friction, ..Settings::default() };
+        let settings = SuccessSettings { motions: Some(400), friction, ..SuccessSettings::default() };
         run(&problem, &robots, &settings, &Exec::new()).unwrap().robots.remove(0)
     };
     assert_eq!(of(0.1).probability, of(0.0).probability);
     let [lo, hi] = of(0.3).ci95;
     // |x| up to 0.01 is within the depth of the seat, a 25th of sigma: erf(0.04/√2).
     assert!(lo < 0.0319 && 0.0319 < hi && hi < 0.1, "{lo} {hi}");
-    let refused =
-        run(&problem, &robots, &Settings { friction: f64::NAN, ..Settings::default() }, &Exec::new());
+    let refused = run(
+        &problem,
+        &robots,
+        &SuccessSettings { friction: f64::NAN, ..SuccessSettings::default() },
+        &Exec::new(),
+    );
     assert!(matches!(refused, Err(SuccessError::Friction(_))));
 }

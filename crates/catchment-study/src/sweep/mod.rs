@@ -41,7 +41,7 @@ const FIGURES_BYTES: u64 = 2048;
 /// Definition of a sweep: the keys with their values, and the run for every design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct SweepSettings {
     /// The keys and their values; the last one changes fastest.
     pub axes: Vec<Axis>,
     /// The run for every design.
@@ -51,7 +51,7 @@ pub struct Settings {
 /// The designs of a sweep, read and not yet built.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    settings: Settings,
+    settings: SweepSettings,
     base: Design,
     drafts: Vec<Draft>,
 }
@@ -149,7 +149,7 @@ pub struct Trial {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep {
     /// Definition of the sweep.
-    pub settings: Settings,
+    pub settings: SweepSettings,
     /// Every combination of values, the last axis fastest.
     pub designs: Vec<Trial>,
     /// Number of the design with the largest Sum, the first if several are equal.
@@ -245,7 +245,7 @@ impl Plan {
     /// A value that its key cannot have, shown in the text with that value in it; two axes of one key; no axis or too many designs.
     pub fn new(
         source: &SourceText,
-        settings: Settings,
+        settings: SweepSettings,
         change: impl Fn(Draft) -> Result<Draft, ProblemError>,
     ) -> Result<Self, SweepError> {
         let axes = &settings.axes;

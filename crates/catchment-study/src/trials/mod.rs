@@ -35,7 +35,7 @@ use serde_json::{Map, Value, json};
 
 /// What changes the answer.
 #[derive(Debug, Clone)]
-pub struct Settings {
+pub struct TrialsSettings {
     /// What decides single poses.
     pub method: Method,
     /// Trials along every free translation, one study each.
@@ -178,7 +178,7 @@ const TRIAL_BYTES: u64 = size_of::<Trial>() as u64 + super::pose_bytes();
 ///
 /// # Errors
 /// See [`TrialsError`].
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Trials, TrialsError> {
+pub fn run(problem: &Problem, settings: &TrialsSettings, exec: &Exec) -> Result<Trials, TrialsError> {
     let alignment = problem.alignment();
     if alignment.free.rotations() > 0 {
         return Err(TrialsError::Rotations);
@@ -307,9 +307,9 @@ mod tests {
 
     const XY: DofSet = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
 
-    fn settings(method: &str, resolutions: &[usize]) -> Settings {
+    fn settings(method: &str, resolutions: &[usize]) -> TrialsSettings {
         let method = method.parse().unwrap();
-        Settings { method, resolutions: resolutions.to_vec(), halvings: 0, seed: 1 }
+        TrialsSettings { method, resolutions: resolutions.to_vec(), halvings: 0, seed: 1 }
     }
 
     /// Exact motions and the exact region are two ways to one set: |x| + |y| < 1, and an interval of ±½.
@@ -365,10 +365,10 @@ mod tests {
     #[test]
     fn what_cannot_be_compared_is_refused() {
         let both = problem(Family::XFace3d, XY);
-        let refused = |settings: &Settings| run(&both, settings, &Exec::new()).unwrap_err();
+        let refused = |settings: &TrialsSettings| run(&both, settings, &Exec::new()).unwrap_err();
         assert!(matches!(refused(&settings("transport", &[5])), TrialsError::Method { method: "transport" }));
         assert!(matches!(refused(&settings("descent", &[5, 1])), TrialsError::Resolution { given: 1, .. }));
-        let halved = |halvings, method| Settings { halvings, ..settings(method, &[5]) };
+        let halved = |halvings, method| TrialsSettings { halvings, ..settings(method, &[5]) };
         assert!(matches!(refused(&halved(1, "descent")), TrialsError::NoTimestep { .. }));
         assert!(matches!(refused(&halved(11, "descent")), TrialsError::Halvings { given: 11, .. }));
         let turning = problem(Family::XFace3d, XY.with(Dof::Yaw));
@@ -380,7 +380,7 @@ mod tests {
     #[cfg(feature = "drop")]
     #[test]
     fn drop_trials_agree_with_the_exact_region_but_at_its_border() {
-        let settings = Settings { halvings: 1, ..settings("drop", &[6]) };
+        let settings = TrialsSettings { halvings: 1, ..settings("drop", &[6]) };
         let found = run(&problem(Family::XFace3d, XY), &settings, &Exec::new()).unwrap();
         let steps: Vec<_> = found.rounds.iter().map(|round| round.timestep.unwrap()).collect();
         assert_eq!(steps, [1e-3, 5e-4]);

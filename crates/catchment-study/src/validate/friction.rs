@@ -14,7 +14,7 @@
 //! Not promised: that friction is the reason; the result lists only the coefficients as good as the best, and
 //! no coefficient beyond the last tried is excluded.
 
-use super::Settings;
+use super::ValidationSettings;
 use crate::plan::{Judge, Search, for_each};
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
@@ -71,7 +71,7 @@ const CREEPS: usize = 500;
 pub(super) fn estimate(
     problem: &Problem,
     trials: &[(PoseError, bool)],
-    settings: &Settings,
+    settings: &ValidationSettings,
     exec: &Exec,
 ) -> Result<(FrictionInterval, usize), Cancelled> {
     let mut followed = 0;
@@ -126,7 +126,7 @@ fn coefficient(fine: usize) -> f64 {
 fn beyond(
     problem: &Problem,
     trials: &[(PoseError, bool)],
-    settings: &Settings,
+    settings: &ValidationSettings,
     friction: f64,
     enough: usize,
     exec: &Exec,

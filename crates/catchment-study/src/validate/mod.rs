@@ -47,7 +47,7 @@ use statistics::{chance, tail};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct ValidationSettings {
     /// Standard deviation of each error of the robot, in D and radians; 0 for exact errors.
     pub accuracy: PoseError,
     /// k: disagreements within k standard deviations of the border do not count.
@@ -60,7 +60,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-impl Settings {
+impl ValidationSettings {
     /// Of a robot of this accuracy, without friction.
     pub const fn new(accuracy: PoseError) -> Self {
         Self { accuracy, limit: LIMIT, friction: 0.0, estimate_friction: false, seed: 1 }
@@ -204,7 +204,7 @@ pub struct Evidence {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Validation {
     /// The settings.
-    pub settings: Settings,
+    pub settings: ValidationSettings,
     /// The point of the moving half at which the table gave x and y; the offsets of this report are those of the face centre.
     pub offsets_at: OffsetsAt,
     /// The verdict.
@@ -277,7 +277,7 @@ const STAGE: &str = "motions";
 pub fn run(
     problem: &Problem,
     tried: &[Tried],
-    settings: &Settings,
+    settings: &ValidationSettings,
     exec: &Exec,
 ) -> Result<Validation, ValidateError> {
     check_accuracy(problem, &settings.accuracy).map_err(ValidateError::Accuracy)?;
@@ -326,7 +326,7 @@ pub fn run(
 }
 
 /// Everything that follows from the trials without another motion.
-fn summary(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validation {
+fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings) -> Validation {
     let made = || trials.iter().filter(|trial| trial.docked.is_some());
     let clear = || made().filter(|trial| !trial.prediction().either);
     let agreed = clear().filter(|trial| !trial.disagrees).count();

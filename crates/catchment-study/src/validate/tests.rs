@@ -22,7 +22,7 @@ fn arc(problem: &Problem) -> (Vec<PoseError>, PoseError) {
         yaw: vec![0.0, 20f64.to_radians()],
     };
     let accuracy = PoseError { x: 1.2 / width, pitch: 0.5f64.to_radians(), ..PoseError::default() };
-    let plan = plan::run(problem, &plan::Settings::new(pattern, accuracy), &Exec::new()).unwrap();
+    let plan = plan::run(problem, &plan::TrialPlanSettings::new(pattern, accuracy), &Exec::new()).unwrap();
     (plan.points.iter().map(|point| point.error).collect(), accuracy)
 }
 
@@ -60,7 +60,7 @@ fn verdicts(
     friction: f64,
     runs: u64,
 ) -> [usize; 3] {
-    let settings = Settings::new(*accuracy);
+    let settings = ValidationSettings::new(*accuracy);
     let motions = descent::DescentSettings::default();
     let (prediction, _) =
         foretell(predicting, accuracy, &motions, written, settings.seed, &Exec::new()).unwrap();
@@ -166,7 +166,7 @@ fn judged(rows: &[(f64, Option<Observed>)]) -> Validation {
     let tried: Vec<Tried> =
         rows.iter().enumerate().map(|(k, (x, seen))| row(k as u64 + 1, *x, *seen)).collect();
     let accuracy = PoseError { x: 0.02, ..PoseError::default() };
-    run(&v_face(), &tried, &Settings::new(accuracy), &Exec::new()).unwrap()
+    run(&v_face(), &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap()
 }
 
 const DOCKED: Option<Observed> = Some(Observed::Aligned);
@@ -245,15 +245,15 @@ fn too_few_trials_decide_nothing() {
         judged(&[(0.1, DOCKED), (0.2, DOCKED), (0.49, MISSED), (0.51, DOCKED), (0.6, MISSED), (0.3, None)]);
     assert_eq!(few.verdict, Verdict::Undecided);
     assert_eq!((few.evidence.inside, few.evidence.outside), (2, 1));
-    let settings = Settings::new(PoseError { x: 0.02, ..PoseError::default() });
+    let settings = ValidationSettings::new(PoseError { x: 0.02, ..PoseError::default() });
     let nothing = run(&v_face(), &[row(1, 0.1, None)], &settings, &Exec::new());
     assert!(matches!(nothing, Err(ValidateError::NothingMade)));
-    let limit = Settings { limit: 0.5, ..settings.clone() };
+    let limit = ValidationSettings { limit: 0.5, ..settings.clone() };
     assert!(matches!(
         run(&v_face(), &[row(1, 0.1, DOCKED)], &limit, &Exec::new()),
         Err(ValidateError::Limit { .. })
     ));
-    let exact = Settings { accuracy: PoseError::default(), ..settings };
+    let exact = ValidationSettings { accuracy: PoseError::default(), ..settings };
     assert!(matches!(
         run(&v_face(), &[row(1, 0.1, DOCKED)], &exact, &Exec::new()),
         Err(ValidateError::Accuracy(_))
@@ -270,11 +270,12 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
         steps: [Some(8), Some(8), None, None, None],
         max: [Some(1.0), Some(1.0), None, None, None],
     };
-    let settings = plan::Settings { symmetric: true, ..plan::Settings::new(pattern, accuracy) };
+    let settings =
+        plan::TrialPlanSettings { symmetric: true, ..plan::TrialPlanSettings::new(pattern, accuracy) };
     let planned = plan::run(&problem, &settings, &Exec::new()).unwrap();
     let poses: Vec<PoseError> = planned.points.iter().map(|point| point.error).collect();
     let made = trials(&problem, [&poses; 2], &PoseError::default(), 0.5, 1);
-    let settings = Settings { estimate_friction: true, ..Settings::new(accuracy) };
+    let settings = ValidationSettings { estimate_friction: true, ..ValidationSettings::new(accuracy) };
     let with =
         |threads| run(&problem, &made, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
     let found = with(1);
@@ -284,7 +285,7 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     assert!(friction.low > 0.0 && friction.low <= 0.5 && friction.high >= 0.5, "{friction:?}");
     assert!(friction.tried[0].beyond > 0 && friction.high < 0.7, "{friction:?}");
     // With that friction the prediction holds; and threads change nothing.
-    let with_friction = Settings { friction: 0.5, estimate_friction: false, ..settings.clone() };
+    let with_friction = ValidationSettings { friction: 0.5, estimate_friction: false, ..settings.clone() };
     let again = run(&problem, &made, &with_friction, &Exec::new()).unwrap();
     assert_eq!((again.verdict, again.agreement.agreed), (Verdict::Consistent, again.agreement.trials));
     assert!(found == with(2) && found == with(4));
@@ -297,16 +298,18 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let accuracy = PoseError { x: 0.002, y: 0.002, ..PoseError::default() };
     let tried: Vec<Tried> =
         (1..=6).map(|k| row(k, 0.02 * k as f64, Some(Observed::AlignedElsewhere))).collect();
-    let found = run(&fourfold, &tried, &Settings::new(accuracy), &Exec::new()).unwrap();
+    let found = run(&fourfold, &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
     assert_eq!((found.verdict, found.turned), (Verdict::Consistent, 6));
     let mut design = fourfold.design().clone();
     design.alignment.symmetry = 1;
-    let found = run(&fourfold.with(design).unwrap(), &tried, &Settings::new(accuracy), &Exec::new()).unwrap();
+    let found =
+        run(&fourfold.with(design).unwrap(), &tried, &ValidationSettings::new(accuracy), &Exec::new())
+            .unwrap();
     assert_eq!((found.verdict, found.evidence.beyond, found.turned), (Verdict::Inconsistent, 6, 0));
     // Turned by nearly a quarter it does dock there, and that is predicted.
     let turned =
         Tried { error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() }, ..tried[0].clone() };
-    let found = run(&fourfold, &[turned], &Settings::new(accuracy), &Exec::new()).unwrap();
+    let found = run(&fourfold, &[turned], &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
     assert_eq!((found.trials[0].prediction().predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
 }
 

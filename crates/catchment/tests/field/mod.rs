@@ -92,11 +92,11 @@ fn the_industreal_peg_slides_until_its_play_is_used() {
     const D: f64 = 12.0;
     let problem = industreal_peg(D);
     let least = |play: f64| {
-        let settings = hold::Settings { play, ..hold::Settings::default() };
+        let settings = hold::HoldSettings { play, ..hold::HoldSettings::default() };
         let found = hold::run(&problem, &settings, &Exec::new()).unwrap();
         found.weakest.smooth_free.and_then(|side| side.withstood.smooth).and_then(|force| force.free)
     };
-    assert!(least(hold::Settings::default().play).unwrap() < 1e-6);
+    assert!(least(hold::HoldSettings::default().play).unwrap() < 1e-6);
     let play = geometry("industreal-peg", "play") / D;
     assert_eq!(least(1.05 * play), None);
 }

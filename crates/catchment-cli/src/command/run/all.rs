@@ -5,13 +5,13 @@ use super::study::study;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use catchment::report::figure;
-use catchment::study::agreement::{AgreementError, Settings, run as decide_by_all};
+use catchment::study::agreement::{AgreementError, AgreementSettings, run as decide_by_all};
 
 /// Decides the design by every method that applies to it.
 pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     refuse_options(args)?;
-    let default = Settings::default();
-    let settings = Settings {
+    let default = AgreementSettings::default();
+    let settings = AgreementSettings {
         methods: args.how.settings.of_all()?,
         resolution: args.resolution.unwrap_or_default(),
         sample: args.sample.sample(),

@@ -40,8 +40,8 @@ pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
 }
 
 fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
-    let default = convergence::Settings::default();
-    let settings = convergence::Settings {
+    let default = convergence::ConvergenceSettings::default();
+    let settings = convergence::ConvergenceSettings {
         tolerance: args.sample.tolerance.unwrap_or(default.tolerance),
         time_limit_s: args.study.time_limit.map_or(default.time_limit_s, |limit| limit.as_secs_f64()),
         descents: args.sample.samples.map(|descents| descents as usize),
@@ -52,10 +52,10 @@ fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
 }
 
 fn sensitivity(args: &RunArgs) -> Result<ExitStatus, Failure> {
-    let settings = sensitivity::Settings {
+    let settings = sensitivity::SensitivitySettings {
         poses: args.sample.samples.map(|poses| poses as usize),
         seed: args.sample.seed,
-        ..sensitivity::Settings::default()
+        ..sensitivity::SensitivitySettings::default()
     };
     study(args, figure::sensitivity, |problem, exec| Ok(sensitivity::run(problem, &settings, exec)?))
 }
