@@ -12,7 +12,7 @@ use catchment::report::schema::Timing;
 use catchment::run::Requirement;
 use catchment_systems::chain::file::{ChainFile, MOST_MODULES};
 use catchment_systems::chain::report::{ChainBody, ChainReport};
-use catchment_systems::chain::study::{self, Settings};
+use catchment_systems::chain::study::{self, ChainSettings};
 use catchment_systems::chain::{figure, report};
 use clap::Args;
 use std::path::PathBuf;
@@ -98,7 +98,7 @@ fn angles(text: &str) -> Result<Angles, String> {
 pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     let output = args.result.check(ChainBody::KIND, true)?;
     let file = ChainFile::read(SourceText::new(&args.path, load(&args.path)?))?;
-    let settings = Settings {
+    let settings = ChainSettings {
         chains: args.chains,
         seed: args.seed,
         modules: args.modules.clone().map(|list| list.0).unwrap_or_default(),

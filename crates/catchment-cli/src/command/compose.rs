@@ -12,7 +12,9 @@ use catchment::report::figure::ensure_fits;
 use catchment::report::{Body, csv};
 use catchment::terminal::shown;
 use catchment_systems::compose::read::{Read, ReadError, read};
-use catchment_systems::compose::{ComposeBody, Frames, Settings, compose, figure, outline_svg, report};
+use catchment_systems::compose::{
+    ComposeBody, ComposeSettings, Frames, compose, figure, outline_svg, report,
+};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -81,10 +83,10 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
         [first, second] => Some([region(first, exec)?, region(second, exec)?]),
         _ => None,
     };
-    let settings = Settings {
+    let settings = ComposeSettings {
         frames: if args.frames == "world" { Frames::World } else { Frames::Own },
         headings: spread(args.heading, args.headings),
-        ..Settings::default()
+        ..ComposeSettings::default()
     };
     let found = compose(halves, bodies, &settings, exec)?;
     drop(running);

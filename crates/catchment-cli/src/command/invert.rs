@@ -14,7 +14,7 @@ use catchment::problem::Problem;
 use catchment::report::figure::ensure_fits;
 use catchment::terminal::shown;
 use catchment_systems::invert::{
-    Heights, InvertBody, Limits, MAX_PIECES, Settings, design_file, figure, heights_of, invert,
+    Heights, InvertBody, InvertSettings, Limits, MAX_PIECES, design_file, figure, heights_of, invert,
     list_of_angles, report, wanted_from_table,
 };
 use clap::Args;
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let other = turned.as_ref().unwrap_or(&problem);
     let level = level.map_or_else(|| of_design(other), Ok)?;
     let all = |angles: &[Angles]| angles.iter().flat_map(|Angles(angles)| angles.clone()).collect();
-    let settings = Settings {
+    let settings = InvertSettings {
         roll: all(&args.roll),
         pitch: all(&args.pitch),
         yaw: all(&args.yaw),

@@ -9,7 +9,7 @@ use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
 use catchment_validation::study::accuracy::{self, CASES, DRAWN, LABELLED};
-use catchment_validation::study::reproduce::Settings;
+use catchment_validation::study::reproduce::ReproduceSettings;
 use catchment_validation::study::{COVERAGE, FIGURE, Request};
 use catchment_validation::tables::TABLES;
 use clap::Args;
@@ -92,7 +92,8 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         return accuracy(args);
     }
     let started = Instant::now();
-    let mut request = Request::of(&args.tables, Settings { exact: args.exact || args.form.markdown });
+    let mut request =
+        Request::of(&args.tables, ReproduceSettings { exact: args.exact || args.form.markdown });
     // The page of the documentation has everything but the study that is no table.
     request.figure |= args.tables.is_empty() && args.form.markdown;
     if request.coverage && (args.form.csv || args.form.markdown || args.output.is_some()) {

@@ -12,7 +12,7 @@
 use super::accumulation::{Closing, Covariance, Errors};
 use super::docking::{Probability, as_chain_uses_it, docks, lateral_probability, offsets_without_rotation};
 use super::file::ChainFile;
-use super::fold::{FoldError, Folded, Settings as FoldSettings, fold};
+use super::fold::{FoldError, FoldSettings, Folded, fold};
 use super::ring::{self, Corners};
 use super::shape::{Latch, Shape};
 use catchment::design::Findings;
@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 /// What changes the answer beside the file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct ChainSettings {
     /// Random chains.
     pub chains: u64,
     /// Their seed.
@@ -33,7 +33,7 @@ pub struct Settings {
     pub joint_sigmas: Vec<f64>,
 }
 
-impl Default for Settings {
+impl Default for ChainSettings {
     fn default() -> Self {
         Self { chains: 1000, seed: 1, modules: Vec::new(), joint_sigmas: Vec::new() }
     }
@@ -110,7 +110,7 @@ pub struct Study {
     /// The file.
     pub file: ChainFile,
     /// The settings.
-    pub settings: Settings,
+    pub settings: ChainSettings,
     /// The connector, if one is named.
     pub docking: Option<Docking>,
     /// The last face of the straight chain.
@@ -145,7 +145,7 @@ pub enum StudyError {
 ///
 /// # Errors
 /// A connector that cannot be read or cannot be free in x and pitch, a sequence that collides, being asked to stop.
-pub fn run(file: &ChainFile, settings: &Settings, exec: &Exec) -> Result<Study, StudyError> {
+pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<Study, StudyError> {
     let folded = follow(file, exec)?;
     let docking = docking(file, exec)?;
     let work = Work { file, settings, docking: docking.as_ref(), exec };
@@ -213,7 +213,7 @@ fn docking(file: &ChainFile, exec: &Exec) -> Result<Option<Docking>, StudyError>
 
 struct Work<'a> {
     file: &'a ChainFile,
-    settings: &'a Settings,
+    settings: &'a ChainSettings,
     docking: Option<&'a Docking>,
     exec: &'a Exec,
 }

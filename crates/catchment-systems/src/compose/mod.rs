@@ -89,7 +89,7 @@ pub enum Frames {
 /// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct ComposeSettings {
     /// In which frames the regions are drawn.
     pub frames: Frames,
     /// Relative headings of the second robot, in radians, counter-clockwise, evenly spaced; at least one.
@@ -98,7 +98,7 @@ pub struct Settings {
     pub map_cells: usize,
 }
 
-impl Default for Settings {
+impl Default for ComposeSettings {
     fn default() -> Self {
         Self { frames: Frames::Own, headings: vec![0.0], map_cells: 96 }
     }
@@ -134,7 +134,7 @@ pub struct Composition {
     /// The robots' bodies, where they are known.
     pub bodies: Option<[Read; 2]>,
     /// What was asked.
-    pub settings: Settings,
+    pub settings: ComposeSettings,
     /// One slice a heading.
     pub slices: Vec<Slice>,
     /// Which slice is described: the one nearest to heading 0.
@@ -196,7 +196,7 @@ fn added(second: &Bracket, frames: Frames, heading: f64) -> Bracket {
 pub fn compose(
     halves: [Read; 2],
     bodies: Option<[Read; 2]>,
-    settings: &Settings,
+    settings: &ComposeSettings,
     exec: &Exec,
 ) -> Result<Composition, ComposeError> {
     let all: Vec<&Read> = halves.iter().chain(bodies.iter().flatten()).collect();
@@ -255,7 +255,12 @@ pub fn compose(
 }
 
 /// The overlap over a grid around all places where the first region meets the second as it stands.
-fn map(first: &Region, stands: &Region, settings: &Settings, exec: &Exec) -> Result<Map, ComposeError> {
+fn map(
+    first: &Region,
+    stands: &Region,
+    settings: &ComposeSettings,
+    exec: &Exec,
+) -> Result<Map, ComposeError> {
     let empty = Map { low: DVec2::ZERO, cell: 0.0, cells: [0; 2], values: Vec::new() };
     let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), stands.bounds()) else { return Ok(empty) };
     let (low, high) = (la - hb, ha - lb);

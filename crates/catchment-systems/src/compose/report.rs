@@ -2,7 +2,7 @@
 
 use super::measure::Square;
 use super::read::Read;
-use super::{Composition, Frames, Settings, Slice};
+use super::{ComposeSettings, Composition, Frames, Slice};
 use catchment::document::{Cell, Column, Document, Table, number, significant};
 use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
@@ -23,7 +23,7 @@ pub struct ComposeBody {
     /// mm or D.
     pub unit: &'static str,
     /// The settings.
-    pub settings: Settings,
+    pub settings: ComposeSettings,
     /// The two halves.
     pub halves: [HalfReport; 2],
     /// The two bodies that must not overlap.

@@ -34,12 +34,12 @@ fn given(name: &str, region: Region) -> Read {
     }
 }
 
-fn composed(a: &Region, b: &Region, settings: &Settings) -> Composition {
+fn composed(a: &Region, b: &Region, settings: &ComposeSettings) -> Composition {
     compose([given("a", a.clone()), given("b", b.clone())], None, settings, &Exec::new()).unwrap()
 }
 
-fn at(frames: Frames, heading: f64) -> Settings {
-    Settings { frames, headings: vec![heading], map_cells: 24 }
+fn at(frames: Frames, heading: f64) -> ComposeSettings {
+    ComposeSettings { frames, headings: vec![heading], map_cells: 24 }
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn a_place_is_in_the_sum_exactly_where_the_regions_meet() {
 #[test]
 fn the_overlap_is_a_convolution() {
     let [a, b] = odd_pair();
-    let found = composed(&a, &b, &Settings { map_cells: 200, ..at(Frames::World, 0.2) });
+    let found = composed(&a, &b, &ComposeSettings { map_cells: 200, ..at(Frames::World, 0.2) });
     let integral: f64 = found.map.values.iter().sum::<f64>() * found.map.cell * found.map.cell;
     let exact = a.area() * b.area();
     assert!((integral - exact).abs() < 1e-3 * exact, "{integral} {exact}");
@@ -180,8 +180,13 @@ fn bodies_are_kept_apart() {
     let body = Bracket::exact(Region::rectangle(v(-1.0, -1.0), v(1.0, 1.0)));
     let halves = [read("a", &reach), read("b", &reach)];
     let bodies = Some([read("c", &body), read("d", &body)]);
-    let found =
-        compose(halves, bodies, &Settings { map_cells: 8, ..Settings::default() }, &Exec::new()).unwrap();
+    let found = compose(
+        halves,
+        bodies,
+        &ComposeSettings { map_cells: 8, ..ComposeSettings::default() },
+        &Exec::new(),
+    )
+    .unwrap();
     let region = &found.slices[0].region;
     let exact = PI * 100.0 - 16.0;
     assert!(region.inner.area() < exact && exact < region.outer.area() && region.inner.holes() == 1);
@@ -194,7 +199,7 @@ fn a_stack_of_headings_has_a_volume() {
     // A segment of length 2 against one of length 3: area 6 |sin ψ|, over a quarter turn ∫ = 6.
     let (a, b) = (Region::segment(v(-1.0, 0.0), v(1.0, 0.0)), Region::segment(v(-1.5, 0.0), v(1.5, 0.0)));
     let headings: Vec<f64> = (0..=90).map(|k| f64::from(k) * FRAC_PI_2 / 90.0).collect();
-    let found = composed(&a, &b, &Settings { headings, ..at(Frames::World, 0.0) });
+    let found = composed(&a, &b, &ComposeSettings { headings, ..at(Frames::World, 0.0) });
     let [inner, outer] = found.volume.unwrap();
     // The trapezoidal rule is off by at most h²/12 · (b − a) · 6.
     let most = (FRAC_PI_2 / 90.0).powi(2) / 12.0 * FRAC_PI_2 * 6.0;
@@ -248,7 +253,7 @@ fn the_shipped_example_is_the_one_of_the_page() {
     assert!(brackets(&hook, PI / 3.0 * (160f64.powi(2) - 100f64.powi(2))));
     assert!(brackets(&string, PI * 6000.0));
     let boats = Some([file("boat.toml"), file("boat.toml")]);
-    let found = compose([hook, string], boats, &Settings::default(), &Exec::new()).unwrap();
+    let found = compose([hook, string], boats, &ComposeSettings::default(), &Exec::new()).unwrap();
     let told = report(&found);
     assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());
     assert!(figure(&found).unwrap().png(1.0).unwrap().len() > 1000);
@@ -355,7 +360,7 @@ fn two_connectors_add_up_their_own_search() {
     assert!((area - exact).abs() < 1e-5 && region.area() > 100.0, "{area} {exact}");
     let bare = read("[connector]\nfamily = \"v-face\"\n");
     assert_eq!(bare.measure, Measure::Widths);
-    let refused = compose([connector, bare], None, &Settings::default(), &Exec::new()).unwrap_err();
+    let refused = compose([connector, bare], None, &ComposeSettings::default(), &Exec::new()).unwrap_err();
     assert!(refused.to_string().contains("the units are mixed"), "{refused}");
 }
 

@@ -150,7 +150,7 @@ fn gaps(wanted: &[[DVec2; 2]], reached: &[[DVec2; 2]]) -> Vec<[DVec2; 4]> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{family, inverted, own_heights};
-    use super::super::{Settings, wanted_from_table};
+    use super::super::{InvertSettings, wanted_from_table};
     use super::*;
     use roxmltree::{Document, Node};
 
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn wanted_and_reached_heights_are_drawn() {
         let problem = family("pyramid");
-        let attained = inverted(&problem, own_heights(&problem), &Settings::default());
+        let attained = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let picture = figure(problem.design(), &attained).unwrap();
         let document = Document::parse(picture.svg()).unwrap();
         let (wanted, reached) =
@@ -174,7 +174,7 @@ mod tests {
         let table =
             "x,y,height\n-1,-1,.6\n0,-1,.6\n1,-1,.6\n-1,0,.6\n0,0,0\n1,0,.6\n-1,1,.6\n0,1,.6\n1,1,.6\n";
         let source = catchment::design::SourceText::new("wanted.csv", table);
-        let found = inverted(&problem, wanted_from_table(source).unwrap(), &Settings::default());
+        let found = inverted(&problem, wanted_from_table(source).unwrap(), &InvertSettings::default());
         assert!(!found.shortfalls.is_empty());
         let picture = figure(problem.design(), &found).unwrap();
         let document = Document::parse(picture.svg()).unwrap();

@@ -87,7 +87,7 @@ const ROUNDED: f64 = 1e-10;
 /// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct InvertSettings {
     /// Rolls besides 0 at which heights are wanted, in radians. Rotations are all combinations with the
     /// pitches and yaws.
     pub roll: Vec<f64>,
@@ -99,7 +99,7 @@ pub struct Settings {
     pub backing: f64,
 }
 
-impl Default for Settings {
+impl Default for InvertSettings {
     fn default() -> Self {
         // The backing of the families' own sockets.
         Self { roll: Vec::new(), pitch: Vec::new(), yaw: Vec::new(), backing: 0.25 }
@@ -134,7 +134,7 @@ pub struct Inverse {
     /// z of the back of the moving half, as mounted.
     pub back: f64,
     /// What was asked.
-    pub settings: Settings,
+    pub settings: InvertSettings,
 }
 
 /// Why there is no other half.
@@ -231,7 +231,7 @@ pub fn invert(
     connector: &Connector,
     wanted: Heights,
     turned: &Connector,
-    settings: &Settings,
+    settings: &InvertSettings,
     exec: &Exec,
 ) -> Result<Inverse, InvertError> {
     let turns = settings.turns(design)?;

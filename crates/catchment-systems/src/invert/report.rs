@@ -1,7 +1,7 @@
 //! The report of an inverse: JSON and text.
 
 use super::file::pieces;
-use super::{Between, Inverse, REACHED, Settings, Shortfall, doubts, measure};
+use super::{Between, Inverse, InvertSettings, REACHED, Shortfall, doubts, measure};
 use catchment::acceptance::Warning;
 use catchment::design::Design;
 use catchment::document::{Document, Subject, percent, significant};
@@ -34,7 +34,7 @@ pub struct Limits {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InvertBody {
     /// The settings.
-    pub settings: Settings,
+    pub settings: InvertSettings,
     /// Manufacturing limits of the part.
     pub limits: Limits,
     /// Convex pieces of the moving half, as drawn (facing +z, face centre at z = 0): their corners.
@@ -146,7 +146,7 @@ impl InvertBody {
     }
 
     fn describe_turns(&self, document: &mut Document) {
-        let Settings { roll, pitch, yaw, .. } = &self.settings;
+        let InvertSettings { roll, pitch, yaw, .. } = &self.settings;
         let axes = [("roll", roll), ("pitch", pitch), ("yaw", yaw)];
         let wanted: Vec<String> = axes
             .into_iter()

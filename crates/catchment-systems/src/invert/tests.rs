@@ -20,7 +20,7 @@ pub(super) fn own_heights(problem: &Problem) -> Heights {
     heights_of(problem.design(), problem.connector(), DMat3::IDENTITY, &Exec::new()).unwrap()
 }
 
-pub(super) fn inverted(problem: &Problem, wanted: Heights, settings: &Settings) -> Inverse {
+pub(super) fn inverted(problem: &Problem, wanted: Heights, settings: &InvertSettings) -> Inverse {
     let own = problem.connector();
     invert(problem.design(), own, wanted, own, settings, &Exec::new()).unwrap()
 }
@@ -32,7 +32,7 @@ pub(super) const FAMILIES: [&str; 5] = ["v-face", "s-face", "x-face", "pyramid",
 fn heights_of_a_family_and_its_fixed_half_give_back_its_moving_half() {
     for name in FAMILIES {
         let problem = family(name);
-        let found = inverted(&problem, own_heights(&problem), &Settings::default());
+        let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let own = lower_surface(&problem.connector().moving, &Exec::new()).unwrap();
         let mut compared = 0.0;
         for a in &own.facets {
@@ -98,7 +98,7 @@ fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
             }
             wanted.facets.extend(pieces.into_iter().map(|polygon| HeightFacet { polygon, ..facet.clone() }));
         }
-        let found = inverted(&problem, wanted.clone(), &Settings::default());
+        let found = inverted(&problem, wanted.clone(), &InvertSettings::default());
         // Nowhere higher than wanted.
         for want in &counted(problem.design(), wanted).facets {
             for got in &found.reached.facets {
@@ -154,7 +154,7 @@ fn a_flat_wish_over_a_flat_plate_is_a_plate() {
     let problem = family("pyramid");
     let table = "x,y,height\n-2,-2,1\n2,-2,1\n-2,2,1\n2,2,1\n";
     let wanted = wanted_from_table(SourceText::new("w.csv", table)).unwrap();
-    let found = inverted(&problem, wanted, &Settings::default());
+    let found = inverted(&problem, wanted, &InvertSettings::default());
     let [low, high] = found.moving.range().unwrap();
     assert!((low - (0.25 - 1.0)).abs() < 1e-9 && (high - low).abs() < 1e-9, "{low} {high}");
     assert!(found.reached.facets.iter().all(|f| f.polygon.iter().all(|p| (f.height(*p) - 1.0).abs() < 1e-9)));
@@ -163,8 +163,8 @@ fn a_flat_wish_over_a_flat_plate_is_a_plate() {
 #[test]
 fn turns_that_the_half_keeps_ask_for_nothing_more() {
     let problem = family("pyramid");
-    let plain = inverted(&problem, own_heights(&problem), &Settings::default());
-    let settings = Settings { yaw: vec![-0.3, 0.3], ..Settings::default() };
+    let plain = inverted(&problem, own_heights(&problem), &InvertSettings::default());
+    let settings = InvertSettings { yaw: vec![-0.3, 0.3], ..InvertSettings::default() };
     let turned = inverted(&problem, own_heights(&problem), &settings);
     // The pair's own moving half keeps its own heights at every turn, so nothing more is asked of it.
     for facet in &turned.moving.facets {
@@ -191,7 +191,7 @@ fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
     let limit = there(problem.connector());
     // Most that a half stops above the limit at the turn.
     let excess = |yaw: &[f64]| {
-        let settings = Settings { yaw: yaw.to_vec(), ..Settings::default() };
+        let settings = InvertSettings { yaw: yaw.to_vec(), ..InvertSettings::default() };
         let found = inverted(&problem, wanted.clone(), &settings);
         let mut most = f64::NEG_INFINITY;
         for want in &limit.facets {
@@ -211,7 +211,7 @@ fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
 fn the_result_is_a_design_that_runs() {
     for name in FAMILIES {
         let problem = family(name);
-        let found = inverted(&problem, own_heights(&problem), &Settings::default());
+        let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let limits = Limits { feature_d: 0.01, draft_rad: 0.05 };
         let told = report(problem.design(), &found, limits);
         assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());

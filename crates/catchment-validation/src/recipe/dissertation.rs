@@ -64,7 +64,7 @@ impl Errors {
 
 /// One entry of a table: the connector and all that the answer depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct DissertationSettings {
     /// The connector: a planar family for [`Errors::XTheta`], the pyramid for the others.
     pub family: Family,
     /// H/D.
@@ -135,7 +135,7 @@ const SPATIAL: usize = 31;
 /// count as minima, and rounding errors of 1e-16 must not decide which do.
 const HEIGHT_STEP: f64 = 1e-9;
 
-impl Settings {
+impl DissertationSettings {
     /// Depth tolerance as a share of H.
     pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
     /// Samples per axis of the planar tables, both ends included.
@@ -267,7 +267,7 @@ impl Samples {
 ///
 /// # Errors
 /// When the family cannot be drawn with this aspect ratio, or the computation is cancelled.
-pub fn accept(settings: &Settings, exec: &Exec) -> Result<Sampled, DissertationError> {
+pub fn accept(settings: &DissertationSettings, exec: &Exec) -> Result<Sampled, DissertationError> {
     let pair = settings.pair()?;
     let samples = Samples::of(settings.errors, settings.planar_samples.max(2));
     let heights = samples.heights(&pair, exec)?;
@@ -314,7 +314,7 @@ mod tests {
             (Errors::XPitchYaw, vec![31, 30, 30]),
             (Errors::XRollYaw, vec![31, 30, 30]),
         ] {
-            let samples = Samples::of(errors, Settings::PLANAR_SAMPLES);
+            let samples = Samples::of(errors, DissertationSettings::PLANAR_SAMPLES);
             assert_eq!(samples.shape(), shape);
             let slab = samples.x.count * samples.y.count;
             let (lateral, rotation) = (samples.mated % slab, samples.rotations[samples.mated / slab]);
@@ -326,7 +326,8 @@ mod tests {
 
     #[test]
     fn the_rotation_point_lies_behind_the_apex_plane() {
-        let at = |errors, cor| Settings::new(Family::VFace, errors, 2.0, cor).center_of_rotation();
+        let at =
+            |errors, cor| DissertationSettings::new(Family::VFace, errors, 2.0, cor).center_of_rotation();
         // The apex plane is H/2 = 1 in front of the face centre; the planar body's back is 2.5 behind that.
         assert_eq!(at(Errors::XTheta, 1.0), 1.0);
         assert_eq!(at(Errors::XTheta, 0.0), -1.5);
@@ -338,14 +339,17 @@ mod tests {
     fn a_planar_cell_counts_four_pi_over_ten_thousand() {
         let expected = 4.0 * PI / 1e4;
         assert!(
-            (Samples::of(Errors::XTheta, Settings::PLANAR_SAMPLES).cell_measure - expected).abs() < 1e-16
+            (Samples::of(Errors::XTheta, DissertationSettings::PLANAR_SAMPLES).cell_measure - expected).abs()
+                < 1e-16
         );
     }
 
     #[test]
     fn the_accepted_set_is_symmetric_like_the_connector() {
         // Mirroring the V-Face maps (x, θ) to (−x, −θ): the samples in reverse.
-        let sampled = accept(&Settings::new(Family::VFace, Errors::XTheta, 1.0, 1.0), &Exec::new()).unwrap();
+        let sampled =
+            accept(&DissertationSettings::new(Family::VFace, Errors::XTheta, 1.0, 1.0), &Exec::new())
+                .unwrap();
         let mirrored = sampled.accepted.iter().rev();
         let different = sampled.accepted.iter().zip(mirrored).filter(|(a, b)| a != b).count();
         // First in, first out breaks ties at the dams.
@@ -354,7 +358,7 @@ mod tests {
 
     #[test]
     fn a_shape_that_cannot_be_drawn_is_an_error() {
-        let settings = Settings::new(Family::VFace, Errors::XTheta, -1.0, 0.0);
+        let settings = DissertationSettings::new(Family::VFace, Errors::XTheta, -1.0, 0.0);
         assert!(matches!(accept(&settings, &Exec::new()), Err(DissertationError::Geometry { .. })));
     }
 }

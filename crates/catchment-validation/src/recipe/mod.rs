@@ -238,8 +238,8 @@ fn square(edge: usize) -> f64 {
     (edge * edge) as f64 * PLANAR_CELL
 }
 
-fn settings(family: Family, errors: Errors, row: usize, column: usize) -> dissertation::Settings {
-    dissertation::Settings::new(family, errors, ASPECT_RATIOS[row], CORS[column])
+fn settings(family: Family, errors: Errors, row: usize, column: usize) -> dissertation::DissertationSettings {
+    dissertation::DissertationSettings::new(family, errors, ASPECT_RATIOS[row], CORS[column])
 }
 
 fn failed<E: std::error::Error>(error: E) -> RecipeError {

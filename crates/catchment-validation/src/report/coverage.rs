@@ -1,11 +1,11 @@
 //! The coverage of intervals as aligned text.
 
-use crate::study::coverage::{Coverage, Settings};
+use crate::study::coverage::{Coverage, CoverageSettings};
 use std::fmt;
 
 impl fmt::Display for Coverage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Settings { repeats, descents, exact } = self.settings;
+        let CoverageSettings { repeats, descents, exact } = self.settings;
         writeln!(
             f,
             "Coverage: {repeats} intervals of {descents} descents each, against {exact} plain descents"

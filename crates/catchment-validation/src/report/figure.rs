@@ -113,11 +113,12 @@ pub fn resolution(found: &Found) -> Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::resolution::{Curve, Point, Settings};
+    use crate::study::resolution::{Curve, Point, ResolutionStudySettings};
 
     #[test]
     fn every_method_is_drawn_in_both_charts_and_the_exact_value_in_one() {
-        let settings = Settings { resolutions: vec![25, 50, 100], ..Settings::default() };
+        let settings =
+            ResolutionStudySettings { resolutions: vec![25, 50, 100], ..ResolutionStudySettings::default() };
         let curve = |name: &'static str, off: f64| Curve {
             name,
             points: settings

@@ -1,11 +1,11 @@
 //! What people and programs read of a table.
 
 use super::*;
-use crate::study::reproduce::{Settings, reproduce};
+use crate::study::reproduce::{ReproduceSettings, reproduce};
 use catchment::exec::Exec;
 
 fn comparison(table: &str) -> TableComparison {
-    reproduce(table, &Settings::default(), &Exec::new()).unwrap()
+    reproduce(table, &ReproduceSettings::default(), &Exec::new()).unwrap()
 }
 
 #[test]

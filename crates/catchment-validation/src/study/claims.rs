@@ -277,11 +277,14 @@ fn lowest_row(rows: &Rows) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::reproduce::{Settings, reproduce};
+    use crate::study::reproduce::{ReproduceSettings, reproduce};
     use catchment::exec::Exec;
 
     fn tables(names: &[&str]) -> Vec<TableComparison> {
-        names.iter().map(|name| reproduce(name, &Settings::default(), &Exec::new()).unwrap()).collect()
+        names
+            .iter()
+            .map(|name| reproduce(name, &ReproduceSettings::default(), &Exec::new()).unwrap())
+            .collect()
     }
 
     fn found<'a>(claims: &'a [Claim], says: &str) -> &'a Claim {

@@ -28,7 +28,7 @@ use serde::Serialize;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Settings {
+pub struct CoverageSettings {
     /// Intervals per design and partition.
     pub repeats: u64,
     /// Descents per interval.
@@ -37,7 +37,7 @@ pub struct Settings {
     pub exact: usize,
 }
 
-impl Default for Settings {
+impl Default for CoverageSettings {
     /// Some minutes on two cores.
     fn default() -> Self {
         Self { repeats: 100, descents: 1000, exact: 400_000 }
@@ -94,7 +94,7 @@ pub struct Row {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Coverage {
     /// Its settings.
-    pub settings: Settings,
+    pub settings: CoverageSettings,
     /// Its rows.
     pub rows: Vec<Row>,
 }
@@ -147,7 +147,7 @@ impl Parted {
 ///
 /// # Errors
 /// See [`CoverageError`].
-pub fn coverage(settings: &Settings, exec: &Exec) -> Result<Coverage, CoverageError> {
+pub fn coverage(settings: &CoverageSettings, exec: &Exec) -> Result<Coverage, CoverageError> {
     let cases = cases();
     let mut rows = Vec::new();
     for (k, case) in cases.iter().enumerate() {
@@ -198,14 +198,14 @@ struct Trial<'a> {
     case: &'a Parted,
     pair: &'a Pair,
     grid: &'a Grid,
-    settings: &'a Settings,
+    settings: &'a CoverageSettings,
     exact: f64,
     exec: &'a Exec,
 }
 
 impl Trial<'_> {
     fn row(&self, strata: &'static str, by: &impl Stratify, at: f64) -> Result<Row, CoverageError> {
-        let Settings { repeats, descents, exact: plain } = *self.settings;
+        let CoverageSettings { repeats, descents, exact: plain } = *self.settings;
         let silent = self.exec.part([at; 2], STAGE);
         let one = |number: usize, exec: &Exec| {
             let settings =
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_short_study_has_a_row_for_every_partition() {
-        let settings = Settings { repeats: 3, descents: 100, exact: 10_000 };
+        let settings = CoverageSettings { repeats: 3, descents: 100, exact: 10_000 };
         let found = coverage(&settings, &Exec::new()).unwrap();
         assert_eq!(found.rows.len(), 9);
         // Intervals of a hundred descents are wide, and three of three may miss by chance once in 10⁴.

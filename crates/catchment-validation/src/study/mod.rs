@@ -26,7 +26,7 @@ pub struct Request {
     /// Names of tables.
     pub tables: Vec<&'static str>,
     /// How the tables are computed.
-    pub settings: reproduce::Settings,
+    pub settings: reproduce::ReproduceSettings,
     /// Also figure 5.13.
     pub figure: bool,
     /// Also how often stated intervals hold.
@@ -67,7 +67,7 @@ pub enum StudyError {
 impl Request {
     /// What `names` ask for: tables, [`FIGURE`] and [`COVERAGE`]; every table where nothing is named. Names that are none of
     /// these ask for nothing.
-    pub fn of(names: &[String], settings: reproduce::Settings) -> Self {
+    pub fn of(names: &[String], settings: reproduce::ReproduceSettings) -> Self {
         let named = |name: &str| names.iter().any(|n| n == name);
         let tables = TABLES.iter().map(|table| table.name);
         Self {
@@ -88,10 +88,14 @@ impl Request {
             exec.report(k as f64 / self.tables.len() as f64, "tables");
             tables.push(reproduce::reproduce(name, &self.settings, exec)?);
         }
-        let figure =
-            self.figure.then(|| resolution::run(&resolution::Settings::default(), exec)).transpose()?;
-        let coverage =
-            self.coverage.then(|| coverage::coverage(&coverage::Settings::default(), exec)).transpose()?;
+        let figure = self
+            .figure
+            .then(|| resolution::run(&resolution::ResolutionStudySettings::default(), exec))
+            .transpose()?;
+        let coverage = self
+            .coverage
+            .then(|| coverage::coverage(&coverage::CoverageSettings::default(), exec))
+            .transpose()?;
         Ok(Reproduction { tables, figure, coverage })
     }
 }

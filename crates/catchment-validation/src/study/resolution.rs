@@ -23,7 +23,7 @@ use std::time::Instant;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Settings {
+pub struct ResolutionStudySettings {
     /// Samples or cells per axis, coarse to fine; even.
     pub resolutions: Vec<usize>,
     /// The finest resolution of descent, which takes its time.
@@ -34,7 +34,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-impl Default for Settings {
+impl Default for ResolutionStudySettings {
     fn default() -> Self {
         Self { resolutions: vec![26, 50, 100, 200, 400, 800], finest_descent: 200, descents: 20_000, seed: 1 }
     }
@@ -64,7 +64,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Found {
     /// What else changes the answer.
-    pub settings: Settings,
+    pub settings: ResolutionStudySettings,
     /// The exact Sum, D·rad.
     pub exact: f64,
     /// Its 95 % interval.
@@ -86,9 +86,9 @@ const PRESET: &str = "dissertation's";
 ///
 /// # Errors
 /// When it is cancelled, or does not fit into memory.
-pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
+pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Found, RecipeError> {
     let failed = |error: &dyn std::error::Error| RecipeError::Exact { reason: error.to_string() };
-    let preset = dissertation::Settings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
+    let preset = dissertation::DissertationSettings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
     let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
@@ -98,7 +98,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
         exec.check()?;
         let started = Instant::now();
         // Both ends are samples: one more than intervals.
-        let at = dissertation::Settings { planar_samples: resolution + 1, ..preset };
+        let at = dissertation::DissertationSettings { planar_samples: resolution + 1, ..preset };
         let sum = dissertation::accept(&at, exec)?.sum();
         own.points.push(Point { resolution, sum, seconds: started.elapsed().as_secs_f64() });
     }
@@ -151,11 +151,11 @@ mod tests {
 
     #[test]
     fn exact_methods_come_nearer() {
-        let settings = Settings {
+        let settings = ResolutionStudySettings {
             resolutions: vec![20, 40, 80],
             finest_descent: 80,
             descents: 2000,
-            ..Settings::default()
+            ..ResolutionStudySettings::default()
         };
         let found = run(&settings, &Exec::new()).unwrap();
         let last = |name: &str| found.curves.iter().find(|c| c.name == name).unwrap().points[2].sum;

@@ -55,7 +55,7 @@ fn degrees(radians: f64) -> String {
 mod tests {
     use super::super::file::ChainFile;
     use super::super::report::report;
-    use super::super::study::{Settings, run};
+    use super::super::study::{ChainSettings, run};
     use super::*;
     use catchment::design::SourceText;
     use catchment::exec::Exec;
@@ -65,7 +65,8 @@ mod tests {
         let picture = |text: &str, modules: Vec<usize>| {
             let file = ChainFile::read(SourceText::new("c.toml", text)).unwrap();
             let study =
-                run(&file, &Settings { chains: 60, modules, ..Settings::default() }, &Exec::new()).unwrap();
+                run(&file, &ChainSettings { chains: 60, modules, ..ChainSettings::default() }, &Exec::new())
+                    .unwrap();
             draw(&report(&study, &[], None), &study)
         };
         let folded =

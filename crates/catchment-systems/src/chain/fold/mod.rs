@@ -81,7 +81,7 @@ impl Default for Hooks {
 /// Settings that change the folding of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Settings {
+pub struct FoldSettings {
     /// The servos.
     pub servo: Servo,
     /// The faces.
@@ -90,7 +90,7 @@ pub struct Settings {
     pub substeps: usize,
 }
 
-impl Default for Settings {
+impl Default for FoldSettings {
     fn default() -> Self {
         // Steps of 1.7° at most for table 6.2: a face moves 3 mm, a tenth of the room between two modules.
         Self { servo: Servo::default(), hooks: Hooks::default(), substeps: 60 }
@@ -203,7 +203,7 @@ pub fn fold(
     body: &Body,
     modules: usize,
     sequence: &Sequence,
-    settings: &Settings,
+    settings: &FoldSettings,
     exec: &Exec,
 ) -> Result<Folded, FoldError> {
     let mut chain = Chain::new(*body, modules, &sequence.latches, settings);

@@ -11,7 +11,7 @@
 use super::super::kinematics::{Body, Frame, rotors};
 use super::super::shape::Latch;
 use super::pair::{Change, Pair};
-use super::{Event, Settings, State};
+use super::{Event, FoldSettings, State};
 
 /// N·mm in a N·m.
 const MILLI: f64 = 1e3;
@@ -19,7 +19,7 @@ const MILLI: f64 = 1e3;
 /// A chain on its way.
 pub(super) struct Chain {
     body: Body,
-    settings: Settings,
+    settings: FoldSettings,
     pub(super) angles: Vec<f64>,
     /// What every joint is told now; `None` is slack.
     pub(super) told: Vec<Option<f64>>,
@@ -27,7 +27,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    pub(super) fn new(body: Body, modules: usize, latches: &[Latch], settings: &Settings) -> Self {
+    pub(super) fn new(body: Body, modules: usize, latches: &[Latch], settings: &FoldSettings) -> Self {
         Self {
             body,
             settings: *settings,
@@ -200,7 +200,7 @@ mod tests {
         fn the_gradient_is_that_of_the_energy(off in proptest::collection::vec(-0.2..0.2f64, 6), held in 0usize..4) {
             const STEP: f64 = 1e-6;
             let angles = Shape::P.angles();
-            let mut chain = Chain::new(Body::default(), 6, &latches(&angles), &Settings::default());
+            let mut chain = Chain::new(Body::default(), 6, &latches(&angles), &FoldSettings::default());
             chain.told = vec![Some(0.0), Some(0.01), None, Some(-1.67), Some(-1.74), Some(0.0)];
             chain.pairs[0].held =
                 [Layers::None, Layers::One { offset: 3.0 }, Layers::One { offset: 0.0 }, Layers::Both][held];

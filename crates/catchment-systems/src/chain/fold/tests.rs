@@ -5,7 +5,7 @@ use super::super::sequence::{Command, Sequence, Step};
 use super::super::shape::{FIRST_CORNERS, Reading, Shape};
 use super::*;
 
-fn folded(shape: Shape, settings: &Settings) -> Folded {
+fn folded(shape: Shape, settings: &FoldSettings) -> Folded {
     let sequence = Sequence::of(shape).unwrap();
     fold(&Body::default(), shape.modules(), &sequence, settings, &Exec::new()).unwrap()
 }
@@ -25,7 +25,7 @@ fn told(found: &Folded) {
 /// lattice: within 1 mm and 1°.
 #[test]
 fn table_6_2_latches_one_layer_after_the_other_and_ends_on_the_lattice() {
-    let found = folded(Shape::P, &Settings::default());
+    let found = folded(Shape::P, &FoldSettings::default());
     told(&found);
     let events: Vec<_> = found.events.iter().map(|e| (e.from, e.to, e.layers, e.time_s.floor())).collect();
     assert_eq!(events, [(3, 6, 1, 3.0), (3, 6, 2, 5.0)]);
@@ -51,7 +51,7 @@ fn every_shape_latches_and_ends_on_its_lattice() {
     let rings = FIRST_CORNERS.map(|first_corner| Shape::O { first_corner });
     for shape in blocks.into_iter().chain(rings) {
         println!("{shape:?}");
-        let found = folded(shape, &Settings::default());
+        let found = folded(shape, &FoldSettings::default());
         told(&found);
         let latches = Sequence::of(shape).unwrap().latches;
         assert!(open_latches(&found, &latches).is_empty(), "{shape:?}");
@@ -65,7 +65,7 @@ fn every_shape_latches_and_ends_on_its_lattice() {
 #[test]
 fn a_weak_servo_does_not_latch() {
     let servo = Servo { torque: 0.8, ..Servo::default() };
-    let found = folded(Shape::P, &Settings { servo, ..Settings::default() });
+    let found = folded(Shape::P, &FoldSettings { servo, ..FoldSettings::default() });
     assert_eq!(found.events, []);
     assert!((found.pressed[0] - 0.8e3 / 95.0).abs() < 0.6, "{:?}", found.pressed);
     assert_eq!(open_latches(&found, &Sequence::of(Shape::P).unwrap().latches).len(), 1);
@@ -79,7 +79,7 @@ fn centred_faces_latch_both_layers_at_once() {
     sequence.steps = [(0.0, 0.0, 0.0), (1.0, square, 0.0), (3.0, square, -1.74)]
         .map(|(time_s, a, b)| Step { time_s, commands: vec![(4, Command::Angle(a)), (5, Command::Angle(b))] })
         .to_vec();
-    let found = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap();
+    let found = fold(&Body::default(), 6, &sequence, &FoldSettings::default(), &Exec::new()).unwrap();
     assert_eq!(found.events.len(), 1, "{:?}", found.events);
     assert!(found.events[0].layers == 2 && found.events[0].force_n >= 2.0 * 9.61);
 }
@@ -92,20 +92,20 @@ fn collisions_name_their_step() {
     };
     let steps = vec![bend(0.0, 2), bend(1.0, 3), bend(2.0, 4), bend(3.0, 5)];
     let sequence = Sequence { steps, latches: Vec::new(), source: "a test" };
-    let refused = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap_err();
+    let refused = fold(&Body::default(), 6, &sequence, &FoldSettings::default(), &Exec::new()).unwrap_err();
     // The third bend closes a ring of four.
     assert!(matches!(refused, FoldError::Cell { step: 2, a: 1, b: 5, .. }), "{refused}");
     // Without its latch the P's press is a collision, too.
     let sequence = Sequence { latches: Vec::new(), ..Sequence::of(Shape::P).unwrap() };
-    let refused = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap_err();
+    let refused = fold(&Body::default(), 6, &sequence, &FoldSettings::default(), &Exec::new()).unwrap_err();
     assert_eq!(refused.to_string(), "at 3 s module 6 hits module 3");
 }
 
 /// Half as long sub-steps move no event to another step and no rest by more than a hundredth of a millimetre.
 #[test]
 fn finer_steps_change_nothing_that_is_told() {
-    let coarse = folded(Shape::P, &Settings::default());
-    let fine = folded(Shape::P, &Settings { substeps: 240, ..Settings::default() });
+    let coarse = folded(Shape::P, &FoldSettings::default());
+    let fine = folded(Shape::P, &FoldSettings { substeps: 240, ..FoldSettings::default() });
     assert_eq!(coarse.events.len(), fine.events.len());
     for (a, b) in coarse.events.iter().zip(&fine.events) {
         assert!((a.time_s - b.time_s).abs() < 0.02 && a.layers == b.layers, "{a:?} {b:?}");

@@ -1,12 +1,12 @@
 //! Content of a report, and its round trip.
 
 use super::super::file::ChainFile;
-use super::super::study::{Settings, run};
+use super::super::study::{ChainSettings, run};
 use super::*;
 use catchment::design::SourceText;
 use catchment::exec::Exec;
 
-fn reported(text: &str, settings: &Settings) -> ChainReport {
+fn reported(text: &str, settings: &ChainSettings) -> ChainReport {
     let file = ChainFile::read(SourceText::new("c.toml", text)).unwrap();
     let study = run(&file, settings, &Exec::new()).unwrap();
     report(&study, &[], None)
@@ -14,7 +14,7 @@ fn reported(text: &str, settings: &Settings) -> ChainReport {
 
 #[test]
 fn a_report_reads_back_and_keeps_to_its_columns() {
-    let few = Settings { chains: 50, ..Settings::default() };
+    let few = ChainSettings { chains: 50, ..ChainSettings::default() };
     let texts = [
         "[chain]\njoint_sigma = '1 deg'",
         "[chain]\njoint_sigma = '1 deg'\n[sequence]\nname = 'O'",
@@ -34,7 +34,7 @@ fn a_report_reads_back_and_keeps_to_its_columns() {
 
 #[test]
 fn poses_are_listed_step_by_step() {
-    let report = reported("[sequence]\nname = 'P'", &Settings { chains: 1, ..Settings::default() });
+    let report = reported("[sequence]\nname = 'P'", &ChainSettings { chains: 1, ..ChainSettings::default() });
     let records = report.records();
     assert_eq!(records[0], ["t", "module", "x", "y", "heading", "command", "state"]);
     assert_eq!(records.len(), 1 + 6 * 6);
@@ -48,7 +48,7 @@ fn poses_are_listed_step_by_step() {
 fn a_latch_that_does_not_hold_is_a_doubt() {
     let report = reported(
         "[sequence]\nname = 'P'\n[servo]\ntorque = 0.8",
-        &Settings { chains: 1, ..Settings::default() },
+        &ChainSettings { chains: 1, ..ChainSettings::default() },
     );
     assert_eq!(report.warnings.len(), 1);
     let said = &report.warnings[0].message;

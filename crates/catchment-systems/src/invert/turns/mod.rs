@@ -43,7 +43,7 @@
 //! if heights are wanted at all these x + d: no height is wanted where a half passes the other by.
 
 use super::heights::{Heights, common};
-use super::{InvertError, Settings, heights_of, is_planar};
+use super::{InvertError, InvertSettings, heights_of, is_planar};
 use catchment::connector::{Connector, Half};
 use catchment::design::{Design, Quantity};
 use catchment::exec::Exec;
@@ -97,7 +97,7 @@ pub fn list_of_angles(text: &str) -> Result<Vec<f64>, String> {
     axis.values.iter().map(angle).collect()
 }
 
-impl Settings {
+impl InvertSettings {
     /// Angles of the three rotations, ascending, each at least 0 alone.
     fn angles(&self) -> [Vec<f64>; 3] {
         [&self.roll, &self.pitch, &self.yaw].map(|angles| {
@@ -173,7 +173,7 @@ pub(super) fn between(
     design: &Design,
     wanted: &Connector,
     new: &Connector,
-    settings: &Settings,
+    settings: &InvertSettings,
     exec: &Exec,
 ) -> Result<Option<Between>, InvertError> {
     let (midway, turn_rad) = settings.midway();

@@ -36,9 +36,14 @@ fn heights_at_rotations_give_back_the_moving_half() {
     for name in FAMILIES {
         let problem = family(name);
         let settings = if is_planar(problem.design()) {
-            Settings { pitch: five(0.3), ..Settings::default() }
+            InvertSettings { pitch: five(0.3), ..InvertSettings::default() }
         } else {
-            Settings { roll: vec![0.2], pitch: vec![-0.15, 0.1], yaw: vec![0.3], ..Settings::default() }
+            InvertSettings {
+                roll: vec![0.2],
+                pitch: vec![-0.15, 0.1],
+                yaw: vec![0.3],
+                ..InvertSettings::default()
+            }
         };
         let found = inverted(&problem, own_heights(&problem), &settings);
         let own = lower_surface(&problem.connector().moving, &Exec::new()).unwrap();
@@ -61,7 +66,7 @@ fn heights_at_rotations_give_back_the_moving_half() {
 }
 
 /// A pyramid's socket with the centre of rotation off the face, heights wanted 0.2 D above its own, but its own where it is tilted.
-fn raised(settings: &Settings) -> (Problem, Inverse) {
+fn raised(settings: &InvertSettings) -> (Problem, Inverse) {
     let problem = problem(
         "[connector]\nfamily = \"pyramid\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 0.5\ncenter_of_rotation = 0.3\n",
     );
@@ -73,14 +78,14 @@ fn raised(settings: &Settings) -> (Problem, Inverse) {
     (problem, found)
 }
 
-fn tilts() -> Settings {
-    Settings { roll: vec![-0.1, 0.1], pitch: vec![-0.2, 0.0, 0.2], ..Settings::default() }
+fn tilts() -> InvertSettings {
+    InvertSettings { roll: vec![-0.1, 0.1], pitch: vec![-0.2, 0.0, 0.2], ..InvertSettings::default() }
 }
 
 #[test]
 fn what_is_wanted_at_rotations_is_kept_there_and_not_elsewhere() {
     let (problem, kept) = raised(&tilts());
-    let (_, free) = raised(&Settings::default());
+    let (_, free) = raised(&InvertSettings::default());
     assert_eq!((kept.turns, free.turns), (6, 0));
     let new = Pair::new(&kept.connector, problem.alignment());
     let careless = Pair::new(&free.connector, problem.alignment());
@@ -132,13 +137,13 @@ fn between_the_rotations_the_excess_is_bounded() {
 #[test]
 fn rotations_that_cannot_be_asked_for_are_refused() {
     let planar = family("v-face");
-    let settings = Settings { roll: vec![0.1], ..Settings::default() };
+    let settings = InvertSettings { roll: vec![0.1], ..InvertSettings::default() };
     assert_eq!(settings.turns(planar.design()), Err(InvertError::Planar));
     let spatial = family("pyramid");
     let many: Vec<f64> = (0..40).map(|k| f64::from(k) * 0.001).collect();
-    let settings = Settings { roll: many.clone(), yaw: many, ..Settings::default() };
+    let settings = InvertSettings { roll: many.clone(), yaw: many, ..InvertSettings::default() };
     assert_eq!(settings.turns(spatial.design()), Err(InvertError::TooManyTurns { count: 1600 }));
-    let settings = Settings { pitch: vec![1.5], ..Settings::default() };
+    let settings = InvertSettings { pitch: vec![1.5], ..InvertSettings::default() };
     assert!(settings.turns(spatial.design()).unwrap_err().to_string().contains("less than 80°"));
 }
 

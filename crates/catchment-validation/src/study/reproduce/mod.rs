@@ -27,7 +27,7 @@ pub use extremes::{Extremes, Places};
 
 /// What to compute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Settings {
+pub struct ReproduceSettings {
     /// Also the exact value of every entry: seconds to minutes per table.
     pub exact: bool,
 }
@@ -132,7 +132,11 @@ fn known() -> String {
 ///
 /// # Errors
 /// When there is no such table (the message lists those there are), or the computation is cancelled.
-pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableComparison, ReproduceError> {
+pub fn reproduce(
+    table: &str,
+    settings: &ReproduceSettings,
+    exec: &Exec,
+) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
     let table = Table::of(table).ok_or_else(unknown)?;
     let published = table.published()?;

@@ -6,7 +6,7 @@ use crate::recipe::dissertation::Errors;
 use catchment::method::kinematic::START_MEASURE;
 
 fn comparison(table: &str) -> TableComparison {
-    reproduce(table, &Settings::default(), &Exec::new()).unwrap()
+    reproduce(table, &ReproduceSettings::default(), &Exec::new()).unwrap()
 }
 
 #[test]
@@ -118,14 +118,14 @@ fn the_largest_and_the_smallest_of_the_highlighted_tables() {
 #[test]
 fn threads_do_not_change_a_table() {
     let with = |threads| {
-        reproduce("5.8", &Settings::default(), &Exec::new().with_threads(threads).unwrap()).unwrap()
+        reproduce("5.8", &ReproduceSettings::default(), &Exec::new().with_threads(threads).unwrap()).unwrap()
     };
     assert_eq!(with(1), with(2));
 }
 
 #[test]
 fn an_unknown_table_lists_the_known_ones() {
-    let error = reproduce("5.33", &Settings::default(), &Exec::new()).unwrap_err();
+    let error = reproduce("5.33", &ReproduceSettings::default(), &Exec::new()).unwrap_err();
     assert_eq!(
         error.to_string(),
         "there is no table `5.33` to reproduce; known are 2.1, 3.2, 3.3, 3.4, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, 5.8, 5.9, \
