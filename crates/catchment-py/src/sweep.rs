@@ -13,7 +13,7 @@ use catchment::exec::{Exec, Stopwatch};
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{Parts, SweepReport, figure};
-use catchment::study::sweep::{Axis, Found, Keep, Nowhere, Plan, SweepError, SweepSettings};
+use catchment::study::sweep::{DesignResult, Keep, Nowhere, SweepAxis, SweepError, SweepPlan, SweepSettings};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::io;
@@ -22,23 +22,23 @@ use std::path::PathBuf;
 /// The designs of a sweep, read and not yet computed.
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Sweep {
-    plan: Plan,
+    plan: SweepPlan,
     parts: Option<Parts>,
     output: Option<PathBuf>,
 }
 
 /// What was found elsewhere, and what is kept beside the result.
 struct Both<'a> {
-    found: BTreeMap<String, Found>,
+    found: BTreeMap<String, DesignResult>,
     kept: Option<&'a Parts>,
 }
 
 impl Keep for Both<'_> {
-    fn find(&self, key: &str) -> Option<Found> {
+    fn find(&self, key: &str) -> Option<DesignResult> {
         self.found.get(key).cloned().or_else(|| self.kept?.find(key))
     }
 
-    fn keep(&self, key: &str, found: &Found) -> io::Result<()> {
+    fn keep(&self, key: &str, found: &DesignResult) -> io::Result<()> {
         self.kept.map_or(Ok(()), |kept| kept.keep(key, found))
     }
 }
@@ -69,8 +69,8 @@ impl Sweep {
         expected: Expected,
         output: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let plan = || -> Result<Plan, Refusal> {
-            let axes = over.iter().map(|axis| axis.parse::<Axis>()).collect::<Result<Vec<_>, _>>();
+        let plan = || -> Result<SweepPlan, Refusal> {
+            let axes = over.iter().map(|axis| axis.parse::<SweepAxis>()).collect::<Result<Vec<_>, _>>();
             let axes = axes.map_err(|error| Refusal::argument("over", error))?;
             if let Some((name, _)) =
                 problem.changes.keys().find(|(_, key)| axes.iter().any(|axis| axis.key == *key))
@@ -83,7 +83,7 @@ impl Sweep {
                 StudyFolder { path, name: "sweep" }.check(&Exec::new())?;
             }
             let settings = SweepSettings { axes, run };
-            Plan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)
+            SweepPlan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)
         };
         let plan = plan().map_err(|refusal| refusal.raise(py))?;
         let parts = output.as_deref().map(Parts::beside);
@@ -122,7 +122,7 @@ impl Sweep {
     /// Keeps what was found elsewhere, where results are kept.
     fn keep(&self, py: Python<'_>, key: &str, found: &str) -> PyResult<()> {
         let keep = || -> Result<(), Refusal> {
-            let found: Found = serde_json::from_str(found)?;
+            let found: DesignResult = serde_json::from_str(found)?;
             Ok(self.parts.as_ref().map_or(Ok(()), |parts| parts.keep(key, &found))?)
         };
         keep().map_err(|refusal| refusal.raise(py))
@@ -134,7 +134,7 @@ impl Sweep {
             let started = Stopwatch::start();
             let read =
                 |(key, found): (String, String)| Ok::<_, Refusal>((key, serde_json::from_str(&found)?));
-            let found = found.into_iter().map(read).collect::<Result<BTreeMap<String, Found>, _>>()?;
+            let found = found.into_iter().map(read).collect::<Result<BTreeMap<String, DesignResult>, _>>()?;
             let keep = Both { found, kept: self.parts.as_ref() };
             let is_nothing = keep.found.is_empty() && keep.kept.is_none();
             let keep: &dyn Keep = if is_nothing { &Nowhere } else { &keep };

@@ -1,7 +1,7 @@
 //! Finished designs in a temporary folder beside the result, until the result is complete.
 
 use crate::write;
-use catchment_study::sweep::{Found, Keep};
+use catchment_study::sweep::{DesignResult, Keep};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -66,13 +66,13 @@ impl Parts {
 }
 
 impl Keep for Parts {
-    fn find(&self, key: &str) -> Option<Found> {
+    fn find(&self, key: &str) -> Option<DesignResult> {
         let path = self.file(key);
         let small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= LARGEST);
         small.then(|| serde_json::from_slice(&fs::read(path).ok()?).ok())?
     }
 
-    fn keep(&self, key: &str, found: &Found) -> io::Result<()> {
+    fn keep(&self, key: &str, found: &DesignResult) -> io::Result<()> {
         fs::create_dir_all(&self.folder)?;
         let text = serde_json::to_vec(found)?;
         write::file(&self.file(key), &text, true).map_err(io::Error::other)
@@ -88,7 +88,7 @@ mod tests {
     fn what_is_kept_is_found_and_what_is_spoilt_is_not() {
         let home = tempfile::tempdir().unwrap();
         let parts = Parts::beside(&home.path().join("out"));
-        let (key, found) = ("a".repeat(DIGITS), Found::Refused("no".to_owned()));
+        let (key, found) = ("a".repeat(DIGITS), DesignResult::Refused("no".to_owned()));
         assert_eq!(parts.find(&key), None);
         parts.keep(&key, &found).unwrap();
         assert_eq!((parts.find(&key), parts.count()), (Some(found), 1));
@@ -106,7 +106,7 @@ mod tests {
     fn what_a_killed_process_left_goes_with_it() {
         let home = tempfile::tempdir().unwrap();
         let parts = Parts::beside(&home.path().join("out"));
-        let (key, found) = ("b".repeat(DIGITS), Found::Refused("no".to_owned()));
+        let (key, found) = ("b".repeat(DIGITS), DesignResult::Refused("no".to_owned()));
         for after in 0.. {
             faults::set(home.path(), Fault::Crash, after, true);
             let kept = parts.keep(&key, &found).is_ok();

@@ -25,13 +25,13 @@ subjects! {
     /// The effect of friction.
     FrictionReport = catchment_study::friction::Friction;
     /// The load that a half withstands.
-    HoldReport = catchment_study::hold::Hold;
+    HoldReport = catchment_study::hold::HoldingForces;
     /// The places where motions rest that do not dock.
     JamsReport = catchment_core::run::jams::Jams;
     /// The first contact as the kinematic method sees it.
     LeverReport = crate::FirstContact;
     /// A plan of trials.
-    PlanReport = catchment_study::plan::Plan;
+    PlanReport = catchment_study::plan::TrialPlan;
     /// The places where halves come to rest.
     RestsReport = catchment_core::run::rests::Rests;
     /// The Sum against ρ, the centre of rotation and the aspect ratio.

@@ -40,7 +40,7 @@ pub struct Refinement {
 
 /// A method's answer over a grid.
 #[derive(Debug)]
-pub struct Sampled {
+pub struct GridDecision {
     method: Method,
     grid: Grid,
     decided: Decided,
@@ -77,7 +77,7 @@ impl From<DecideError> for RefinementError {
     }
 }
 
-impl Sampled {
+impl GridDecision {
     /// Decides every cell of a grid with `resolution` cells per axis.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
 use catchment::study::proposal::{
-    Beside, Frames, Lie, PartFile, Proposal, ProposalError, ProposalSettings, propose,
+    Beside, PartFile, PartFrames, PartLayout, Proposal, ProposalError, ProposalSettings, propose,
 };
 use glam::{DAffine3, DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
@@ -18,7 +18,7 @@ use std::path::Path;
 const WIDTH: f64 = 40.0;
 
 /// As two files, and as an assembly.
-const BOTH: [Frames; 2] = [Frames::Facing, Frames::Any];
+const BOTH: [PartFrames; 2] = [PartFrames::Facing, PartFrames::Any];
 
 /// Numbers that look random.
 struct Dice(u64);
@@ -80,7 +80,7 @@ fn difference(a: &Problem, b: &Problem) -> f64 {
     [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y].into_iter().map(seen).fold(f64::INFINITY, f64::min)
 }
 
-fn settings(frames: Frames) -> ProposalSettings {
+fn settings(frames: PartFrames) -> ProposalSettings {
     ProposalSettings { frames, unit: Some(LengthUnit::Mm), ..ProposalSettings::default() }
 }
 
@@ -90,7 +90,7 @@ fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &ProposalSettings) -
 }
 
 /// Throws the halves of a design, lets them be placed in each of these frames, and compares the heights.
-fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, frames: &[Frames]) {
+fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, frames: &[PartFrames]) {
     let wanted = frames;
     let mut dice = Dice(seed);
     let folder = tempfile::tempdir().unwrap();
@@ -106,15 +106,15 @@ fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, fr
             write(folder.path(), "a.stl", &connector.fixed, &frames[0]),
             write(folder.path(), "b.stl", &connector.moving, &frames[0]),
         ];
-        for (parts, frames) in [(apart, Frames::Facing), (docked, Frames::Any)] {
+        for (parts, frames) in [(apart, PartFrames::Facing), (docked, PartFrames::Any)] {
             if !wanted.contains(&frames) {
                 continue;
             }
             let found = proposed(&parts, folder.path(), &settings(frames));
             let name = &truth.design().name;
             assert_eq!(
-                matches!(found.candidates[0].lie, Lie::Assembled { .. }),
-                frames == Frames::Any,
+                matches!(found.candidates[0].lie, PartLayout::Assembled { .. }),
+                frames == PartFrames::Any,
                 "{name}: {}",
                 found.candidates[0].lie
             );
@@ -159,7 +159,7 @@ fn a_cone_comes_back_and_its_yaw_does_not_matter() {
             &DAffine3::IDENTITY,
         ),
     ];
-    let found = proposed(&parts, folder.path(), &settings(Frames::Facing));
+    let found = proposed(&parts, folder.path(), &settings(PartFrames::Facing));
     assert_eq!(found.problem.alignment().dont_care, DofSet::EMPTY.with(Dof::Yaw));
 }
 
@@ -170,7 +170,7 @@ fn balls_in_grooves_come_back() {
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml"));
     let text =
         text.unwrap().replace("sphere = { radius = 6 }", "sphere = { radius = 6 }\nchord_error = 0.05");
-    comes_back(&problem(&text), None, 1e-4, 5, &[Frames::Any]);
+    comes_back(&problem(&text), None, 1e-4, 5, &[PartFrames::Any]);
 }
 
 /// A peg that rattles in its tray, by more than a seat's play may be without being said: what walls stop is free, and the play is what counts as docked.
@@ -195,7 +195,7 @@ fn what_walls_hold_far_apart_is_docked_within_the_play() {
     let frame = DAffine3::IDENTITY;
     let parts =
         [write(folder.path(), "tray.stl", &fixed, &frame), write(folder.path(), "peg.stl", &moving, &frame)];
-    let found = proposed(&parts, folder.path(), &settings(Frames::Any));
+    let found = proposed(&parts, folder.path(), &settings(PartFrames::Any));
     let alignment = found.problem.alignment();
     assert_eq!(alignment.free, DofSet::ALL, "{}", found.text);
     // Its play in parts of D, two digits of it; straight or turned.
@@ -213,7 +213,7 @@ fn the_same_part_twice_is_a_pair() {
     let truth = family("x-face-3d", "");
     let folder = tempfile::tempdir().unwrap();
     let part = write(folder.path(), "a.stl", &truth.connector().fixed, &Dice(7).frame());
-    let found = proposed(&[part.clone(), part], folder.path(), &settings(Frames::Facing));
+    let found = proposed(&[part.clone(), part], folder.path(), &settings(PartFrames::Facing));
     let off = difference(&truth, &found.problem);
     assert!(off < 1e-6, "{off}\n{}", found.text);
     assert!(found.problem.connector().ungendered(Mount::X));
@@ -233,7 +233,7 @@ fn a_pinned_choice_is_kept() {
         facing: [Some(fixed.parse().unwrap()), Some(moving.parse().unwrap())],
         free: Some(DofSet::EMPTY.with(Dof::X).with(Dof::Y)),
         name: Some("a \"pair\"".to_owned()),
-        ..settings(Frames::Any)
+        ..settings(PartFrames::Any)
     };
     let found = proposed(&parts, folder.path(), &ways("+z", "+z"));
     assert_eq!(found.problem.design().name, "a \"pair\"");
@@ -275,11 +275,11 @@ fn a_bought_ball_is_part_of_a_half() {
     };
     let moving = write(folder.path(), "plate.stl", &plate, &frame);
     let parts = [fixed, moving];
-    let alone = propose(&parts, &settings(Frames::Facing), &folder.path().join("d.toml"), &Exec::new());
+    let alone = propose(&parts, &settings(PartFrames::Facing), &folder.path().join("d.toml"), &Exec::new());
     assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
     let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
     let with = [Vec::new(), vec![Beside::Part(ball.clone())]];
-    let found = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(Frames::Facing) });
+    let found = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(PartFrames::Facing) });
     assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
     assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
     let free = found.problem.alignment().free;
@@ -288,7 +288,7 @@ fn a_bought_ball_is_part_of_a_half() {
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
     // What is wrong with a part is said as of a design.
     let with = [vec![Beside::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
-    let wrong = ProposalSettings { with, ..settings(Frames::Facing) };
+    let wrong = ProposalSettings { with, ..settings(PartFrames::Facing) };
     let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
     // The plate in two files is the plate; a file whose unit nobody says is named with its own size.
@@ -300,7 +300,7 @@ fn a_bought_ball_is_part_of_a_half() {
     let second = write(folder.path(), "second.stl", &half(0.24), &frame);
     let parts = [parts[0].clone(), first];
     let with = [Vec::new(), vec![Beside::File(second), Beside::Part(ball)]];
-    let settings = ProposalSettings { with, ..settings(Frames::Facing) };
+    let settings = ProposalSettings { with, ..settings(PartFrames::Facing) };
     let found = proposed(&parts, folder.path(), &settings);
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
     let nobody = ProposalSettings { unit: None, ..settings };

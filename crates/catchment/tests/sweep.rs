@@ -6,7 +6,7 @@ use catchment::design::{Finding, SourceText};
 use catchment::exec::OutOfBudget;
 use catchment::prelude::*;
 use catchment::report::SweepReport;
-use catchment::study::sweep::{Found, Keep, Nowhere, Plan, Sweep, SweepError, SweepSettings};
+use catchment::study::sweep::{DesignResult, Keep, Nowhere, Sweep, SweepError, SweepPlan, SweepSettings};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Mutex;
@@ -17,7 +17,7 @@ const FIGURES: u64 = 2 * 2048;
 
 const RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
-fn plan(text: &str, axes: &[&str], cells: &str, samples: usize) -> Result<Plan, SweepError> {
+fn plan(text: &str, axes: &[&str], cells: &str, samples: usize) -> Result<SweepPlan, SweepError> {
     use catchment::method::correction::Stop;
     let run = Run {
         over: Over::Grid(cells.parse().unwrap()),
@@ -25,7 +25,7 @@ fn plan(text: &str, axes: &[&str], cells: &str, samples: usize) -> Result<Plan, 
         ..Run::default()
     };
     let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
-    Plan::new(&SourceText::new("d.toml", text), SweepSettings { axes, run }, Ok)
+    SweepPlan::new(&SourceText::new("d.toml", text), SweepSettings { axes, run }, Ok)
 }
 
 fn family(name: &str, free: &str) -> String {
@@ -95,29 +95,29 @@ fn the_trends_of_the_pyramid() {
 /// Keeps everything in memory, and counts what is asked for and found.
 #[derive(Default)]
 struct Memory {
-    kept: Mutex<BTreeMap<String, Found>>,
+    kept: Mutex<BTreeMap<String, DesignResult>>,
     found: AtomicUsize,
 }
 
 impl Keep for Memory {
-    fn find(&self, key: &str) -> Option<Found> {
+    fn find(&self, key: &str) -> Option<DesignResult> {
         let found = self.kept.lock().unwrap().get(key).cloned();
         self.found.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
         found
     }
 
-    fn keep(&self, key: &str, found: &Found) -> io::Result<()> {
+    fn keep(&self, key: &str, found: &DesignResult) -> io::Result<()> {
         let text = serde_json::to_string(found)?;
         self.kept.lock().unwrap().insert(key.to_owned(), serde_json::from_str(&text)?);
         Ok(())
     }
 }
 
-fn small(axes: &[&str]) -> Plan {
+fn small(axes: &[&str]) -> SweepPlan {
     plan(&family("x-face", "['x', 'pitch']"), axes, "9", 50).unwrap()
 }
 
-fn run(plan: Plan, keep: &dyn Keep, threads: usize) -> Sweep {
+fn run(plan: SweepPlan, keep: &dyn Keep, threads: usize) -> Sweep {
     plan.run(keep, &Exec::new().with_threads(threads).unwrap()).unwrap()
 }
 
@@ -182,7 +182,7 @@ fn what_cannot_be_built_is_told_and_stops_nothing() {
     let base = plan.base().clone();
     let sweep = run(plan, &Nowhere, 2);
     assert!(sweep.designs[0].found.figures().is_some());
-    let Found::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
+    let DesignResult::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
     let alone = Draft::read(SourceText::new("d.toml", text.replace("pyramid", "cone")));
     let Err(ProblemError::Findings(findings)) = alone.unwrap().build() else { panic!("it builds") };
     let Finding { message, help, .. } = &findings.list[0];

@@ -10,7 +10,7 @@ use catchment::design::Quantity;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
 use catchment::report::figure;
-use catchment::study::hold::{Hold, HoldError, HoldSettings, run as find};
+use catchment::study::hold::{HoldError, HoldSettings, HoldingForces, run as find};
 use clap::Args;
 
 /// How hard a docked half may be pushed and twisted until it leaves
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
         Some(|report, _| Ok(figure::hold(report)?)),
         |problem, exec| {
             let found = find(problem, &args.settings(problem)?, exec).map_err(refused)?;
-            Ok(Hold { preload_n: args.preload, ..found })
+            Ok(HoldingForces { preload_n: args.preload, ..found })
         },
     )
 }

@@ -10,7 +10,8 @@ use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
 use catchment::study::proposal::{
-    Beside, Frames, PartFile, Proposal, ProposalError, ProposalSettings, Way, propose, shown_length,
+    AxisDirection, Beside, PartFile, PartFrames, Proposal, ProposalError, ProposalSettings, propose,
+    shown_length,
 };
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
@@ -55,7 +56,7 @@ pub(crate) struct PlaceArgs {
     drawn: Drawn,
     /// The direction in which the moving half comes, of parts drawn docked: +x, -x, +y, -y, +z or -z, or half way between two, such as +y+z
     #[arg(long, value_name = "WAY", allow_hyphen_values = true, help_heading = "Instead of what is found")]
-    approach: Option<Way>,
+    approach: Option<AxisDirection>,
     /// Where the fixed half faces in its file
     #[arg(
         long,
@@ -64,7 +65,7 @@ pub(crate) struct PlaceArgs {
         conflicts_with = "approach",
         help_heading = "Instead of what is found"
     )]
-    facing_fixed: Option<Way>,
+    facing_fixed: Option<AxisDirection>,
     /// Where the moving half faces in its file
     #[arg(
         long,
@@ -73,7 +74,7 @@ pub(crate) struct PlaceArgs {
         conflicts_with = "approach",
         help_heading = "Instead of what is found"
     )]
-    facing_moving: Option<Way>,
+    facing_moving: Option<AxisDirection>,
     /// Degrees of freedom that are free, such as x,y,yaw; those that the seat holds without it
     #[arg(long, value_name = "DOFS", value_parser = dofs, help_heading = "Instead of what is found")]
     free: Option<DofSet>,
@@ -183,19 +184,19 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
 
 fn settings(args: &PlaceArgs) -> Result<ProposalSettings, Failure> {
     let frames = match args.drawn {
-        Drawn::Auto => Frames::Any,
-        Drawn::Assembled => Frames::Assembled,
-        Drawn::Facing => Frames::Facing,
+        Drawn::Auto => PartFrames::Any,
+        Drawn::Assembled => PartFrames::Assembled,
+        Drawn::Facing => PartFrames::Facing,
     };
     let facing = [args.facing_fixed, args.facing_moving];
     let help = |text: &str| Some(text.to_owned());
-    if frames == Frames::Facing && args.approach.is_some() {
+    if frames == PartFrames::Facing && args.approach.is_some() {
         return Err(Failure::with_help(
             "--approach is of parts that are drawn docked".to_owned(),
             help("--drawn assembled; parts in frames of their own have --facing-fixed and --facing-moving"),
         ));
     }
-    if frames == Frames::Assembled && facing.iter().any(Option::is_some) {
+    if frames == PartFrames::Assembled && facing.iter().any(Option::is_some) {
         return Err(Failure::with_help(
             "--facing-fixed and --facing-moving are of parts in frames of their own".to_owned(),
             help("--drawn facing; parts that are drawn docked have --approach"),

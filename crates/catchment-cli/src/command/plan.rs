@@ -15,7 +15,7 @@ use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
 use catchment::report::schema::Timing;
 use catchment::report::{PlanReport, figure};
-use catchment::study::plan::{Pattern, Plan, PlanError, TrialPlanSettings, panels, run as make};
+use catchment::study::plan::{Pattern, TrialPlan, TrialPlanError, TrialPlanSettings, panels, run as make};
 use clap::{Args, ValueEnum};
 use std::time::Instant;
 
@@ -127,13 +127,13 @@ enum Kind {
 
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let output = args.result.check(Plan::KIND, true)?;
+    let output = args.result.check(TrialPlan::KIND, true)?;
     let running = args.exec.start()?;
     running.may_be_left();
     let (problem, decided_with) = args.design.decided(&running.exec)?;
     let settings = args.settings(&problem, decided_with)?;
     let plan = make(&problem, &settings, &running.exec).map_err(refused)?;
-    let plan = Plan { offsets_at: args.offsets_at.into(), ..plan };
+    let plan = TrialPlan { offsets_at: args.offsets_at.into(), ..plan };
     let slices = if output.wants_picture() {
         let poses: Vec<PoseError> = plan.points.iter().map(|point| point.error).collect();
         let motions = descent::DescentSettings::with_friction(settings.friction)?;
@@ -280,11 +280,13 @@ fn step(text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
 }
 
 /// Why there is no plan, with what helps.
-fn refused(error: PlanError) -> Failure {
+fn refused(error: TrialPlanError) -> Failure {
     let help = match &error {
-        PlanError::NotDocked => Some("catchment check says where it settles instead"),
-        PlanError::JointElsewhere { .. } => Some("--cor puts the centre of rotation, --free frees an error"),
-        PlanError::Locked { .. } => Some("--free frees it"),
+        TrialPlanError::NotDocked => Some("catchment check says where it settles instead"),
+        TrialPlanError::JointElsewhere { .. } => {
+            Some("--cor puts the centre of rotation, --free frees an error")
+        }
+        TrialPlanError::Locked { .. } => Some("--free frees it"),
         _ => None,
     };
     match help {

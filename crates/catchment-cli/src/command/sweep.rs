@@ -18,7 +18,7 @@ use catchment::report::figure::{sweep_map, sweep_outlines};
 use catchment::report::schema::Timing;
 use catchment::report::{Parts, SweepReport};
 use catchment::run::{Over, Run, RunError};
-use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Sweep, SweepError, SweepSettings};
+use catchment::study::sweep::{Keep, Nowhere, Sweep, SweepAxis, SweepError, SweepPlan, SweepSettings};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use std::path::Path;
@@ -43,7 +43,7 @@ pub(crate) struct SweepArgs {
     pub(super) design: DesignArgs,
     /// A key of the design file and its values, such as cor=-1..1/5 or errors.x=1,2; may be repeated
     #[arg(long, value_name = "KEY=VALUE,…", required = true, allow_hyphen_values = true, value_parser = axis)]
-    over: Vec<Axis>,
+    over: Vec<SweepAxis>,
     #[command(flatten)]
     how: MethodArgs,
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
@@ -59,8 +59,8 @@ pub(crate) struct SweepArgs {
     exec: ExecArgs,
 }
 
-fn axis(text: &str) -> Result<Axis, String> {
-    text.parse::<Axis>().map_err(|error| escaped(&error.to_string()))
+fn axis(text: &str) -> Result<SweepAxis, String> {
+    text.parse::<SweepAxis>().map_err(|error| escaped(&error.to_string()))
 }
 
 pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
@@ -95,7 +95,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// The designs, read.
-fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
+fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
     let Choice::One(method) = &args.how.method else {
         let help = Some("name one; `run --method all` compares them on one design".to_owned());
         return Err(Failure::with_help("--method: a sweep is by one method".to_owned(), help));
@@ -117,11 +117,11 @@ fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
         ..Run::default()
     };
     let settings = SweepSettings { axes: args.over.clone(), run };
-    Plan::new(&source, settings, |draft| args.design.change(draft)).map_err(refused)
+    SweepPlan::new(&source, settings, |draft| args.design.change(draft)).map_err(refused)
 }
 
 /// Computes what is not kept; says what is where it stops.
-fn compute(plan: Plan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep, Failure> {
+fn compute(plan: SweepPlan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep, Failure> {
     let Some(parts) = parts else { return plan.run(&Nowhere, exec).map_err(refused) };
     let designs = plan.len();
     let keep: &dyn Keep = parts;

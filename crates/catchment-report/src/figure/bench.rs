@@ -10,7 +10,7 @@ use catchment_core::design::Design;
 use catchment_core::document::percent;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Observed;
-use catchment_study::plan::{CELLS, Panel, Point};
+use catchment_study::plan::{CELLS, Panel, PlannedPose};
 use catchment_study::validate::Judged;
 
 /// A trial that fared otherwise than predicted.
@@ -45,7 +45,7 @@ struct Mark {
 
 /// Draws the poses of a plan, and what is predicted of them.
 pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
-    let of = |point: &Point| Mark {
+    let of = |point: &PlannedPose| Mark {
         error: point.error,
         shape: match (point.prediction.either, point.prediction.docks()) {
             (true, _) => Shape::Either,

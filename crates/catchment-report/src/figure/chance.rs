@@ -7,7 +7,7 @@ use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture};
 use crate::ChanceReport;
 use catchment_core::poses::Circumstance;
-use catchment_study::chance::{Map, unit_of};
+use catchment_study::chance::{ChanceMap, unit_of};
 use std::fmt::Write;
 
 /// Colour of exact motions.
@@ -79,7 +79,7 @@ fn story(report: &ChanceReport) -> Vec<String> {
     lines
 }
 
-fn cells(svg: &mut Svg, report: &ChanceReport, map: &Map, rect: Rect) {
+fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) {
     let units = Units::of(&report.design);
     let [first, second] = [&map.axes[0], &map.axes[1]];
     let frame = Frame { rect, x: units.axis(first), y: units.axis(second) };

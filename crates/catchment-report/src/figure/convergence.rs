@@ -6,7 +6,7 @@ use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::ConvergenceReport;
-use catchment_study::convergence::Sequence;
+use catchment_study::convergence::RefinementSequence;
 use catchment_study::refinement::Refinement;
 
 /// Draws every method's sequence: above the Sums with their intervals, below the ONAA edges; left over cells per axis,
@@ -23,7 +23,7 @@ pub fn convergence(report: &ConvergenceReport) -> Picture {
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines = |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
-        let line = |(k, s): (usize, &Sequence)| Line {
+        let line = |(k, s): (usize, &RefinementSequence)| Line {
             name: s.method.to_owned(),
             colour: CURVES[k % CURVES.len()],
             points: s
@@ -84,7 +84,7 @@ mod tests {
                 undecided: 0,
             }
         };
-        let sequence = |(k, method): (usize, &Method)| Sequence {
+        let sequence = |(k, method): (usize, &Method)| RefinementSequence {
             method: method.name(),
             trials: [11, 15, 21, 29, 41].map(|n| trial(n, 2.4 + 0.1 * k as f64)).to_vec(),
             end: StopReason::Stable,

@@ -252,14 +252,14 @@ mod tests {
     use catchment_core::design::read;
     use catchment_core::exec::Exec;
     use catchment_core::problem::Problem;
-    use catchment_study::hold::{Hold, HoldSettings, run};
+    use catchment_study::hold::{HoldSettings, HoldingForces, run};
     use std::path::Path;
 
     fn drawn(text: &str, friction: f64, preload: Option<f64>) -> Picture {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let found =
             run(&problem, &HoldSettings { friction, ..HoldSettings::default() }, &Exec::new()).unwrap();
-        let found = Hold { preload_n: preload, ..found };
+        let found = HoldingForces { preload_n: preload, ..found };
         let report = HoldReport::new(problem.design(), found, Vec::new(), None);
         hold(&report).unwrap()
     }

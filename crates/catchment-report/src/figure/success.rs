@@ -7,7 +7,7 @@ use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use crate::SuccessesReport;
-use catchment_study::success::{Docking, in_percent};
+use catchment_study::success::{RobotDocking, in_percent};
 
 /// Colour of what is required.
 const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
@@ -52,7 +52,7 @@ pub fn success(report: &SuccessesReport) -> Picture {
 
 fn lines(report: &SuccessesReport) -> Vec<Line> {
     let percent = |share: f64| 100.0 * share;
-    let of = |(k, robot): (usize, &Docking)| Line {
+    let of = |(k, robot): (usize, &RobotDocking)| Line {
         name: robot.robot.clone(),
         colour: CURVES[k % CURVES.len()],
         points: robot
@@ -79,7 +79,7 @@ fn lines(report: &SuccessesReport) -> Vec<Line> {
 }
 
 /// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
-fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &Docking, rect: Rect) {
+fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &RobotDocking, rect: Rect) {
     let units = Units::of(&report.design);
     let head = if report.robots.len() > 1 {
         format!("halved, one by one: {}", robot.robot)

@@ -21,7 +21,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::document::significant;
 use catchment_core::landscape::GridAxis;
 use catchment_core::merit::slice::Slice;
-use catchment_study::sweep::{Axis, Outline};
+use catchment_study::sweep::{Outline, SweepAxis};
 
 /// Cells of a heat map.
 const CELL: [f64; 2] = [62.0, 40.0];
@@ -31,8 +31,8 @@ const MOST_MAPS: usize = 12;
 const MOST_OUTLINES: usize = 400;
 
 /// The axes of a sweep as rows and columns: the last one gives columns, the others together rows.
-fn table(axes: &[Axis]) -> (Vec<String>, Vec<String>) {
-    let named = |axis: &Axis, value: &str| format!("{} {value}", short_name(axis));
+fn table(axes: &[SweepAxis]) -> (Vec<String>, Vec<String>) {
+    let named = |axis: &SweepAxis, value: &str| format!("{} {value}", short_name(axis));
     let (columns, others) = match axes {
         [] => return (Vec::new(), Vec::new()),
         [rows] => (vec![String::new()], std::slice::from_ref(rows)),
@@ -51,7 +51,7 @@ fn table(axes: &[Axis]) -> (Vec<String>, Vec<String>) {
 }
 
 /// A key in few letters.
-fn short_name(axis: &Axis) -> &str {
+fn short_name(axis: &SweepAxis) -> &str {
     match axis.name() {
         "aspect_ratio" => "AR",
         "center_of_rotation" => "COR",
@@ -230,13 +230,13 @@ mod tests {
     use catchment_core::design::SourceText;
     use catchment_core::exec::Exec;
     use catchment_core::run::{Over, Run, Sample};
-    use catchment_study::sweep::{Nowhere, Plan, SweepSettings};
+    use catchment_study::sweep::{Nowhere, SweepPlan, SweepSettings};
 
     fn swept(text: &str, axes: &[&str]) -> SweepReport {
         let source = SourceText::new("d.toml", text);
         let run = Run { over: Over::Grid("15".parse().unwrap()), sample: Sample::None, ..Run::default() };
         let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
-        let plan = Plan::new(&source, SweepSettings { axes, run }, Ok).unwrap();
+        let plan = SweepPlan::new(&source, SweepSettings { axes, run }, Ok).unwrap();
         let design = plan.base().clone();
         SweepReport::new(&design, plan.run(&Nowhere, &Exec::new()).unwrap(), Vec::new(), None)
     }

@@ -11,7 +11,7 @@ use catchment_core::design::Design;
 use catchment_core::document::{percent, significant};
 use catchment_core::method::zraa::Zraa;
 use catchment_core::pose::Dof;
-use catchment_study::trials::{Trial, Trials};
+use catchment_study::trials::{RoundTrial, Trials};
 
 /// A trial on the wrong side.
 const WRONG: &str = "#c62f2f";
@@ -95,7 +95,7 @@ fn dots(svg: &mut Svg, frame: &Frame, design: &Design, found: &Trials) {
     let cells = found.grid.axes.iter().map(|axis| axis.cells).max().unwrap_or(1);
     let radius = (0.3 * frame.rect.w / cells as f64).clamp(0.8, 4.0);
     let line = frame.rect.y + 0.5 * frame.rect.h;
-    let place = |trial: &Trial| match &found.zraa {
+    let place = |trial: &RoundTrial| match &found.zraa {
         Zraa::Region { .. } => frame.at([trial.x * factor, trial.y * factor]),
         Zraa::Interval { axis, .. } => {
             let along = if *axis == Dof::X { trial.x } else { trial.y };
@@ -103,14 +103,14 @@ fn dots(svg: &mut Svg, frame: &Frame, design: &Design, found: &Trials) {
         }
     };
     // Wrong ones on top.
-    let mut order: Vec<&Trial> = found.trials.iter().collect();
+    let mut order: Vec<&RoundTrial> = found.trials.iter().collect();
     order.sort_by_key(|trial| is_wrong(trial));
     for trial in order {
         svg.circle(place(trial), radius, &style(trial.outcome, is_wrong(trial)));
     }
 }
 
-fn is_wrong(trial: &Trial) -> bool {
+fn is_wrong(trial: &RoundTrial) -> bool {
     trial.inside != (trial.outcome == Outcome::Aligned)
 }
 
@@ -164,7 +164,7 @@ mod tests {
             measure_ci95: [0.2, 1.8],
             accepted: 1.0,
         };
-        let trial = |x: f64, outcome| Trial { x, y: 0.0, outcome, inside: true };
+        let trial = |x: f64, outcome| RoundTrial { x, y: 0.0, outcome, inside: true };
         let trials = Trials {
             method: "descent",
             settings: Value::Null,
@@ -218,7 +218,7 @@ mod tests {
                 let inside = error.x.abs().max(error.y.abs()) < 0.5;
                 let aligned = inside != (k % 17 == 0);
                 let outcome = if aligned { Outcome::Aligned } else { Outcome::Missed };
-                Trial { x: error.x, y: error.y, outcome, inside }
+                RoundTrial { x: error.x, y: error.y, outcome, inside }
             })
             .collect();
         let zraa = Zraa::Region { polygons, area: 1.0, seam: 0.0 };

@@ -15,7 +15,7 @@ use crate::write;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::GridAxis;
 use catchment_core::pose::Dof;
-use catchment_study::sweep::{Axis, Figures, Outline};
+use catchment_study::sweep::{Figures, Outline, SweepAxis};
 use serde_json::{Map, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -95,9 +95,9 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
 }
 
 /// The axes as names of dimensions: their last words, or all of them where an error or another axis has that one.
-fn names(axes: &[Axis]) -> Vec<String> {
-    let taken = |axis: &Axis| {
-        let same = |other: &Axis| other.key != axis.key && other.name() == axis.name();
+fn names(axes: &[SweepAxis]) -> Vec<String> {
+    let taken = |axis: &SweepAxis| {
+        let same = |other: &SweepAxis| other.key != axis.key && other.name() == axis.name();
         axis.name().parse::<Dof>().is_ok() || axes.iter().any(same)
     };
     axes.iter()

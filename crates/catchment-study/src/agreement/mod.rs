@@ -63,7 +63,7 @@ pub struct Agreement {
     pub unit: String,
     /// All methods. Seconds differ between equal runs, and so does the result of a method that the time limit
     /// stops.
-    pub methods: Vec<Decided>,
+    pub methods: Vec<ComparedMethod>,
     /// For the methods with a result, in their order: the agreement of each pair.
     pub agreement: Vec<Vec<PairAgreement>>,
 }
@@ -71,7 +71,7 @@ pub struct Agreement {
 /// Result of a single method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Decided {
+pub struct ComparedMethod {
     /// Name of the method.
     pub method: &'static str,
     /// Result of the method; null without a result.
@@ -179,7 +179,7 @@ pub fn run(
             }
             Err(reason) => (None, Some(reason.to_string())),
         };
-        methods.push(Decided { method: method.name(), result, left_out });
+        methods.push(ComparedMethod { method: method.name(), result, left_out });
     }
     let between = |a: &Acceptance, b: &Acceptance| -> Result<PairAgreement, AgreementError> {
         let paired = Paired::of(a, b)?;

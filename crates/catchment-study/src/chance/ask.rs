@@ -1,6 +1,6 @@
 //! Poses and maps: a number of trials of each, and the share that docks.
 
-use super::found::{Chance, Declared, Map, PoseChance, PresetOpen};
+use super::found::{Chance, ChanceMap, Declared, PoseChance, PresetOpen};
 use super::spread;
 use super::trial::{Draw, check, nominal};
 use super::{ChanceError, ChanceSettings, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question};
@@ -78,7 +78,7 @@ pub fn run(
         Some(errors) => spread::overall(&trials, errors, &asked.times, &exec.part([ends[1], 1.0], STAGE))?,
         None => (None, Vec::new()),
     };
-    let map = grid.map(|grid| Map { axes: grid.axes, cells });
+    let map = grid.map(|grid| ChanceMap { axes: grid.axes, cells });
     let counted = overall.as_ref().map_or(0, |overall| overall.trials);
     let places = poses.len() + map.as_ref().map_or(0, |map| map.cells.len());
     let made = places * settings.trials + counted + curve.iter().map(|at| at.trials).sum::<usize>();

@@ -1,7 +1,7 @@
 //! Results of drop tests.
 
 use super::ChanceSettings;
-use crate::success::Stratum;
+use crate::success::ErrorStratum;
 use catchment_core::acceptance::Outcome;
 use catchment_core::landscape::GridAxis;
 use catchment_core::method::correction::wilson95;
@@ -32,7 +32,7 @@ pub struct Chance {
     /// Results for each pose, in the order of the input.
     pub poses: Vec<PoseChance>,
     /// The cells of a map; null without a map.
-    pub map: Option<Map>,
+    pub map: Option<ChanceMap>,
     /// Number of trials in total.
     pub trials: usize,
 }
@@ -89,7 +89,7 @@ pub struct PoseChance {
 /// Cells over one or two errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Map {
+pub struct ChanceMap {
     /// The axes; the first runs fastest.
     pub axes: Vec<GridAxis>,
     /// Results at the centre of each cell, with all other errors 0.
@@ -115,7 +115,7 @@ pub struct Overall {
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
     pub outcomes: ByOutcome<f64>,
     /// The sample, by stratum.
-    pub strata: Vec<Stratum>,
+    pub strata: Vec<ErrorStratum>,
     /// Cells of the quasi-static grid that allocates the trials to strata.
     pub grid_cells: usize,
     /// Probability by exact quasi-static motions of the same errors and friction draws, in [0, 1].

@@ -1,7 +1,7 @@
 //! Text and table form of drop tests.
 
 use super::found::place;
-use super::{Chance, Map, Overall, PoseChance};
+use super::{Chance, ChanceMap, Overall, PoseChance};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
 use catchment_core::document::{
@@ -224,7 +224,7 @@ impl Overall {
     }
 }
 
-impl Map {
+impl ChanceMap {
     fn describe(&self, document: &mut Document) {
         let over: Vec<&str> = self.axes.iter().map(|axis| axis.dof.name()).collect();
         let sizes: Vec<String> = self.axes.iter().map(|axis| axis.cells.to_string()).collect();

@@ -14,7 +14,7 @@
 
 mod report;
 
-use super::refinement::{Refinement, RefinementError, Sampled};
+use super::refinement::{GridDecision, Refinement, RefinementError};
 use catchment_core::exec::{Bytes, Exec, OutOfBudget};
 use catchment_core::landscape::Resolution;
 use catchment_core::method::correction::{self, Stop};
@@ -64,7 +64,7 @@ impl Default for ConvergenceSettings {
 /// Results of a method over its refinements.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Sequence {
+pub struct RefinementSequence {
     /// Name of the method.
     pub method: &'static str,
     /// Results from coarse to fine.
@@ -124,7 +124,7 @@ pub struct Convergence {
     /// Unit of the Sums, like `D²·rad³`.
     pub unit: String,
     /// The sequence of each method.
-    pub sequences: Vec<Sequence>,
+    pub sequences: Vec<RefinementSequence>,
 }
 
 /// Why there is no answer.
@@ -172,7 +172,7 @@ pub fn run(
             sequence(method, problem, settings, &part)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let first = sequences.iter().find_map(|s: &Sequence| s.trials.first());
+    let first = sequences.iter().find_map(|s: &RefinementSequence| s.trials.first());
     let unit = first.map_or_else(String::new, |trial| trial.unit.clone());
     Ok(Convergence { settings: settings.clone(), unit, sequences })
 }
@@ -182,12 +182,12 @@ fn sequence(
     problem: &Problem,
     settings: &ConvergenceSettings,
     exec: &Exec,
-) -> Result<Sequence, ConvergenceError> {
+) -> Result<RefinementSequence, ConvergenceError> {
     let axes = problem.alignment().free.len().clamp(1, 5);
     let cells = |resolution: usize| (resolution as f64).powf(axes as f64);
     let mut resolution = FIRST[axes - 1];
     let mut trials: Vec<Refinement> = Vec::new();
-    let mut finest: Option<Sampled> = None;
+    let mut finest: Option<GridDecision> = None;
     let mut spent = 0.0;
     let end = loop {
         if let Some(last) = trials.last() {
@@ -205,7 +205,7 @@ fn sequence(
         // Each refinement is dearer than all before it together: half of what is left.
         let done = 1.0 - 0.5f64.powf(trials.len() as f64);
         let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
-        let tried = Sampled::by(method, problem, resolution, &part)
+        let tried = GridDecision::by(method, problem, resolution, &part)
             .and_then(|sampled| Ok((sampled.refinement(problem, &part)?, sampled)));
         match tried {
             Ok((trial, sampled)) => {
@@ -229,7 +229,7 @@ fn sequence(
         }
         _ => None,
     };
-    Ok(Sequence { method: method.name(), trials, end, corrected })
+    Ok(RefinementSequence { method: method.name(), trials, end, corrected })
 }
 
 /// The odd number nearest to √2 times as many cells.
@@ -319,8 +319,9 @@ mod tests {
         );
         let hasty = ConvergenceSettings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &hasty, &Exec::new()).unwrap();
-        let once =
-            |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
+        let once = |s: &RefinementSequence| {
+            s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. })
+        };
         assert!(found.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
         let strict = ConvergenceSettings { tolerance: 1e-9, ..settings.clone() };

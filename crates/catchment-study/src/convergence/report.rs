@@ -1,6 +1,6 @@
 //! Text and table form of a convergence study.
 
-use super::{Convergence, CorrectedSum, Sequence, StopReason};
+use super::{Convergence, CorrectedSum, RefinementSequence, StopReason};
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Subject, Table, grouped, significant};
 
@@ -41,7 +41,7 @@ impl Subject for Convergence {
 }
 
 impl Convergence {
-    fn table(&self, sequence: &Sequence) -> Table {
+    fn table(&self, sequence: &RefinementSequence) -> Table {
         let mut table = Table::new([
             Column::new("per axis"),
             Column::new("cells"),
@@ -67,7 +67,7 @@ impl Convergence {
     /// The refinements of all methods. Its numbers have no exponents.
     fn data(&self) -> Table {
         let mut table = Table::data("method resolution cells seconds sum doubt_from doubt_to onaa_edge");
-        for Sequence { method, trials, .. } in &self.sequences {
+        for RefinementSequence { method, trials, .. } in &self.sequences {
             for trial in trials {
                 let [from, to] = trial.bracket;
                 let counts = [trial.resolution, trial.cells].map(Into::into);

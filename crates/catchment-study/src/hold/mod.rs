@@ -130,7 +130,7 @@ pub struct Weakest {
 /// Holding forces as shares of the preload, holding torques as shares of the preload times D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Hold {
+pub struct HoldingForces {
     /// The settings.
     pub settings: HoldSettings,
     /// The preload, in N; null if it is not known. If it is, texts state forces in N.
@@ -214,7 +214,7 @@ pub enum HoldError {
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Hold, HoldError> {
+pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<HoldingForces, HoldError> {
     let motion = settings.check()?;
     let pair = problem.pair();
     let (pose, outcome, rest) = match &settings.pose {
@@ -287,7 +287,7 @@ pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Ho
     let contacts = tried.holding.contacts().iter();
     let refined = [rough_free, smooth_free].into_iter().flatten();
     let forces = sideways.iter().copied().chain(refined);
-    Ok(Hold {
+    Ok(HoldingForces {
         settings: settings.clone(),
         preload_n: None,
         pose,

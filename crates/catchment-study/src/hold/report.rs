@@ -1,6 +1,6 @@
 //! Text and table form of holding forces.
 
-use super::{Both, COLUMNS, Hold};
+use super::{Both, COLUMNS, HoldingForces};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Document, Subject, Table, Units, significant};
@@ -10,7 +10,7 @@ const SHOWN: usize = 8;
 /// Shares of the preload below this are nothing: rounding.
 const NOTHING: f64 = 1e-6;
 
-impl Subject for Hold {
+impl Subject for HoldingForces {
     const KIND: &'static str = "hold";
     const SAMPLES_ERRORS: bool = false;
 
@@ -48,7 +48,7 @@ impl Subject for Hold {
     }
 }
 
-impl Hold {
+impl HoldingForces {
     fn describe_rest(&self, units: Units<'_>, document: &mut Document) {
         let preload = self.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
         document.row(

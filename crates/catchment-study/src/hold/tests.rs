@@ -13,7 +13,7 @@ fn problem(connector: &str, rest: &str) -> Problem {
     Problem::of(read(&text, Path::new("")).unwrap().design).unwrap()
 }
 
-fn found(problem: &Problem, settings: &HoldSettings) -> Hold {
+fn found(problem: &Problem, settings: &HoldSettings) -> HoldingForces {
     run(problem, settings, &Exec::new()).unwrap()
 }
 

@@ -89,7 +89,7 @@ pub const MOST_TRIALS: usize = 10_000;
 /// A plan of trials.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Plan {
+pub struct TrialPlan {
     /// The settings.
     pub settings: TrialPlanSettings,
     /// The point of the moving half at which the table for the robot gives x and y; the offsets of this
@@ -97,11 +97,11 @@ pub struct Plan {
     pub offsets_at: OffsetsAt,
     /// Counts of trials, poses and lines.
     #[serde(rename = "plan")]
-    pub counts: Counts,
+    pub counts: TrialPlanCounts,
     /// The poses, line by line.
-    pub points: Vec<Point>,
+    pub points: Vec<PlannedPose>,
     /// The trials in their order.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<PlannedTrial>,
     /// Exact motions that were followed.
     pub motions: usize,
 }
@@ -109,7 +109,7 @@ pub struct Plan {
 /// Counts of trials, poses and lines of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Counts {
+pub struct TrialPlanCounts {
     /// Trials.
     pub trials: usize,
     /// Poses.
@@ -134,7 +134,7 @@ pub struct Counts {
 /// A pose of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Point {
+pub struct PlannedPose {
     /// Pose error, in D and radians.
     pub error: PoseError,
     /// Number of its line, from 1; 0 without a line.
@@ -147,7 +147,7 @@ pub struct Point {
 /// A trial of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Trial {
+pub struct PlannedTrial {
     /// Its number from 1, in the order in which trials are made.
     #[serde(rename = "trial")]
     pub number: usize,
@@ -161,7 +161,7 @@ pub struct Trial {
 
 /// Why there is no plan.
 #[derive(Debug, thiserror::Error)]
-pub enum PlanError {
+pub enum TrialPlanError {
     /// No accuracy.
     #[error("no error has an accuracy: say how exactly the robot moves along one of them at least")]
     NoAccuracy,
@@ -248,7 +248,7 @@ const STAGE: &str = "motions";
 /// Plans trials.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// See [`TrialPlanError`].
 ///
 /// # Examples
 /// ```
@@ -271,11 +271,15 @@ const STAGE: &str = "motions";
 /// # Ok(())
 /// # }
 /// ```
-pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Result<Plan, PlanError> {
+pub fn run(
+    problem: &Problem,
+    settings: &TrialPlanSettings,
+    exec: &Exec,
+) -> Result<TrialPlan, TrialPlanError> {
     check_accuracy(problem, &settings.accuracy)?;
     for (count, what) in [(settings.repeats, "repeats"), (settings.blocks, "blocks")] {
         if count == 0 {
-            return Err(PlanError::None { what });
+            return Err(TrialPlanError::None { what });
         }
     }
     let motions = descent::DescentSettings::with_friction(settings.friction)?;
@@ -289,16 +293,16 @@ pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Resu
     };
     let made = maker.make(&settings.pattern, &part(0))?;
     if made.poses.is_empty() {
-        return Err(PlanError::FarFromBorder);
+        return Err(TrialPlanError::FarFromBorder);
     }
     if made.poses.len().saturating_mul(settings.repeats) > MOST_TRIALS {
-        return Err(PlanError::TooMany { most: MOST_TRIALS });
+        return Err(TrialPlanError::TooMany { most: MOST_TRIALS });
     }
     let errors: Vec<PoseError> = made.poses.iter().map(|placed| placed.error).collect();
     let (prediction, followed) =
         foretell(problem, &settings.accuracy, &motions, &errors, settings.seed, &part(1))?;
-    let point = |(Placed { error, line }, prediction)| Point { error, line, prediction };
-    let mut points: Vec<Point> = made.poses.into_iter().zip(prediction).map(point).collect();
+    let point = |(Placed { error, line }, prediction)| PlannedPose { error, line, prediction };
+    let mut points: Vec<PlannedPose> = made.poses.into_iter().zip(prediction).map(point).collect();
     if settings.stop_at_first_failure {
         points = stopped(problem, points);
     }
@@ -307,7 +311,7 @@ pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Resu
     let trials = order(points.len(), settings);
     let count = |is: &dyn Fn(&Prediction) -> bool| points.iter().filter(|p| is(&p.prediction)).count();
     let docking = count(&Prediction::docks);
-    let counts = Counts {
+    let counts = TrialPlanCounts {
         trials: trials.len(),
         poses: points.len(),
         lines: points.iter().map(|point| point.line).max().unwrap_or(0),
@@ -318,7 +322,7 @@ pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Resu
         asymmetric,
         open: made.open,
     };
-    Ok(Plan {
+    Ok(TrialPlan {
         settings: settings.clone(),
         offsets_at: OffsetsAt::Face,
         counts,
@@ -329,15 +333,15 @@ pub fn run(problem: &Problem, settings: &TrialPlanSettings, exec: &Exec) -> Resu
 }
 
 /// An accuracy is of free errors, and not of none.
-pub(crate) fn check_accuracy(problem: &Problem, accuracy: &PoseError) -> Result<(), PlanError> {
+pub(crate) fn check_accuracy(problem: &Problem, accuracy: &PoseError) -> Result<(), TrialPlanError> {
     let free = problem.alignment().free;
     for (axis, value) in Dof::ALL.into_iter().zip(accuracy.to_array()) {
         let fits = value.is_finite() && value >= 0.0 && (value == 0.0 || free.contains(axis));
         if !fits {
-            return Err(PlanError::Accuracy { axis, value });
+            return Err(TrialPlanError::Accuracy { axis, value });
         }
     }
-    if *accuracy == PoseError::default() { Err(PlanError::NoAccuracy) } else { Ok(()) }
+    if *accuracy == PoseError::default() { Err(TrialPlanError::NoAccuracy) } else { Ok(()) }
 }
 
 /// How far a pose is from zero, as a share of the error box.
@@ -348,7 +352,7 @@ pub(crate) fn outwards(problem: &Problem, error: &PoseError) -> f64 {
 }
 
 /// Every line up to its first predicted failure, that included.
-fn stopped(problem: &Problem, mut points: Vec<Point>) -> Vec<Point> {
+fn stopped(problem: &Problem, mut points: Vec<PlannedPose>) -> Vec<PlannedPose> {
     points.sort_by(|a, b| {
         a.line.cmp(&b.line).then(outwards(problem, &a.error).total_cmp(&outwards(problem, &b.error)))
     });
@@ -368,7 +372,7 @@ fn stopped(problem: &Problem, mut points: Vec<Point>) -> Vec<Point> {
 /// Poses that fare otherwise with other signs, by more than the accuracy explains.
 fn other_signs(
     problem: &Problem,
-    points: &[Point],
+    points: &[PlannedPose],
     motions: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<(usize, usize), Cancelled> {
@@ -377,7 +381,7 @@ fn other_signs(
         exec,
         || Judge::new(problem, motions),
         |judge, k| {
-            let Point { error, prediction, .. } = &points[k];
+            let PlannedPose { error, prediction, .. } = &points[k];
             if prediction.either {
                 return (false, 0);
             }
@@ -401,7 +405,7 @@ fn other_signs(
 }
 
 /// The order of the trials: every pose once, then again; each time shuffled by itself. Blocks are runs of that order.
-fn order(points: usize, settings: &TrialPlanSettings) -> Vec<Trial> {
+fn order(points: usize, settings: &TrialPlanSettings) -> Vec<PlannedTrial> {
     let total = points * settings.repeats;
     let mut trials = Vec::with_capacity(total);
     for repeat in 1..=settings.repeats {
@@ -416,7 +420,7 @@ fn order(points: usize, settings: &TrialPlanSettings) -> Vec<Trial> {
         }
         trials.extend(turn.into_iter().map(|point| (repeat, point)));
     }
-    let place = |(k, (repeat, point)): (usize, (usize, usize))| Trial {
+    let place = |(k, (repeat, point)): (usize, (usize, usize))| PlannedTrial {
         number: k + 1,
         block: k * settings.blocks / total + 1,
         repeat,

@@ -12,7 +12,7 @@
 
 use super::border::{Judge, Search, random_direction};
 use super::prediction::for_each;
-use super::{MOST_TRIALS, PlanError};
+use super::{MOST_TRIALS, TrialPlanError};
 use crate::validate::LIMIT;
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::Exec;
@@ -114,7 +114,7 @@ const CONTROLS: usize = 8;
 const TRIES: usize = 8;
 
 impl Maker<'_> {
-    pub(super) fn make(&self, pattern: &Pattern, exec: &Exec) -> Result<Made, PlanError> {
+    pub(super) fn make(&self, pattern: &Pattern, exec: &Exec) -> Result<Made, TrialPlanError> {
         match pattern {
             Pattern::Grid { steps, max } => {
                 let values = |axis: Dof| {
@@ -144,7 +144,11 @@ impl Maker<'_> {
         max[axis.index()].unwrap_or_else(|| self.problem.alignment().half_range(axis))
     }
 
-    fn lattice(&self, step: &[Option<f64>; 5], max: &[Option<f64>; 5]) -> Result<Vec<Placed>, PlanError> {
+    fn lattice(
+        &self,
+        step: &[Option<f64>; 5],
+        max: &[Option<f64>; 5],
+    ) -> Result<Vec<Placed>, TrialPlanError> {
         /// A multiple that rounding puts beyond the largest is there all the same.
         const ROUNDING: f64 = 1e-9;
         let mut far = None;
@@ -159,19 +163,22 @@ impl Maker<'_> {
             Some((if self.symmetric { 0 } else { -count }..=count).map(|k| f64::from(k) * step).collect())
         };
         let poses = self.product(values)?;
-        if far.is_some() { Err(PlanError::TooMany { most: MOST_TRIALS }) } else { Ok(poses) }
+        if far.is_some() { Err(TrialPlanError::TooMany { most: MOST_TRIALS }) } else { Ok(poses) }
     }
 
     /// All combinations; lines run along the first error, outwards from 0.
-    fn product(&self, mut values: impl FnMut(Dof) -> Option<Vec<f64>>) -> Result<Vec<Placed>, PlanError> {
+    fn product(
+        &self,
+        mut values: impl FnMut(Dof) -> Option<Vec<f64>>,
+    ) -> Result<Vec<Placed>, TrialPlanError> {
         let axes: Vec<(Dof, Vec<f64>)> =
             self.problem.alignment().free.iter().filter_map(|axis| Some((axis, values(axis)?))).collect();
         if axes.is_empty() {
-            return Err(PlanError::Nothing);
+            return Err(TrialPlanError::Nothing);
         }
         let total = axes.iter().try_fold(1usize, |total, (_, values)| total.checked_mul(values.len()));
         let Some(total) = total.filter(|total| *total <= MOST_TRIALS) else {
-            return Err(PlanError::TooMany { most: MOST_TRIALS });
+            return Err(TrialPlanError::TooMany { most: MOST_TRIALS });
         };
         let along = axes[0].1.len();
         let pose = |number: usize| {
@@ -193,7 +200,7 @@ impl Maker<'_> {
         poses: Vec<Placed>,
         step: &[Option<f64>; 5],
         exec: &Exec,
-    ) -> Result<Made, PlanError> {
+    ) -> Result<Made, TrialPlanError> {
         /// A point that rounding puts beyond a step is within it.
         const ROUNDING: f64 = 1e-9;
         /// Directions that are first looked at may meet the border so much farther off than it is.
@@ -218,12 +225,12 @@ impl Maker<'_> {
         Ok(Made { poses: numbered(kept.collect()), followed: found.iter().map(|(_, n)| n).sum(), open: 0 })
     }
 
-    fn arc(&self, lever: f64, pitch: &[f64], yaw: &[f64]) -> Result<Made, PlanError> {
+    fn arc(&self, lever: f64, pitch: &[f64], yaw: &[f64]) -> Result<Made, TrialPlanError> {
         if !(lever.is_finite() && lever > 0.0) {
-            return Err(PlanError::Lever { lever });
+            return Err(TrialPlanError::Lever { lever });
         }
         if pitch.len().saturating_mul(yaw.len()) > MOST_TRIALS {
-            return Err(PlanError::TooMany { most: MOST_TRIALS });
+            return Err(TrialPlanError::TooMany { most: MOST_TRIALS });
         }
         let alignment = self.problem.alignment();
         let mut poses = Vec::new();
@@ -239,7 +246,7 @@ impl Maker<'_> {
                 if let Some((axis, _)) =
                     turning.into_iter().find(|(axis, value)| *value != 0.0 && locked(*axis))
                 {
-                    return Err(PlanError::Locked { axis });
+                    return Err(TrialPlanError::Locked { axis });
                 }
                 let held = CorPose::from_error(
                     &error,
@@ -249,7 +256,7 @@ impl Maker<'_> {
                 .lateral;
                 for (axis, off) in [(Dof::X, held.x), (Dof::Y, held.y)] {
                     if locked(axis) && off.abs() > LOCKED_WITHIN {
-                        return Err(PlanError::JointElsewhere {
+                        return Err(TrialPlanError::JointElsewhere {
                             axis,
                             lever,
                             cor: alignment.center_of_rotation,
@@ -260,7 +267,7 @@ impl Maker<'_> {
             }
         }
         if poses.is_empty() {
-            Err(PlanError::Nothing)
+            Err(TrialPlanError::Nothing)
         } else {
             Ok(Made { poses: numbered(poses), ..Made::default() })
         }
@@ -272,19 +279,19 @@ impl Maker<'_> {
         lines: Option<usize>,
         resolution: &[Option<f64>; 5],
         exec: &Exec,
-    ) -> Result<Made, PlanError> {
+    ) -> Result<Made, TrialPlanError> {
         let controls = 2 * (trials / (2 * CONTROLS)).max(1);
         let fewest = 2 * lines.unwrap_or(1) + controls;
         if trials < fewest || lines == Some(0) {
-            return Err(PlanError::TooFew { trials, fewest });
+            return Err(TrialPlanError::TooFew { trials, fewest });
         }
         if trials > MOST_TRIALS {
-            return Err(PlanError::TooMany { most: MOST_TRIALS });
+            return Err(TrialPlanError::TooMany { most: MOST_TRIALS });
         }
         let wanted = lines.unwrap_or((trials - controls) / 2);
         let mut judge = Judge::new(self.problem, self.motions);
         if !judge.docks(&PoseError::default()) {
-            return Err(PlanError::NotDocked);
+            return Err(TrialPlanError::NotDocked);
         }
         let mut made = Made::default();
         // Lines on which a pair fits between zero and the error box first.
@@ -307,7 +314,7 @@ impl Maker<'_> {
         let missing = wanted - borders.len();
         borders.extend(narrow.into_iter().take(missing));
         if borders.is_empty() {
-            return Err(PlanError::NoBorder);
+            return Err(TrialPlanError::NoBorder);
         }
         // There may be fewer lines than were wanted: their trials go to more pairs, and what is left to controls.
         let pairs = (trials - controls) / (2 * borders.len());

@@ -1,6 +1,6 @@
 //! Text and table form of a plan, for people and robots.
 
-use super::{Counts, Pattern, Plan, PoseColumns, Prediction, accuracy_words};
+use super::{Pattern, PoseColumns, Prediction, TrialPlan, TrialPlanCounts, accuracy_words};
 use crate::validate::{FEWEST, LIMIT};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
@@ -10,11 +10,11 @@ use catchment_core::pose::{Dof, PoseError};
 /// Trials that are shown.
 const SHOWN: usize = 6;
 
-impl Subject for Plan {
+impl Subject for TrialPlan {
     const KIND: &'static str = "plan";
 
     fn warnings(&self) -> Vec<Warning> {
-        let Counts { poses, asymmetric, open, .. } = self.counts;
+        let TrialPlanCounts { poses, asymmetric, open, .. } = self.counts;
         let mut warnings = Vec::new();
         if poses == 0 {
             return warnings;
@@ -85,9 +85,9 @@ impl Subject for Plan {
     }
 }
 
-impl Plan {
+impl TrialPlan {
     fn describe_counts(&self, document: &mut Document, units: Units<'_>) {
-        let Counts { trials, poses, lines, docking, failing, either, deciding, .. } = self.counts;
+        let TrialPlanCounts { trials, poses, lines, docking, failing, either, deciding, .. } = self.counts;
         let settings = &self.settings;
         let times =
             if settings.repeats > 1 { format!(", {} times each", settings.repeats) } else { String::new() };

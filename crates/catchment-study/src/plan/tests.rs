@@ -19,7 +19,7 @@ fn offsets(problem: &Problem, value: f64) -> PoseError {
     PoseError { x: mm(problem, value), y: mm(problem, value), ..PoseError::default() }
 }
 
-fn planned(problem: &Problem, settings: &TrialPlanSettings) -> Plan {
+fn planned(problem: &Problem, settings: &TrialPlanSettings) -> TrialPlan {
     run(problem, settings, &Exec::new()).unwrap()
 }
 
@@ -74,7 +74,7 @@ fn the_grid_of_the_pyramid_has_150_points_of_which_96_dock() {
         &TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(pattern.clone(), accuracy) },
     );
     assert_eq!(plan.points.len(), 150);
-    let on_border = |point: &Point| point.error.x.max(point.error.y) > 0.5 - 1e-9;
+    let on_border = |point: &PlannedPose| point.error.x.max(point.error.y) > 0.5 - 1e-9;
     for point in &plan.points {
         assert_eq!(point.prediction.docks(), !on_border(point), "{point:?}");
         assert_eq!(point.prediction.either, on_border(point), "{point:?}");
@@ -143,7 +143,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
     let accuracy = PoseError { x: mm(&problem, 1.2), ..PoseError::default() };
     let plan = planned(&problem, &TrialPlanSettings::new(Pattern::Arc { lever, pitch, yaw }, accuracy));
     assert_eq!((plan.points.len(), plan.points.iter().map(|p| p.line).max()), (42, Some(2)));
-    for Point { error, .. } in &plan.points {
+    for PlannedPose { error, .. } in &plan.points {
         let back = lever * error.pitch.sin();
         assert!(
             (error.x + back * error.yaw.cos()).abs() < 1e-12
@@ -156,7 +156,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
     // Another joint would have to move sideways what is locked.
     let elsewhere = Pattern::Arc { lever: 0.5 * lever, pitch: vec![0.3], yaw: vec![0.2] };
     let refused = run(&problem, &TrialPlanSettings::new(elsewhere, accuracy), &Exec::new()).unwrap_err();
-    assert!(matches!(refused, PlanError::JointElsewhere { axis: Dof::Y, .. }), "{refused}");
+    assert!(matches!(refused, TrialPlanError::JointElsewhere { axis: Dof::Y, .. }), "{refused}");
 }
 
 /// A grid knows the border along a line to one step; a bracket with points as far apart knows it as well.
@@ -174,7 +174,7 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     let bracket =
         planned(&problem, &TrialPlanSettings { symmetric: true, ..TrialPlanSettings::new(bracket, exact) });
     // Along each line the widest gap between the last pose that docks and the first that does not.
-    let uncertainty = |plan: &Plan| {
+    let uncertainty = |plan: &TrialPlan| {
         let mut widths = Vec::new();
         for line in 1..=plan.points.iter().map(|p| p.line).max().unwrap() {
             let of = |docks: bool| {
@@ -253,33 +253,33 @@ fn what_cannot_be_planned_is_refused() {
     let grid = Pattern::Grid { steps: [Some(3), None, None, None, None], max: [None; 5] };
     let with = |settings: TrialPlanSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
     let none = TrialPlanSettings::new(grid.clone(), PoseError::default());
-    assert!(matches!(with(none), PlanError::NoAccuracy));
+    assert!(matches!(with(none), TrialPlanError::NoAccuracy));
     let locked = TrialPlanSettings::new(grid.clone(), PoseError { yaw: 0.1, ..accuracy });
-    assert!(matches!(with(locked), PlanError::Accuracy { axis: Dof::Yaw, .. }));
+    assert!(matches!(with(locked), TrialPlanError::Accuracy { axis: Dof::Yaw, .. }));
     assert!(matches!(
         with(TrialPlanSettings { repeats: 0, ..TrialPlanSettings::new(grid.clone(), accuracy) }),
-        PlanError::None { .. }
+        TrialPlanError::None { .. }
     ));
     assert!(matches!(
         with(TrialPlanSettings { friction: -1.0, ..TrialPlanSettings::new(grid, accuracy) }),
-        PlanError::Friction(_)
+        TrialPlanError::Friction(_)
     ));
     let pattern = |pattern| with(TrialPlanSettings::new(pattern, accuracy));
-    assert!(matches!(pattern(Pattern::Grid { steps: [None; 5], max: [None; 5] }), PlanError::Nothing));
+    assert!(matches!(pattern(Pattern::Grid { steps: [None; 5], max: [None; 5] }), TrialPlanError::Nothing));
     let many = [Some(5000), None, None, Some(5000), None];
-    assert!(matches!(pattern(Pattern::Grid { steps: many, max: [None; 5] }), PlanError::TooMany { .. }));
+    assert!(matches!(pattern(Pattern::Grid { steps: many, max: [None; 5] }), TrialPlanError::TooMany { .. }));
     let fine = [Some(1e-9), None, None, None, None];
     let lattice = Pattern::Lattice { step: fine, max: [None; 5], along_border: false };
-    assert!(matches!(pattern(lattice), PlanError::TooMany { .. }));
+    assert!(matches!(pattern(lattice), TrialPlanError::TooMany { .. }));
     let arc = |lever| Pattern::Arc { lever, pitch: vec![0.1], yaw: vec![0.0] };
     assert!(
-        matches!(pattern(arc(0.0)), PlanError::Lever { .. })
-            && matches!(pattern(arc(f64::NAN)), PlanError::Lever { .. })
+        matches!(pattern(arc(0.0)), TrialPlanError::Lever { .. })
+            && matches!(pattern(arc(f64::NAN)), TrialPlanError::Lever { .. })
     );
     let turned = Pattern::Arc { lever: 1.0, pitch: vec![0.1], yaw: vec![0.1] };
-    assert!(matches!(pattern(turned), PlanError::Locked { axis: Dof::Yaw }));
+    assert!(matches!(pattern(turned), TrialPlanError::Locked { axis: Dof::Yaw }));
     let few = Pattern::Bracket { trials: 3, lines: None, resolution: [None; 5] };
-    assert!(matches!(pattern(few), PlanError::TooFew { fewest: 4, .. }));
+    assert!(matches!(pattern(few), TrialPlanError::TooFew { fewest: 4, .. }));
 }
 
 /// As many trials as were asked for, however near the border is to zero or to the error box; no pose twice.

@@ -7,8 +7,8 @@
 //! ```
 
 use super::judge::{Judged, Refusal, judge};
-use super::way::{Lie, Way};
-use super::{Frames, Looked, Parts, is_seat, rank, sink, ways};
+use super::way::{AxisDirection, PartLayout};
+use super::{Looked, PartFrames, Parts, is_seat, rank, sink, ways};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec2;
 
@@ -17,9 +17,9 @@ pub(super) fn docked(
     both: &Parts<'_>,
     looked: &mut Looked,
     exec: &Exec,
-) -> Result<Vec<(Way, sink::Drawn)>, Cancelled> {
+) -> Result<Vec<(AxisDirection, sink::Drawn)>, Cancelled> {
     let ways = ways(both.settings.approach);
-    let look = |ways: &[Way]| {
+    let look = |ways: &[AxisDirection]| {
         exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
             (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
         })
@@ -28,7 +28,7 @@ pub(super) fn docked(
     if both.settings.approach.is_none() {
         // Of a diagonal it says nothing that it does not hold.
         let [fixed, moving] = &both.diagonals;
-        let common: Vec<Way> = fixed.iter().copied().filter(|way| moving.contains(way)).collect();
+        let common: Vec<AxisDirection> = fixed.iter().copied().filter(|way| moving.contains(way)).collect();
         looks.extend(look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::Drawn::Holds(_))));
     }
     exec.check()?;
@@ -36,7 +36,7 @@ pub(super) fn docked(
         sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
         _ => None,
     });
-    let holds: Vec<(Way, sink::Sunk)> = holds.collect();
+    let holds: Vec<(AxisDirection, sink::Sunk)> = holds.collect();
     let found =
         exec.each(holds.len(), usize::MAX, "seats", |k, exec| let_in(both, holds[k].0, holds[k].1, exec));
     looked.add(found);
@@ -44,11 +44,11 @@ pub(super) fn docked(
     if !looked.has_seat() {
         // A groove holds one way only, which is none to a lattice.
         let rests = |drawn: &sink::Drawn| matches!(drawn, sink::Drawn::Flat { .. });
-        let is_asked = both.settings.frames == Frames::Assembled || both.settings.approach.is_some();
-        let flat: Vec<Way> =
+        let is_asked = both.settings.frames == PartFrames::Assembled || both.settings.approach.is_some();
+        let flat: Vec<AxisDirection> =
             looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
         let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
-            let lie = Lie::Assembled { approach: flat[k] };
+            let lie = PartLayout::Assembled { approach: flat[k] };
             judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie))
         });
         looked.add(found);
@@ -58,8 +58,8 @@ pub(super) fn docked(
 }
 
 /// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
-fn let_in(both: &Parts<'_>, way: Way, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
-    let lie = Lie::Assembled { approach: way };
+fn let_in(both: &Parts<'_>, way: AxisDirection, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
+    let lie = PartLayout::Assembled { approach: way };
     let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
     let near = |found: &Judged| {
         let lift = sunk.height + 0.5 * sunk.climb;
@@ -83,11 +83,11 @@ fn let_in(both: &Parts<'_>, way: Way, sunk: sink::Sunk, exec: &Exec) -> Result<J
 /// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
 pub(super) fn let_down(
     both: &Parts<'_>,
-    looks: &[(Way, sink::Drawn)],
+    looks: &[(AxisDirection, sink::Drawn)],
     looked: &mut Looked,
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {
-    let apart: Vec<Way> = looks
+    let apart: Vec<AxisDirection> = looks
         .iter()
         .filter(|(_, drawn)| matches!(drawn, sink::Drawn::Apart(_)))
         .map(|(way, _)| *way)

@@ -1,7 +1,7 @@
 //! A candidate: a relative orientation in which two parts may dock, in terms for the user.
 
 use super::judge::{Judged, Seat};
-use super::way::Lie;
+use super::way::PartLayout;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
 use catchment_core::pose::PoseError;
@@ -11,7 +11,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// How they lie.
-    pub lie: Lie,
+    pub lie: PartLayout,
     /// 0 to 1; the more, the likelier.
     pub score: f64,
     /// How far the moving half climbs before it leaves, and how far it moves to each side at half of that, in the unit of the design;
@@ -32,12 +32,12 @@ pub struct Candidate {
     /// Where the origin of the moving part is across the approach, in the unit of the design and the frame of the fixed half, turned.
     pub offset: [f64; 2],
     /// Whether it is a seat.
-    pub seat: Held,
+    pub seat: SeatCheck,
 }
 
 /// Whether a candidate is a seat.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Held {
+pub enum SeatCheck {
     /// As drawn.
     Holds,
     /// Where the halves have settled.
@@ -55,7 +55,7 @@ pub enum Held {
     NotAsked,
 }
 
-impl fmt::Display for Held {
+impl fmt::Display for SeatCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Holds => f.write_str("holds"),
@@ -95,16 +95,16 @@ pub(super) fn candidate(judged: &Judged, unit: f64, told: DisplayUnit) -> Candid
         width: width * unit,
         offset: (*offset * unit).to_array(),
         seat: match seat {
-            None => Held::NotAsked,
+            None => SeatCheck::NotAsked,
             Some(Ok(Seat { settle: Some(off), .. })) => settles(off, width * told.scale, told.unit),
-            Some(Ok(_)) => Held::Holds,
-            Some(Err(reason)) => Held::Refused(reason.clone()),
+            Some(Ok(_)) => SeatCheck::Holds,
+            Some(Err(reason)) => SeatCheck::Refused(reason.clone()),
         },
     }
 }
 
 /// Where halves have settled.
-fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
+fn settles(off: &PoseError, width: f64, unit: &str) -> SeatCheck {
     let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
     let shift = off.x.hypot(off.y) * width;
     // What is less is how well the rest is known.
@@ -118,7 +118,7 @@ fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
         })
         .collect();
     let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
-    Held::Settles { turn, shift, told }
+    SeatCheck::Settles { turn, shift, told }
 }
 
 impl Candidate {

@@ -11,7 +11,7 @@
 
 use super::halves::file_unit;
 use super::sink::{self, Drawn, Grain, Triangles, together};
-use super::{PartFile, ProposalSettings, Way};
+use super::{AxisDirection, PartFile, ProposalSettings};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
@@ -58,7 +58,7 @@ pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
 /// The cause, of what comes of each approach, and what helps.
 pub(super) fn of(
     parts: [&Triangles; 2],
-    looks: &[(Way, Drawn)],
+    looks: &[(AxisDirection, Drawn)],
     grain: Grain,
     told: DisplayUnit,
 ) -> (String, Option<Advice>) {
@@ -71,7 +71,12 @@ pub(super) fn of(
 }
 
 /// The cause in words.
-fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: DisplayUnit) -> String {
+fn words(
+    parts: [&Triangles; 2],
+    looks: &[(AxisDirection, Drawn)],
+    grain: Grain,
+    told: DisplayUnit,
+) -> String {
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
     }
@@ -105,11 +110,11 @@ fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: Dis
         Drawn::Blocked(by) => Some((*by, *way)),
         _ => None,
     });
-    let blocked: Vec<(f64, Way)> = blocked.collect();
+    let blocked: Vec<(f64, AxisDirection)> = blocked.collect();
     let Some((by, way)) = blocked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return "as drawn the parts do not meet".to_owned();
     };
-    let mut lines = Way::ALL.into_iter().filter(|way| way.vector().max_element() > 0.0);
+    let mut lines = AxisDirection::ALL.into_iter().filter(|way| way.vector().max_element() > 0.0);
     if let Some((way, lead)) = lines.find_map(|way| sink::lead(parts, way, grain).map(|lead| (way, lead))) {
         let hand = if lead > 0.0 { "right" } else { "left" };
         return format!(

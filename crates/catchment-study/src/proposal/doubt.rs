@@ -2,7 +2,7 @@
 //! size that suggests another unit.
 
 use super::halves::design_unit;
-use super::{Candidate, Frames, Held, Lie, NEARLY, ProposalSettings, file};
+use super::{Candidate, NEARLY, PartFrames, PartLayout, ProposalSettings, SeatCheck, file};
 use catchment_core::design::LengthUnit;
 
 /// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
@@ -30,7 +30,8 @@ pub(super) fn of_size(width: f64, unit: LengthUnit) -> Option<String> {
 
 /// Whether two ways differ only in which end is up, of one of the parts.
 fn is_twin(one: &Candidate, other: &Candidate) -> bool {
-    let (Lie::Facing { fixed, moving, .. }, Lie::Facing { fixed: f, moving: m, .. }) = (one.lie, other.lie)
+    let (PartLayout::Facing { fixed, moving, .. }, PartLayout::Facing { fixed: f, moving: m, .. }) =
+        (one.lie, other.lie)
     else {
         return false;
     };
@@ -44,7 +45,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
     let [best, others @ ..] = candidates else { return Vec::new() };
     let mut doubts = Vec::new();
     let rivals = |other: &&Candidate| {
-        let is_refused = matches!(other.seat, Held::Refused(_));
+        let is_refused = matches!(other.seat, SeatCheck::Refused(_));
         if best.steep > 0.0 && other.steep > 0.0 && other.class != best.class {
             // What is as steep and does not hold may be off by a cell of the lattice.
             other.steep >= if is_refused { NEARLY } else { RIVAL } * best.steep
@@ -76,13 +77,13 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
             other.place_among(candidates, design_unit(settings))
         ));
     }
-    if settings.frames == Frames::Any
-        && matches!(best.lie, Lie::Assembled { .. })
+    if settings.frames == PartFrames::Any
+        && matches!(best.lie, PartLayout::Assembled { .. })
         && settings.approach.is_none()
     {
         doubts.push("the parts meet as drawn, and were taken as an assembly that is docked".to_owned());
     }
-    if let Held::Settles { turn, shift, told } = &best.seat
+    if let SeatCheck::Settles { turn, shift, told } = &best.seat
         && (*turn > MUCH || *shift > MUCH * best.width)
     {
         doubts.push(format!(
@@ -90,7 +91,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
              they dock, or lock what turns with --free"
         ));
     }
-    if matches!(best.lie, Lie::Facing { .. }) && best.score < WEAK {
+    if matches!(best.lie, PartLayout::Facing { .. }) && best.score < WEAK {
         doubts.push(format!(
             "in doubt: the seat is weak ({:.2}): look at the picture, and say how the parts lie if this is not what is meant",
             best.score

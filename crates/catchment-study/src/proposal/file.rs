@@ -2,7 +2,7 @@
 
 use super::halves::{design_unit, file_unit, says_its_unit};
 use super::judge::{Judged, Seat};
-use super::way::Lie;
+use super::way::PartLayout;
 use super::{Beside, PartFile, ProposalSettings};
 use catchment_core::design::{FileSpec, LengthUnit};
 use catchment_core::pose::{Dof, DofSet, Mount};
@@ -136,7 +136,7 @@ pub(super) fn text(
     });
     line(&format!("width = {}", decimal(number(width, ROUNDED * width))));
     line(&format!("unit = \"{}\"", unit.symbol()));
-    if let Lie::Assembled { approach } = judged.lie {
+    if let PartLayout::Assembled { approach } = judged.lie {
         line("# Both parts stand in one frame, docked; moved along the approach to where they first touch.");
         line("drawn = \"assembled\"");
         line(
@@ -154,7 +154,7 @@ pub(super) fn text(
         for words in drawn(&parts[k], &settings.with[k], settings) {
             line(&words);
         }
-        if let Lie::Facing { fixed, moving, turned } = judged.lie {
+        if let PartLayout::Facing { fixed, moving, turned } = judged.lie {
             line("# The direction of its face in its file; it is turned to +z.");
             line(&format!("facing = {}", [fixed, moving][k].written()));
             if k == 1 && turned > 0 {

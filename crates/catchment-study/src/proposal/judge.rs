@@ -12,7 +12,7 @@
 //! ([`Docked::MOST_PLAY`]), the play becomes the docking tolerance.
 
 use super::sink::Sunk;
-use super::way::Lie;
+use super::way::PartLayout;
 use catchment_core::connector::{Connector, Half};
 use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::mated::{MatedProblem, problems_on, round_half};
@@ -51,7 +51,7 @@ pub(super) struct Refusal {
     pub(super) by: f64,
     pub(super) why: String,
     /// How they were laid.
-    lie: Option<Lie>,
+    lie: Option<PartLayout>,
 }
 
 impl From<&str> for Refusal {
@@ -74,7 +74,7 @@ impl Refusal {
     }
 
     /// With how they were laid.
-    pub(super) fn of(self, lie: Lie) -> Self {
+    pub(super) fn of(self, lie: PartLayout) -> Self {
         Self { lie: Some(lie), ..self }
     }
 }
@@ -82,7 +82,7 @@ impl Refusal {
 /// A candidate that was judged. Lengths in the unit of the halves.
 #[derive(Debug, Clone)]
 pub(super) struct Judged {
-    pub(super) lie: Lie,
+    pub(super) lie: PartLayout,
     pub(super) width: f64,
     /// Whether that is more than what can touch, because a half may only be so much wider than D.
     pub(super) is_widened: bool,
@@ -164,7 +164,7 @@ impl Judged {
 /// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn, with lengths as `told` has them.
 pub(super) fn judge(
     halves: [&Half; 2],
-    lie: Lie,
+    lie: PartLayout,
     offset: DVec2,
     others: &[DVec2],
     sunk: Option<&Sunk>,
@@ -174,10 +174,10 @@ pub(super) fn judge(
     let turns = lie.turns();
     let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
     let drawn = match lie {
-        Lie::Assembled { approach } => {
+        PartLayout::Assembled { approach } => {
             Drawn::Assembled { approach: approach.vector().to_array(), face_center: None }
         }
-        Lie::Facing { .. } => Drawn::Facing,
+        PartLayout::Facing { .. } => Drawn::Facing,
     };
     let pair = Pair::new(&Connector::from_halves(fixed.clone(), moving.clone()), &nothing_free());
     let height = |pair: &Pair, lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
@@ -205,7 +205,7 @@ pub(super) fn judge(
     }
     let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
     let wide = width::width(&fixed, &at(offset), lift).ok_or(APART)?;
-    if let Lie::Facing { .. } = lie {
+    if let PartLayout::Facing { .. } = lie {
         for other in others {
             // Round numbers win where the half lies as deep.
             if let Some(z) =

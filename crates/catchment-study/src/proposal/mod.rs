@@ -38,8 +38,8 @@ mod search;
 mod sink;
 mod way;
 
-pub use candidate::{Candidate, Held, shown_length};
-pub use way::{Lie, Way};
+pub use candidate::{Candidate, SeatCheck, shown_length};
+pub use way::{AxisDirection, PartLayout};
 
 use assembled::{docked, let_down};
 use candidate::{candidate, shown_unit};
@@ -60,7 +60,7 @@ use std::path::{Path, PathBuf};
 
 /// In which frames the parts are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Frames {
+pub enum PartFrames {
     /// Whichever gives a seat: in one frame, docked, where the parts meet as drawn.
     #[default]
     Any,
@@ -74,11 +74,11 @@ pub enum Frames {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ProposalSettings {
     /// In which frames the parts are drawn.
-    pub frames: Frames,
+    pub frames: PartFrames,
     /// The direction in which the moving half comes, of parts drawn docked.
-    pub approach: Option<Way>,
+    pub approach: Option<AxisDirection>,
     /// Where the fixed and the moving half face, of parts in frames of their own.
-    pub facing: [Option<Way>; 2],
+    pub facing: [Option<AxisDirection>; 2],
     /// The unit of files that do not say theirs; millimetres without it. The design has the same, but millimetres for files in metres.
     pub unit: Option<LengthUnit>,
     /// Errors that are free; whichever the seat holds without it.
@@ -182,7 +182,7 @@ struct Parts<'a> {
     halves: [&'a Half; 2],
     triangles: [sink::Triangles; 2],
     /// Directions half way between two axes along which each may enter or be entered.
-    diagonals: [Vec<Way>; 2],
+    diagonals: [Vec<AxisDirection>; 2],
     grain: sink::Grain,
     settings: &'a ProposalSettings,
     /// How lengths are told.
@@ -248,10 +248,10 @@ pub fn propose(
     let millimetre = 1e-3 / (unit * design_unit(settings).metres());
     let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, told);
     let pinned = settings.facing.iter().any(Option::is_some);
-    let may_be = |frames: Frames| match settings.frames {
-        Frames::Any => {
-            frames == if settings.approach.is_some() { Frames::Assembled } else { frames }
-                && !(pinned && frames == Frames::Assembled)
+    let may_be = |frames: PartFrames| match settings.frames {
+        PartFrames::Any => {
+            frames == if settings.approach.is_some() { PartFrames::Assembled } else { frames }
+                && !(pinned && frames == PartFrames::Assembled)
         }
         known => known == frames,
     };
@@ -259,10 +259,10 @@ pub fn propose(
     let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
     // Of parts that lie flat on each other as drawn: said if no other way is found.
     let mut flat = None;
-    let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(both.halves);
-    if may_be(Frames::Assembled) && meet {
+    let meet = settings.frames != PartFrames::Any || settings.approach.is_some() || are_near(both.halves);
+    if may_be(PartFrames::Assembled) && meet {
         let looks = docked(&both, &mut looked, exec)?;
-        if settings.frames == Frames::Any && settings.approach.is_none() {
+        if settings.frames == PartFrames::Any && settings.approach.is_none() {
             frame = cause::frame(both.lattices(), both.grain);
         }
         let may_be_assembly = frame != cause::Frame::Own;
@@ -271,14 +271,14 @@ pub fn propose(
                 doubts.push(doubt);
             }
             // Of frames of their own it says nothing.
-            why = (may_be_assembly || !may_be(Frames::Facing))
+            why = (may_be_assembly || !may_be(PartFrames::Facing))
                 .then(|| cause::of(both.lattices(), &looks, both.grain, told));
             let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::Drawn::Flat { .. }));
             flat = are_flat.then(|| cause::of(both.lattices(), &looks, both.grain, told));
         }
     }
     let is_assembly = frame == cause::Frame::Assembly;
-    let faces = may_be(Frames::Facing) && !is_assembly;
+    let faces = may_be(PartFrames::Facing) && !is_assembly;
     if faces && !looked.has_seat() {
         anywhere(&both, &mut looked, exec)?;
         if frame == cause::Frame::Perhaps {
@@ -291,7 +291,7 @@ pub fn propose(
     let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
         let slack = |one: &Candidate| {
             let flat = "flat: a half that is off does not climb";
-            let why = if let Held::Refused(why) = &one.seat { why } else { flat };
+            let why = if let SeatCheck::Refused(why) = &one.seat { why } else { flat };
             format!("{}{}: {why}", one.lie, one.place_among(&candidates, design_unit(settings)))
         };
         // What is nearest to docking first, before all that is flat: what lacks nothing but play.
@@ -437,8 +437,8 @@ fn rank(
     }
 }
 
-fn ways(known: Option<Way>) -> Vec<Way> {
-    known.map_or_else(|| Way::ALL.to_vec(), |way| vec![way])
+fn ways(known: Option<AxisDirection>) -> Vec<AxisDirection> {
+    known.map_or_else(|| AxisDirection::ALL.to_vec(), |way| vec![way])
 }
 
 /// Whether the boxes of the parts overlap or nearly touch.
@@ -448,7 +448,7 @@ fn are_near([fixed, moving]: [&Half; 2]) -> bool {
 }
 
 /// Offsets that a person would choose: the middles of the parts' boxes together, the origins of their files together.
-fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
+fn round_numbers([fixed, moving]: [&Half; 2], lie: PartLayout) -> [DVec2; 2] {
     let turns = lie.turns();
     let middle = |half: &Half, turn: &DMat3| {
         let (low, high) = relief::plan_box(half, turn);

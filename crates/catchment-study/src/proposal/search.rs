@@ -9,7 +9,7 @@
 //! plan view. Lengths are in units of the smaller part's middle extent. Not promised: seats finer than a
 //! twentieth of that, and rotations other than quarter turns, are not found.
 
-use super::way::{Lie, Way};
+use super::way::{AxisDirection, PartLayout};
 use catchment_core::connector::{Half, Side};
 use catchment_core::contact::relief::{self, InTheWay, MOST_RISE, Relief, Reliefs};
 use catchment_core::exec::{Cancelled, Exec};
@@ -35,14 +35,18 @@ const LEVEL: f32 = 2e-3;
 /// A place where parts may dock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    pub(super) lie: Lie,
+    pub(super) lie: PartLayout,
     /// Where the origin of the turned moving half is, in plan view, in the frame of the fixed one.
     pub(super) offset: DVec2,
     score: f32,
 }
 
 /// The places worth judging, the most likely first; of turns of the moving half that look alike the first.
-pub(super) fn places(halves: [&Half; 2], facing: [&[Way]; 2], exec: &Exec) -> Result<Vec<Place>, Cancelled> {
+pub(super) fn places(
+    halves: [&Half; 2],
+    facing: [&[AxisDirection]; 2],
+    exec: &Exec,
+) -> Result<Vec<Place>, Cancelled> {
     let cell = cell(halves, facing);
     let found = scan(halves, facing, None, cell, exec)?;
     let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined(halves, found[k], cell));
@@ -53,9 +57,9 @@ pub(super) fn places(halves: [&Half; 2], facing: [&[Way]; 2], exec: &Exec) -> Re
 /// Something narrow of one half without which the halves would sink into each other, and how they lie then.
 pub(super) fn obstacle(
     halves: [&Half; 2],
-    facing: [&[Way]; 2],
+    facing: [&[AxisDirection]; 2],
     exec: &Exec,
-) -> Result<Option<(Lie, InTheWay)>, Cancelled> {
+) -> Result<Option<(PartLayout, InTheWay)>, Cancelled> {
     let cell = cell(halves, facing);
     for side in [Side::Fixed, Side::Moving] {
         for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
@@ -70,7 +74,7 @@ pub(super) fn obstacle(
 }
 
 /// Both halves as they face each other.
-fn reliefs([fixed, moving]: [&Half; 2], lie: Lie, cell: f64) -> [Relief; 2] {
+fn reliefs([fixed, moving]: [&Half; 2], lie: PartLayout, cell: f64) -> [Relief; 2] {
     let turns = lie.turns();
     [Relief::centered(fixed, &turns[0], 1.0, cell), Relief::centered(moving, &turns[1], -1.0, cell)]
 }
@@ -78,7 +82,7 @@ fn reliefs([fixed, moving]: [&Half; 2], lie: Lie, cell: f64) -> [Relief; 2] {
 /// The most likely places on the first lattice, with what is narrow of one half left out.
 fn scan(
     [fixed, moving]: [&Half; 2],
-    facing: [&[Way]; 2],
+    facing: [&[AxisDirection]; 2],
     without_narrow: Option<Side>,
     cell: f64,
     exec: &Exec,
@@ -88,17 +92,17 @@ fn scan(
         let relief = Relief::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
         if without_narrow == Some(side) { relief.without_narrow() } else { relief }
     };
-    let lies: Vec<[Way; 2]> =
+    let lies: Vec<[AxisDirection; 2]> =
         facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
     let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
         let [f, m] = lies[number];
-        let top = seen(fixed, Side::Fixed, &Lie::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
+        let top = seen(fixed, Side::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
         let (mut found, mut met): (Vec<Place>, Vec<Relief>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
             }
-            let lie = Lie::Facing { fixed: f, moving: m, turned };
+            let lie = PartLayout::Facing { fixed: f, moving: m, turned };
             let bottom = seen(moving, Side::Moving, &lie.turns()[1]);
             if !met.iter().any(|relief| relief.is_like(&bottom)) {
                 found.extend(relief::with(&top, &bottom, |both| {
@@ -117,12 +121,12 @@ fn scan(
 }
 
 /// The cell with which all offsets are not too much work.
-fn cell(halves: [&Half; 2], facing: [&[Way]; 2]) -> f64 {
+fn cell(halves: [&Half; 2], facing: [&[AxisDirection]; 2]) -> f64 {
     let mut cell = CELL;
     loop {
         let sizes = |side: usize| -> Vec<[f64; 2]> {
-            let of = |way: &Way| {
-                let lie = Lie::Facing { fixed: *way, moving: *way, turned: 0 };
+            let of = |way: &AxisDirection| {
+                let lie = PartLayout::Facing { fixed: *way, moving: *way, turned: 0 };
                 let (low, high) = relief::plan_box(halves[side], &lie.turns()[side]);
                 ((high - low) / cell).ceil().to_array()
             };
@@ -139,7 +143,13 @@ fn cell(halves: [&Half; 2], facing: [&[Way]; 2]) -> f64 {
 }
 
 /// The hollows of the heights over all offsets.
-fn hollows(lie: Lie, [top, bottom]: [&Relief; 2], both: &Reliefs<'_>, cell: f64, broad: f64) -> Vec<Place> {
+fn hollows(
+    lie: PartLayout,
+    [top, bottom]: [&Relief; 2],
+    both: &Reliefs<'_>,
+    cell: f64,
+    broad: f64,
+) -> Vec<Place> {
     let size: [i32; 2] = std::array::from_fn(|k| relief::signed(top.counts[k] + bottom.counts[k]) - 1);
     let first: [i32; 2] = bottom.counts.map(|count| 1 - relief::signed(count));
     let mut heights = Vec::with_capacity((size[0] * size[1]) as usize);

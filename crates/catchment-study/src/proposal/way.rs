@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 /// A direction along an axis of a file, or half way between two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Way(u8);
+pub struct AxisDirection(u8);
 
 /// Names and vectors of all directions, each followed by its opposite: six along axes, then twelve half way between two.
 const WAYS: [(&str, [f64; 3]); 18] = [
@@ -33,7 +33,7 @@ const WAYS: [(&str, [f64; 3]); 18] = [
 ];
 const AXES: u8 = 6;
 
-impl Way {
+impl AxisDirection {
     /// The six along axes.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
 
@@ -67,13 +67,13 @@ impl Way {
     }
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for AxisDirection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-impl FromStr for Way {
+impl FromStr for AxisDirection {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -90,26 +90,26 @@ impl FromStr for Way {
 
 /// How the two parts may lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lie {
+pub enum PartLayout {
     /// Docked as drawn, in one frame.
     Assembled {
         /// The direction in which the moving half comes.
-        approach: Way,
+        approach: AxisDirection,
     },
     /// Each in its own frame.
     Facing {
         /// Where the fixed half faces.
-        fixed: Way,
+        fixed: AxisDirection,
         /// Where the moving half faces.
-        moving: Way,
+        moving: AxisDirection,
         /// Quarter turns of the moving half about the direction in which it faces.
         turned: u8,
     },
 }
 
-impl Lie {
+impl PartLayout {
     /// Each in its own frame, turned so that they lie as they are drawn in one frame: where the frames of parts are one but not their places.
-    pub(super) fn as_drawn(approach: Way) -> Self {
+    pub(super) fn as_drawn(approach: AxisDirection) -> Self {
         let [fixed, moving] = [approach.opposite(), approach];
         let lie = |turned: u8| Self::Facing { fixed, moving, turned };
         let is_one = |lie: &Self| {
@@ -151,7 +151,7 @@ impl Lie {
     }
 }
 
-impl fmt::Display for Lie {
+impl fmt::Display for PartLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Assembled { approach } => write!(f, "docked as drawn, approach {approach}"),
@@ -169,21 +169,21 @@ mod tests {
 
     #[test]
     fn ways_are_read_as_they_are_written() {
-        for way in Way::ALL.into_iter().chain(Way::diagonals()) {
+        for way in AxisDirection::ALL.into_iter().chain(AxisDirection::diagonals()) {
             assert_eq!(way.name().parse(), Ok(way));
             assert!((way.vector().length() - 1.0).abs() < 1e-15);
             assert_eq!(way.opposite().vector(), -way.vector());
         }
-        assert_eq!("y-z".parse::<Way>().map(Way::written), Ok("[0, 1, -1]".to_owned()));
-        assert_eq!(Way(1).written(), "\"-x\"");
-        assert_eq!("y".parse::<Way>().map(Way::name), Ok("+y"));
-        assert!("up".parse::<Way>().unwrap_err().contains("+x, -x"));
+        assert_eq!("y-z".parse::<AxisDirection>().map(AxisDirection::written), Ok("[0, 1, -1]".to_owned()));
+        assert_eq!(AxisDirection(1).written(), "\"-x\"");
+        assert_eq!("y".parse::<AxisDirection>().map(AxisDirection::name), Ok("+y"));
+        assert!("up".parse::<AxisDirection>().unwrap_err().contains("+x, -x"));
     }
 
     #[test]
     fn parts_may_lie_as_they_are_drawn() {
-        for approach in Way::ALL.into_iter().chain(Way::diagonals()) {
-            let [fixed, moving] = Lie::as_drawn(approach).turns();
+        for approach in AxisDirection::ALL.into_iter().chain(AxisDirection::diagonals()) {
+            let [fixed, moving] = PartLayout::as_drawn(approach).turns();
             assert!(fixed.abs_diff_eq(moving, 1e-12));
             assert!((moving * approach.vector()).abs_diff_eq(DVec3::NEG_Z, 1e-12));
         }
@@ -191,9 +191,11 @@ mod tests {
 
     #[test]
     fn all_lies_are_rotations_that_face_each_other() {
-        for (fixed, moving) in Way::ALL.iter().flat_map(|f| Way::ALL.iter().map(move |m| (*f, *m))) {
+        for (fixed, moving) in
+            AxisDirection::ALL.iter().flat_map(|f| AxisDirection::ALL.iter().map(move |m| (*f, *m)))
+        {
             for turned in 0..4 {
-                let [f, m] = Lie::Facing { fixed, moving, turned }.turns();
+                let [f, m] = PartLayout::Facing { fixed, moving, turned }.turns();
                 assert_eq!((f * fixed.vector(), m * moving.vector()), (DVec3::Z, DVec3::NEG_Z));
                 assert_eq!((f.determinant(), m.determinant()), (1.0, 1.0));
             }

@@ -81,7 +81,7 @@ impl Default for SensitivitySettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
-pub enum Parameter {
+pub enum VariedParameter {
     /// ρ, in D.
     RotationLength,
     /// Distance of the COR in front of the face centre, in D.
@@ -95,7 +95,7 @@ pub enum Parameter {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Slope {
     /// The parameter.
-    pub parameter: Parameter,
+    pub parameter: VariedParameter,
     /// Its value in the design.
     pub value: f64,
     /// The two values on either side that were compared.
@@ -201,7 +201,7 @@ pub fn run(
     })?;
     let mut common = CommonPoses::new(problem, settings, exec);
     let own = common.follow(design.clone())?;
-    let slopes = Parameter::ALL
+    let slopes = VariedParameter::ALL
         .into_iter()
         .filter_map(|parameter| Some((parameter, parameter.of(design)?)))
         .map(|(parameter, value)| common.slope(parameter, value))
@@ -210,7 +210,7 @@ pub fn run(
     rhos.sort_by(f64::total_cmp);
     let runs = rhos
         .iter()
-        .map(|rho| common.follow(Parameter::RotationLength.set(design.clone(), *rho)?))
+        .map(|rho| common.follow(VariedParameter::RotationLength.set(design.clone(), *rho)?))
         .collect::<Result<Vec<Acceptance>, SensitivityError>>()?;
     let measured = |acceptance: &Acceptance| {
         let sum = Sum::of(acceptance, &design.alignment);
@@ -244,7 +244,7 @@ pub fn run(
     })
 }
 
-impl Parameter {
+impl VariedParameter {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::RotationLength, Self::CenterOfRotation, Self::AspectRatio];
 
@@ -307,12 +307,12 @@ impl<'a> CommonPoses<'a> {
 
     /// Follows every pose in a design.
     fn follow(&mut self, design: Design) -> Result<Acceptance, SensitivityError> {
-        let aspect_ratio = Parameter::AspectRatio.of(&design).unwrap_or(f64::NAN);
+        let aspect_ratio = VariedParameter::AspectRatio.of(&design).unwrap_or(f64::NAN);
         let changed = self
             .problem
             .with(design)
             .map_err(|error| SensitivityError::Geometry { aspect_ratio, problem: error.to_string() })?;
-        let total = 1 + 2 * Parameter::ALL.len() + self.settings.rotation_lengths.len();
+        let total = 1 + 2 * VariedParameter::ALL.len() + self.settings.rotation_lengths.len();
         let share = |k: usize| k as f64 / total as f64;
         let part = self.exec.part([share(self.done), share(self.done + 1)], "sensitivity");
         let (acceptance, _) =
@@ -322,10 +322,12 @@ impl<'a> CommonPoses<'a> {
         Ok(acceptance)
     }
 
-    fn slope(&mut self, parameter: Parameter, value: f64) -> Result<Slope, SensitivityError> {
+    fn slope(&mut self, parameter: VariedParameter, value: f64) -> Result<Slope, SensitivityError> {
         let step = match parameter {
-            Parameter::CenterOfRotation => self.settings.cor_step,
-            Parameter::RotationLength | Parameter::AspectRatio => self.settings.relative_step * value,
+            VariedParameter::CenterOfRotation => self.settings.cor_step,
+            VariedParameter::RotationLength | VariedParameter::AspectRatio => {
+                self.settings.relative_step * value
+            }
         };
         let between = [value - step, value + step];
         let below = self.follow(parameter.set(self.problem.design().clone(), between[0])?)?;
@@ -432,7 +434,7 @@ mod tests {
         let one = with(1);
         assert_eq!(one, with(3));
         assert_eq!(one.unit, "D·rad");
-        assert_eq!(one.slopes.iter().map(|s| s.parameter).collect::<Vec<_>>(), Parameter::ALL);
+        assert_eq!(one.slopes.iter().map(|s| s.parameter).collect::<Vec<_>>(), VariedParameter::ALL);
         assert_eq!(one.slopes[0].between, [0.45, 0.55]);
         assert_eq!(one.over_rho[0].rotation_length, 0.25, "ascending");
         assert!(one.spread >= 0.0 && (one.spread - (one.greatest.sum - one.least.sum)).abs() < 1e-12);

@@ -1,6 +1,6 @@
 //! Text and table form of a sensitivity.
 
-use super::{AtRho, Parameter, Sensitivity};
+use super::{AtRho, Sensitivity, VariedParameter};
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Subject, Table, grouped, significant};
 
@@ -74,7 +74,7 @@ impl Sensitivity {
     /// Slopes and Sums. Its numbers have no exponents.
     fn data(&self) -> Table {
         let mut table = Table::data("quantity parameter value estimate ci95_from ci95_to");
-        let mut add = |quantity: &str, parameter: Parameter, numbers: [f64; 4]| {
+        let mut add = |quantity: &str, parameter: VariedParameter, numbers: [f64; 4]| {
             let names = [quantity, parameter.name()].map(Into::into);
             table.push(names.into_iter().chain(numbers.map(|number| number.to_string().into())));
         };
@@ -84,13 +84,13 @@ impl Sensitivity {
         }
         for point in &self.over_rho {
             let [lo, hi] = point.ci95;
-            add("sum", Parameter::RotationLength, [point.rotation_length, point.sum, lo, hi]);
+            add("sum", VariedParameter::RotationLength, [point.rotation_length, point.sum, lo, hi]);
         }
         table
     }
 }
 
-impl Parameter {
+impl VariedParameter {
     const fn words(self) -> &'static str {
         match self {
             Self::RotationLength => "ρ",

@@ -1,6 +1,6 @@
 //! The sampled errors, the motions followed for some of them, and the combined estimate.
 
-use super::Stratum;
+use super::ErrorStratum;
 use super::estimate::{Followed, Sample};
 use super::strata::{STRATA, name};
 use catchment_core::acceptance::Outcome;
@@ -100,7 +100,7 @@ impl Drawn {
             docks[s] = seen.shares(self.total)[0];
             doubted[s] = (docked as f64 + PRIOR) / (record.followed() as f64 + 2.0 * PRIOR);
             trials[s] = record.trials(self.of(place).len(), self.total, &self.sizes);
-            strata.push(Stratum {
+            strata.push(ErrorStratum {
                 name: if self.is_plain { "all errors".to_owned() } else { name(s) },
                 share: self.share(place),
                 motions: record.followed(),

@@ -20,7 +20,7 @@
 use super::drawn::Drawn;
 use super::source::{SAME, Source};
 use super::strata::{STRATA, Strata};
-use super::{Slope, Stratum};
+use super::{ErrorStratum, Slope};
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::correction::{Stop, Whole, Z95, allot, next};
@@ -65,7 +65,7 @@ pub(crate) struct Sample {
     /// The poses that were followed.
     pub(crate) poses: Vec<Followed>,
     /// What was seen of every stratum that has errors.
-    pub(crate) strata: Vec<Stratum>,
+    pub(crate) strata: Vec<ErrorStratum>,
     /// The stratum of every error that was drawn.
     pub(super) labels: Vec<u8>,
     /// Share that docks, by stratum, and the same drawn towards a half.

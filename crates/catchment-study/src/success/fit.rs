@@ -13,7 +13,7 @@
 //!
 //! Not promised: that a fit which is not rejected is correct: a few rows reject no fit.
 
-use super::{AxisFit, Fit};
+use super::{AxisFit, NormalFit};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::covariance::{cholesky, solve_lower};
 use catchment_core::poses::{Moments, Spread};
@@ -25,7 +25,7 @@ pub(super) const FEWEST: usize = 8;
 const LEVEL: f64 = 0.05;
 
 /// Tests the rows of a measured spread; none of any other, or of too few rows.
-pub(super) fn fit(spread: &Spread) -> Option<Fit> {
+pub(super) fn fit(spread: &Spread) -> Option<NormalFit> {
     let Spread::Measured { poses, .. } = spread else { return None };
     if poses.len() < FEWEST {
         return None;
@@ -41,7 +41,7 @@ pub(super) fn fit(spread: &Spread) -> Option<Fit> {
     // Two-sided, of as many axes.
     let level = LEVEL / axes.len().max(1) as f64;
     let trending = axes.iter().filter(|axis| both_tails(axis.lag * (poses.len() as f64).sqrt()) < level);
-    Some(Fit {
+    Some(NormalFit {
         rejected: p_value < LEVEL,
         p_value,
         kurtosis: kurtosis.map(|[b, _]| b),

@@ -16,7 +16,7 @@ pub struct Success {
     /// The robot with the lowest success probability.
     pub success: Headline,
     /// Results for each robot, in the order of the file; at least one.
-    pub robots: Vec<Docking>,
+    pub robots: Vec<RobotDocking>,
     /// Number of exact motions, without those of grids.
     pub motions: usize,
 }
@@ -38,11 +38,11 @@ pub struct Headline {
 /// Docking success of a robot. Lengths in D, angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Docking {
+pub struct RobotDocking {
     /// Name of the robot.
     pub robot: String,
     /// Its expected errors.
-    pub errors: Errors,
+    pub errors: ExpectedErrors,
     /// Probability of docking, in [0, 1].
     pub probability: f64,
     /// Its 95 % interval.
@@ -58,7 +58,7 @@ pub struct Docking {
     /// Share of the errors outside the error box of the design, in [0, 1].
     pub outside_box: f64,
     /// The sample, by stratum.
-    pub strata: Vec<Stratum>,
+    pub strata: Vec<ErrorStratum>,
     /// The failures.
     pub failures: Failures,
     /// Effect of an improvement of each error, largest effect first.
@@ -68,13 +68,13 @@ pub struct Docking {
     /// Success probability with all σ multiplied by a factor, in ascending order of the factor.
     pub curve: Vec<AtFactor>,
     /// Test of measured errors for normality; null for other errors, and for fewer than eight rows.
-    pub fit: Option<Fit>,
+    pub fit: Option<NormalFit>,
 }
 
 /// The expected errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Errors {
+pub struct ExpectedErrors {
     /// `normal`, `uniform` or `measured`.
     pub kind: &'static str,
     /// Number of rows of measured errors; null for other errors.
@@ -97,7 +97,7 @@ pub struct GridCost {
 /// Results of a stratum of errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Stratum {
+pub struct ErrorStratum {
     /// Errors that the stratum contains.
     pub name: String,
     /// Its share of all errors, in [0, 1].
@@ -254,7 +254,7 @@ pub struct AtFactor {
 /// Test of a normal fit to measured errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Fit {
+pub struct NormalFit {
     /// Whether normality is rejected at the 5 % level.
     pub rejected: bool,
     /// Combined p-value: probability that normal errors deviate this much from normality in any of the tests,
@@ -290,13 +290,13 @@ pub struct AxisFit {
 
 impl Success {
     /// The robot that docks most seldom.
-    pub fn worst(&self) -> Option<&Docking> {
+    pub fn worst(&self) -> Option<&RobotDocking> {
         worst(&self.robots)
     }
 }
 
 impl Headline {
-    pub(super) fn of(robots: &[Docking]) -> Self {
+    pub(super) fn of(robots: &[RobotDocking]) -> Self {
         let worst = worst(robots);
         Self {
             robot: worst.map_or_else(String::new, |robot| robot.robot.clone()),
@@ -307,6 +307,6 @@ impl Headline {
     }
 }
 
-fn worst(robots: &[Docking]) -> Option<&Docking> {
+fn worst(robots: &[RobotDocking]) -> Option<&RobotDocking> {
     robots.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))
 }

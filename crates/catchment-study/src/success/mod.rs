@@ -47,8 +47,8 @@ use catchment_core::poses::{Moments, Robot, Spread};
 use catchment_core::problem::Problem;
 pub(crate) use found::Slope;
 pub use found::{
-    Alone, AlongAxis, AtFactor, AxisFit, Docking, Errors, Factor, Failures, First, Fit, GridCost, Headline,
-    Improvement, Stratum, Success, Tolerable,
+    Alone, AlongAxis, AtFactor, AxisFit, ErrorStratum, ExpectedErrors, Factor, Failures, First, GridCost,
+    Headline, Improvement, NormalFit, RobotDocking, Success, Tolerable,
 };
 pub use report::in_percent;
 use serde::{Deserialize, Serialize};
@@ -223,7 +223,7 @@ fn of_robot(
     settings: &SuccessSettings,
     motions: usize,
     exec: &Exec,
-) -> Result<(Docking, usize), SuccessError> {
+) -> Result<(RobotDocking, usize), SuccessError> {
     let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
     let followed_by = descent::DescentSettings::with_friction(settings.friction)?;
     let source = Source::of(&robot.errors, motions, settings.seed).followed_by(&followed_by);
@@ -275,9 +275,9 @@ fn of_robot(
         Spread::Measured { poses, .. } => Some(poses.len()),
         _ => None,
     };
-    let docking = Docking {
+    let docking = RobotDocking {
         robot: robot.name.clone(),
-        errors: Errors { kind: robot.errors.kind(), rows, moments },
+        errors: ExpectedErrors { kind: robot.errors.kind(), rows, moments },
         probability: found.probability,
         ci95: found.ci95,
         motions: found.motions,

@@ -1,6 +1,6 @@
 //! Text and table form of the success of robots.
 
-use super::{Docking, Factor, First, Fit, Success};
+use super::{Factor, First, NormalFit, RobotDocking, Success};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
@@ -18,7 +18,7 @@ impl Subject for Success {
 
     fn warnings(&self) -> Vec<Warning> {
         let is_one_of_many = self.robots.len() > 1;
-        let of = |robot: &Docking| {
+        let of = |robot: &RobotDocking| {
             let name = if is_one_of_many { format!("{}: ", robot.robot) } else { String::new() };
             robot.warnings().into_iter().map(move |text| Warning::Note { text: format!("{name}{text}") })
         };
@@ -71,7 +71,7 @@ impl Success {
     }
 }
 
-impl Docking {
+impl RobotDocking {
     /// Why its numbers may be wrong.
     fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -288,7 +288,7 @@ impl Factor {
     }
 }
 
-impl Fit {
+impl NormalFit {
     /// The normal fit beside so many rows of measured errors.
     fn describe(&self, rows: Option<usize>, document: &mut Document) {
         let verdict = if self.rejected { "rejected" } else { "not rejected" };

@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// `family=v-face,x-face`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Axis {
+pub struct SweepAxis {
     /// Path of the key, such as `connector.aspect_ratio`.
     pub key: String,
     /// Values as the user writes them.
@@ -18,7 +18,7 @@ pub struct Axis {
 
 /// Why a text is no axis.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum AxisError {
+pub enum SweepAxisError {
     /// There is no `=`.
     #[error("`{text}` is not KEY=VALUE,VALUE,… such as aspect_ratio=0.25,0.5,1")]
     NoValues {
@@ -44,7 +44,7 @@ pub enum AxisError {
     /// A range is none.
     #[error(
         "`{text}` is no range: write first..last/number, such as -1..1/5, the number from 2 to {}",
-        Axis::MOST
+        SweepAxis::MOST
     )]
     Range {
         /// As written.
@@ -56,7 +56,7 @@ fn advice(complaint: &Complaint) -> String {
     complaint.help().map_or_else(String::new, |help| format!("; {help}"))
 }
 
-impl Axis {
+impl SweepAxis {
     /// Most values of one axis.
     pub const MOST: usize = 1000;
 
@@ -83,27 +83,27 @@ fn last_word(text: &str) -> String {
     text.rsplit(' ').next().unwrap_or_default().to_owned()
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for SweepAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", self.key, self.values.join(","))
     }
 }
 
-impl FromStr for Axis {
-    type Err = AxisError;
+impl FromStr for SweepAxis {
+    type Err = SweepAxisError;
 
-    fn from_str(text: &str) -> Result<Self, AxisError> {
-        let no_values = || AxisError::NoValues { text: short(text) };
+    fn from_str(text: &str) -> Result<Self, SweepAxisError> {
+        let no_values = || SweepAxisError::NoValues { text: short(text) };
         let (name, list) = text.split_once('=').ok_or_else(no_values)?;
         if name.trim().is_empty() || list.trim().is_empty() {
             return Err(no_values());
         }
-        let key = key_path(name).map_err(|complaint| AxisError::Key { complaint })?;
+        let key = key_path(name).map_err(|complaint| SweepAxisError::Key { complaint })?;
         let mut values: Vec<String> = Vec::new();
         for part in parts(list) {
             let found = if is_range(part) { range(part)? } else { vec![part.to_owned()] };
             for value in found {
-                let wrong = |how| AxisError::Value { key: key.clone(), value: short(&value), how };
+                let wrong = |how| SweepAxisError::Value { key: key.clone(), value: short(&value), how };
                 if value.is_empty() {
                     return Err(wrong("with nothing in it"));
                 }
@@ -114,7 +114,7 @@ impl FromStr for Axis {
             }
         }
         if values.len() > Self::MOST {
-            return Err(AxisError::Range { text: short(list) });
+            return Err(SweepAxisError::Range { text: short(list) });
         }
         Ok(Self { key, values })
     }
@@ -147,15 +147,15 @@ fn is_range(part: &str) -> bool {
 
 /// `first..last/number`, with a unit behind the last: so many values at equal distances, written with no more digits than tell them
 /// apart.
-fn range(text: &str) -> Result<Vec<String>, AxisError> {
-    let wrong = || AxisError::Range { text: short(text) };
+fn range(text: &str) -> Result<Vec<String>, SweepAxisError> {
+    let wrong = || SweepAxisError::Range { text: short(text) };
     let (ends, number) = text.rsplit_once('/').ok_or_else(wrong)?;
     let (first, last) = ends.split_once("..").ok_or_else(wrong)?;
     let number: usize = number.trim().parse().map_err(|_| wrong())?;
     let last: Quantity = last.parse().map_err(|_| wrong())?;
     let first: Quantity = first.parse().map_err(|_| wrong())?;
     let unit_fits = first.unit == last.unit || first.unit == catchment_core::design::Unit::Bare;
-    if !(2..=Axis::MOST).contains(&number) || first.value == last.value || !unit_fits {
+    if !(2..=SweepAxis::MOST).contains(&number) || first.value == last.value || !unit_fits {
         return Err(wrong());
     }
     let step = (last.value - first.value) / (number - 1) as f64;
@@ -183,7 +183,7 @@ fn short(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Axis {
+    fn axis(text: &str) -> SweepAxis {
         text.parse().unwrap()
     }
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_said() {
-        let told = |text: &str| text.parse::<Axis>().unwrap_err().to_string();
+        let told = |text: &str| text.parse::<SweepAxis>().unwrap_err().to_string();
         assert!(told("aspect_ratio").contains("KEY=VALUE"));
         assert!(told("=1").contains("KEY=VALUE"));
         assert!(told("aspct_ratio=1").ends_with("did you mean `aspect_ratio`?"));

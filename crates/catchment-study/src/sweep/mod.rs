@@ -18,7 +18,7 @@
 mod axis;
 mod report;
 
-pub use axis::{Axis, AxisError};
+pub use axis::{SweepAxis, SweepAxisError};
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::{Complaint, Design, Finding, Parameter, SourceText, with_key};
@@ -43,14 +43,14 @@ const FIGURES_BYTES: u64 = 2048;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweepSettings {
     /// The keys and their values; the last one changes fastest.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// The run for every design.
     pub run: Run,
 }
 
 /// The designs of a sweep, read and not yet built.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct SweepPlan {
     settings: SweepSettings,
     base: Design,
     drafts: Vec<Draft>,
@@ -116,14 +116,14 @@ pub struct Figures {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
-pub enum Found {
+pub enum DesignResult {
     /// The figures of merit.
     Figures(Box<Figures>),
     /// The design cannot be computed, for this reason.
     Refused(String),
 }
 
-impl Found {
+impl DesignResult {
     /// Its figures, if it has any.
     pub fn figures(&self) -> Option<&Figures> {
         match self {
@@ -136,12 +136,12 @@ impl Found {
 /// A design of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Trial {
+pub struct SweepDesign {
     /// The values of the axes, as written.
     pub values: Vec<String>,
     /// Result for the design.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: DesignResult,
 }
 
 /// Result of a sweep.
@@ -151,7 +151,7 @@ pub struct Sweep {
     /// Definition of the sweep.
     pub settings: SweepSettings,
     /// Every combination of values, the last axis fastest.
-    pub designs: Vec<Trial>,
+    pub designs: Vec<SweepDesign>,
     /// Number of the design with the largest Sum, the first if several are equal.
     pub largest: Option<usize>,
     /// Number of the design with the smallest Sum, the first if several are equal.
@@ -161,12 +161,12 @@ pub struct Sweep {
 /// Where finished designs are kept, so that a sweep that was stopped goes on where it was.
 pub trait Keep: Sync {
     /// What was kept under a key, if it can be read.
-    fn find(&self, key: &str) -> Option<Found>;
+    fn find(&self, key: &str) -> Option<DesignResult>;
     /// Keeps it.
     ///
     /// # Errors
     /// What the system says.
-    fn keep(&self, key: &str, found: &Found) -> io::Result<()>;
+    fn keep(&self, key: &str, found: &DesignResult) -> io::Result<()>;
 }
 
 /// Keeps nothing.
@@ -174,11 +174,11 @@ pub trait Keep: Sync {
 pub struct Nowhere;
 
 impl Keep for Nowhere {
-    fn find(&self, _: &str) -> Option<Found> {
+    fn find(&self, _: &str) -> Option<DesignResult> {
         None
     }
 
-    fn keep(&self, _: &str, _: &Found) -> io::Result<()> {
+    fn keep(&self, _: &str, _: &DesignResult) -> io::Result<()> {
         Ok(())
     }
 }
@@ -237,7 +237,7 @@ pub enum SweepError {
     Cancelled(#[from] Cancelled),
 }
 
-impl Plan {
+impl SweepPlan {
     /// Reads every design of a sweep: `source` with the keys of the axes replaced. `change` is applied to each, as options of a
     /// command line are.
     ///
@@ -301,12 +301,12 @@ impl Plan {
         &self.base
     }
 
-    /// One design, in the order of the combinations, and the key that [`Keep`] has it under: a part of [`Plan::run`] that may be computed
+    /// One design, in the order of the combinations, and the key that [`Keep`] has it under: a part of [`SweepPlan::run`] that may be computed
     /// elsewhere. `None` where the halves do not build, which takes no time to find out again.
     ///
     /// # Errors
-    /// As [`Plan::run`].
-    pub fn design(&self, number: usize, exec: &Exec) -> Result<Option<(String, Found)>, SweepError> {
+    /// As [`SweepPlan::run`].
+    pub fn design(&self, number: usize, exec: &Exec) -> Result<Option<(String, DesignResult)>, SweepError> {
         let Ok(problem) = self.drafts[number].clone().build() else { return Ok(None) };
         let key = key(&problem, &self.settings.run).map_err(SweepError::Keep)?;
         one(&self.drafts[number], &self.settings.run, &Nowhere, exec).map(|found| Some((key, found)))
@@ -340,16 +340,16 @@ impl Plan {
             Err(SweepError::Run(RunError::OutOfBudget(_))) => Ok(None),
             found => found.map(Some),
         });
-        let mut found = first.into_iter().collect::<Result<Vec<Option<Found>>, SweepError>>()?;
+        let mut found = first.into_iter().collect::<Result<Vec<Option<DesignResult>>, SweepError>>()?;
         let large: Vec<usize> = (0..count).filter(|&number| found[number].is_none()).collect();
         let alone = exec.each(large.len(), 1, "large designs", |k, exec| one(large[k], exec));
         for (number, design) in large.into_iter().zip(alone) {
             found[number] = Some(design?);
         }
-        let found: Vec<Found> = found.into_iter().flatten().collect();
+        let found: Vec<DesignResult> = found.into_iter().flatten().collect();
         let sums: Vec<(usize, f64)> =
             found.iter().enumerate().filter_map(|(k, f)| Some((k, f.figures()?.sum))).collect();
-        if let (true, Some(Found::Refused(reason))) = (sums.is_empty(), found.first()) {
+        if let (true, Some(DesignResult::Refused(reason))) = (sums.is_empty(), found.first()) {
             return Err(SweepError::AllRefused { designs: count, reason: reason.clone() });
         }
         let best = |better: fn(f64, f64) -> bool| {
@@ -359,7 +359,7 @@ impl Plan {
                 .map(|(k, _)| k)
         };
         let (largest, smallest) = (best(|a, b| a > b), best(|a, b| a < b));
-        let trial = |(number, found): (usize, Found)| Trial {
+        let trial = |(number, found): (usize, DesignResult)| SweepDesign {
             values: combination(&settings.axes, number).map(str::to_owned).collect(),
             found,
         };
@@ -369,7 +369,7 @@ impl Plan {
 }
 
 /// The values of one combination, the last axis fastest.
-fn combination(axes: &[Axis], number: usize) -> impl Iterator<Item = &str> {
+fn combination(axes: &[SweepAxis], number: usize) -> impl Iterator<Item = &str> {
     let mut stride = axes.iter().map(|axis| axis.values.len()).product::<usize>().max(1);
     let mut rest = number;
     axes.iter().map(move |axis| {
@@ -381,19 +381,19 @@ fn combination(axes: &[Axis], number: usize) -> impl Iterator<Item = &str> {
 }
 
 /// One design, computed or taken from what is kept.
-fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, SweepError> {
+fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<DesignResult, SweepError> {
     let problem = match draft.clone().build().and_then(Problem::checked) {
         Ok(problem) => problem,
-        Err(error) => return Ok(Found::Refused(reason(&error))),
+        Err(error) => return Ok(DesignResult::Refused(reason(&error))),
     };
     let key = key(&problem, run).map_err(SweepError::Keep)?;
     if let Some(found) = keep.find(&key) {
         return Ok(found);
     }
     let found = match run.on(&problem, exec) {
-        Ok(answer) => Found::Figures(Box::new(figures(&answer)?)),
+        Ok(answer) => DesignResult::Figures(Box::new(figures(&answer)?)),
         // Of a design, only what the method says against it; a stop may come as an error of any room.
-        Err(RunError::Decide(error)) if !exec.is_cancelled() => Found::Refused(error.to_string()),
+        Err(RunError::Decide(error)) if !exec.is_cancelled() => DesignResult::Refused(error.to_string()),
         Err(_) if exec.is_cancelled() => return Err(Cancelled.into()),
         Err(error) => return Err(error.into()),
     };

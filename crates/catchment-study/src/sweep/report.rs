@@ -1,6 +1,6 @@
 //! Text and table form of a sweep.
 
-use super::{Figures, Found, Sweep, Trial};
+use super::{DesignResult, Figures, Sweep, SweepDesign};
 use catchment_core::design::Design;
 use catchment_core::document::{
     Cell, Column, Document, Format, Subject, Table, grouped, percent, significant, with_error,
@@ -61,7 +61,7 @@ impl Sweep {
     }
 
     /// The values of a design: `aspect_ratio 0.5, center_of_rotation 1`.
-    pub fn named(&self, trial: &Trial) -> String {
+    pub fn named(&self, trial: &SweepDesign) -> String {
         let pairs = self.settings.axes.iter().zip(&trial.values);
         pairs.map(|(axis, value)| format!("{} {value}", axis.name())).collect::<Vec<_>>().join(", ")
     }
@@ -120,11 +120,11 @@ impl Sweep {
 
     /// The designs without figures, and the warnings of the others, each reason once.
     fn describe_doubts(&self, document: &mut Document) {
-        let mut reasons: BTreeMap<(bool, &str), Vec<&Trial>> = BTreeMap::new();
+        let mut reasons: BTreeMap<(bool, &str), Vec<&SweepDesign>> = BTreeMap::new();
         for trial in &self.designs {
             match &trial.found {
-                Found::Refused(reason) => reasons.entry((false, reason)).or_default().push(trial),
-                Found::Figures(figures) => {
+                DesignResult::Refused(reason) => reasons.entry((false, reason)).or_default().push(trial),
+                DesignResult::Figures(figures) => {
                     for warning in &figures.warnings {
                         reasons.entry((true, warning)).or_default().push(trial);
                     }
@@ -166,7 +166,7 @@ impl Sweep {
         for trial in &self.designs {
             let mut row: Vec<Cell> = trial.values.iter().map(|value| value.as_str().into()).collect();
             match &trial.found {
-                Found::Figures(f) => {
+                DesignResult::Figures(f) => {
                     let [lo, hi] = f.sum_ci95.map_or([None; 2], |ci95| ci95.map(Some));
                     let numbers = [Some(f.sum), lo, hi, Some(f.fraction), f.onaa_edge, f.centered_edge];
                     row.extend(numbers.map(Cell::from));
@@ -176,7 +176,7 @@ impl Sweep {
                     }
                     row.extend([f.success.into(), f.warnings.join("; ").into(), Cell::Empty]);
                 }
-                Found::Refused(reason) => {
+                DesignResult::Refused(reason) => {
                     row.resize(count - 1, Cell::Empty);
                     row.push(reason.as_str().into());
                 }

@@ -77,7 +77,7 @@ pub struct Round {
 /// A trial of the last round, with rotations 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Trial {
+pub struct RoundTrial {
     /// Offset in x at its start, in D.
     pub x: f64,
     /// Offset in y at its start, in D.
@@ -105,7 +105,7 @@ pub struct Trials {
     /// Rounds by resolution and time step, in this order.
     pub rounds: Vec<Round>,
     /// The trials of the last round, in the order of the cells.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<RoundTrial>,
     /// The exact region.
     #[serde(skip)]
     pub zraa: Zraa,
@@ -172,7 +172,7 @@ const RESOLUTION: [usize; 2] = [Resolution::LEAST, 1000];
 /// Most halvings: a thousandth of the step, a thousand times the time.
 const HALVINGS: u32 = 10;
 /// Bytes per trial beside what the method takes.
-const TRIAL_BYTES: u64 = size_of::<Trial>() as u64 + super::pose_bytes();
+const TRIAL_BYTES: u64 = size_of::<RoundTrial>() as u64 + super::pose_bytes();
 
 /// Finds the exact region and asks the method at every resolution, and at the finest of them with every time step.
 ///
@@ -252,7 +252,7 @@ fn trials_of(
     grid: &Grid,
     seed: u64,
     exec: &Exec,
-) -> Result<Vec<Trial>, TrialsError> {
+) -> Result<Vec<RoundTrial>, TrialsError> {
     let stream = Stream::new(seed);
     let error = |cell: usize| {
         let mut place = grid.pose(cell).to_array();
@@ -265,7 +265,7 @@ fn trials_of(
     let errors: Vec<PoseError> = (0..grid.len()).map(error).collect();
     let follow = method.follows().ok_or(TrialsError::Method { method: method.name() })?;
     let (acceptance, _) = follow.follow(problem, Domain::Poses(errors.clone()), exec)?;
-    let trial = |(error, outcome): (PoseError, &Outcome)| Trial {
+    let trial = |(error, outcome): (PoseError, &Outcome)| RoundTrial {
         x: error.x,
         y: error.y,
         outcome: *outcome,
@@ -275,9 +275,9 @@ fn trials_of(
 }
 
 /// What the trials of a grid say.
-fn counted(resolution: usize, grid: &Grid, trials: &[Trial]) -> Round {
-    let aligned = |trial: &Trial| trial.outcome == Outcome::Aligned;
-    let count = |which: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| which(trial)).count();
+fn counted(resolution: usize, grid: &Grid, trials: &[RoundTrial]) -> Round {
+    let aligned = |trial: &RoundTrial| trial.outcome == Outcome::Aligned;
+    let count = |which: &dyn Fn(&RoundTrial) -> bool| trials.iter().filter(|trial| which(trial)).count();
     let rejected_inside = count(&|trial| trial.inside && !aligned(trial));
     let accepted_outside = count(&|trial| !trial.inside && aligned(trial));
     let (wrong, all) = (rejected_inside + accepted_outside, trials.len());
@@ -327,10 +327,10 @@ mod tests {
             // 4√2 D of border, and one trial for every cell that it crosses.
             assert!((round.accepted - 2.0).abs() < 4.0 / round.resolution as f64, "{round:?}");
         }
-        let diamond = |trial: &Trial| trial.inside == (trial.x.abs() + trial.y.abs() < 1.0);
+        let diamond = |trial: &RoundTrial| trial.inside == (trial.x.abs() + trial.y.abs() < 1.0);
         assert!(found.trials.len() == 400 && found.trials.iter().all(diamond));
         let cells = found.trials.iter().enumerate();
-        let in_cell = |(k, trial): (usize, &Trial)| {
+        let in_cell = |(k, trial): (usize, &RoundTrial)| {
             let center = found.grid.pose(k);
             let half = 0.5 * found.grid.axes[0].step();
             (trial.x - center.x).abs() <= half && (trial.y - center.y).abs() <= half
@@ -352,7 +352,7 @@ mod tests {
                 _ => Outcome::Aligned,
             };
             let PoseError { x, y, .. } = grid.pose(k);
-            Trial { x, y, outcome, inside: (20..95).contains(&k) }
+            RoundTrial { x, y, outcome, inside: (20..95).contains(&k) }
         };
         let round = counted(10, &grid, &(0..100).map(trial).collect::<Vec<_>>());
         assert_eq!((round.rejected_inside, round.accepted_outside, round.undecided), (10, 5, 3));

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// A line of trials, read outwards.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Line {
+pub struct TrialLine {
     /// Its number in the table, from 1.
     #[serde(rename = "line")]
     pub number: usize,
@@ -29,7 +29,7 @@ pub struct Line {
 }
 
 /// The lines of a table, by their numbers; trials of no line are left out.
-pub(super) fn lines(problem: &Problem, trials: &[Judged]) -> Vec<Line> {
+pub(super) fn lines(problem: &Problem, trials: &[Judged]) -> Vec<TrialLine> {
     let mut by_number: BTreeMap<usize, Vec<&Judged>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.point.line > 0 && trial.docked.is_some()) {
         by_number.entry(trial.point.line).or_default().push(trial);
@@ -42,7 +42,7 @@ pub(super) fn lines(problem: &Problem, trials: &[Judged]) -> Vec<Line> {
         let last_success = last(&|t| t.docked == Some(true));
         let first_failure = first(&|t| t.docked == Some(false));
         let in_order = last_success.zip(first_failure).is_none_or(|(a, b)| far(&a) < far(&b));
-        Line {
+        TrialLine {
             number,
             trials: made.len(),
             last_success,

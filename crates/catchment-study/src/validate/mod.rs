@@ -31,14 +31,14 @@ mod statistics;
 #[cfg(test)]
 mod tests;
 
-use crate::plan::{PlanError, Point, Prediction, check_accuracy, foretell};
+use crate::plan::{PlannedPose, Prediction, TrialPlanError, check_accuracy, foretell};
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::PoseError;
 use catchment_core::poses::{Observed, OffsetsAt, Tried};
 use catchment_core::problem::Problem;
 pub use friction::{FrictionInterval, FrictionTried};
-pub use lines::Line;
+pub use lines::TrialLine;
 use serde::{Deserialize, Serialize};
 pub use statistics::clopper_pearson;
 use statistics::{chance, tail};
@@ -78,7 +78,7 @@ pub const LEVEL: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum PredictionVerdict {
     /// The trials do not contradict the prediction.
     Consistent,
     /// The trials contradict the prediction.
@@ -87,7 +87,7 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl PredictionVerdict {
     /// As it is written.
     pub const fn name(self) -> &'static str {
         match self {
@@ -112,7 +112,7 @@ pub struct Judged {
     pub disagrees: bool,
     /// Its pose and the prediction.
     #[serde(flatten)]
-    pub point: Point,
+    pub point: PlannedPose,
     /// Whether the half docked, rotated by a symmetry of the design or not; null if the trial was not made.
     #[serde(skip)]
     pub docked: Option<bool>,
@@ -130,7 +130,7 @@ impl Judged {
             disagrees: prediction.predicted.is_some()
                 && !prediction.either
                 && docked.is_some_and(|docked| docked != prediction.docks()),
-            point: Point { error: tried.error, line: tried.line as usize, prediction },
+            point: PlannedPose { error: tried.error, line: tried.line as usize, prediction },
             docked,
             planned: tried.predicted,
         }
@@ -159,7 +159,7 @@ pub struct Count {
 /// Agreement of the trials with the prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Agreement {
+pub struct TrialAgreement {
     /// Number of trials at least one standard deviation from the border.
     pub trials: usize,
     /// Number of these that agree with the prediction.
@@ -208,7 +208,7 @@ pub struct Validation {
     /// The point of the moving half at which the table gave x and y; the offsets of this report are those of the face centre.
     pub offsets_at: OffsetsAt,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: PredictionVerdict,
     /// The verdict as a number for requirements: 1 consistent, 0 undecided, −1 inconsistent.
     pub consistent: i8,
     /// Evidence for the verdict.
@@ -217,7 +217,7 @@ pub struct Validation {
     pub counts: Vec<Count>,
     /// Agreement of the trials with the prediction, without trials closer to the border than one standard
     /// deviation of the robot.
-    pub agreement: Agreement,
+    pub agreement: TrialAgreement,
     /// Failures at poses with a predicted success.
     pub early: OneSided,
     /// Successes at poses with a predicted failure.
@@ -225,7 +225,7 @@ pub struct Validation {
     /// Every trial that disagrees with the prediction, the farthest from the border first.
     pub disagreements: Vec<Judged>,
     /// The observed border, line by line.
-    pub lines: Vec<Line>,
+    pub lines: Vec<TrialLine>,
     /// The coefficients of friction that explain the trials; null unless the settings estimate them.
     pub friction: Option<FrictionInterval>,
     /// Every trial in the order of the table.
@@ -248,7 +248,7 @@ pub struct Validation {
 pub enum ValidateError {
     /// No accuracy, or one that is none.
     #[error(transparent)]
-    Accuracy(PlanError),
+    Accuracy(TrialPlanError),
     /// A limit that is none.
     #[error("a limit of {limit} accuracies says nothing: 1 or more, such as {LIMIT}")]
     Limit {
@@ -331,7 +331,7 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings
     let clear = || made().filter(|trial| !trial.prediction().either);
     let agreed = clear().filter(|trial| !trial.disagrees).count();
     let all = clear().count();
-    let agreement = Agreement {
+    let agreement = TrialAgreement {
         trials: all,
         agreed,
         share: (all > 0).then(|| agreed as f64 / all as f64),
@@ -354,11 +354,11 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings
     // As many tests, each at a share of the level.
     let p_value = (all.len() as f64 * all.into_iter().fold(1.0, f64::min)).min(1.0);
     let (verdict, consistent) = if p_value < LEVEL {
-        (Verdict::Inconsistent, -1)
+        (PredictionVerdict::Inconsistent, -1)
     } else if inside + outside < FEWEST {
-        (Verdict::Undecided, 0)
+        (PredictionVerdict::Undecided, 0)
     } else {
-        (Verdict::Consistent, 1)
+        (PredictionVerdict::Consistent, 1)
     };
     let straight = |outcome: Option<Observed>| outcome == Some(Observed::Aligned);
     let turned = made().filter(|trial| {

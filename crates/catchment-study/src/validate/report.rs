@@ -1,6 +1,8 @@
 //! Text and table form of a verdict.
 
-use super::{Count, Evidence, FEWEST, FrictionInterval, Judged, LEVEL, Line, Validation, Verdict};
+use super::{
+    Count, Evidence, FEWEST, FrictionInterval, Judged, LEVEL, PredictionVerdict, TrialLine, Validation,
+};
 use crate::plan::{PoseColumns, accuracy_words};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
@@ -19,7 +21,7 @@ impl Subject for Validation {
         let mut warn = |text: String| warnings.push(Warning::Note { text });
         let Evidence { inside, outside, beyond, .. } = self.evidence;
         let limit = self.settings.limit;
-        if self.verdict == Verdict::Undecided {
+        if self.verdict == PredictionVerdict::Undecided {
             warn(format!(
                 "{} trials are {limit} accuracies or more from the border, and a verdict takes {FEWEST}: try more poses, or with a more accurate robot",
                 inside + outside
@@ -42,7 +44,7 @@ impl Subject for Validation {
                 self.early.disagreeing, self.early.trials, self.early.expected
             ));
         }
-        if beyond > 0 && self.verdict == Verdict::Consistent {
+        if beyond > 0 && self.verdict == PredictionVerdict::Consistent {
             warn(format!(
                 "{beyond} trials beyond {limit} accuracies disagree; of so many trials the robot's errors explain that"
             ));
@@ -146,7 +148,7 @@ impl Validation {
     }
 
     fn describe_lines(&self, document: &mut Document, units: Units<'_>) {
-        let crossed: Vec<(&Line, PoseError, PoseError)> = self
+        let crossed: Vec<(&TrialLine, PoseError, PoseError)> = self
             .lines
             .iter()
             .filter_map(|line| Some((line, line.last_success?, line.first_failure?)))

@@ -186,7 +186,7 @@ fn counts_margins_and_lines_are_those_of_the_table() {
         (0.6, MISSED),
         (0.7, None),
     ]);
-    assert_eq!((found.verdict, found.blank, found.evidence.beyond), (Verdict::Consistent, 1, 0));
+    assert_eq!((found.verdict, found.blank, found.evidence.beyond), (PredictionVerdict::Consistent, 1, 0));
     assert_eq!((found.evidence.inside, found.evidence.outside), (4, 2));
     for (judged, margin) in found.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
         assert!((judged.prediction().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
@@ -225,25 +225,25 @@ fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
         rows.extend([0.2, 0.25, 0.3, 0.35].map(|x| (x, DOCKED)));
         judged(&rows)
     };
-    assert_eq!(inside(DOCKED).verdict, Verdict::Consistent);
+    assert_eq!(inside(DOCKED).verdict, PredictionVerdict::Consistent);
     let failed = inside(JAMMED);
-    assert_eq!((failed.verdict, failed.evidence.beyond), (Verdict::Inconsistent, 1));
+    assert_eq!((failed.verdict, failed.evidence.beyond), (PredictionVerdict::Inconsistent, 1));
     assert!(failed.evidence.p_value < 1e-10 && failed.early.p_value < 1e-10);
     // At 2.05 accuracies one of ten may well fail: 1 − (1 − 0.04)¹⁰ = 0.34.
     let near: Vec<_> = (0..10).map(|k| (0.459, if k == 0 { MISSED } else { DOCKED })).collect();
     let near = judged(&near);
-    assert_eq!((near.verdict, near.evidence.beyond), (Verdict::Consistent, 1));
+    assert_eq!((near.verdict, near.evidence.beyond), (PredictionVerdict::Consistent, 1));
     assert!((near.early.p_value - 0.34).abs() < 0.03 && near.evidence.p_value == 1.0, "{near:?}");
     // Half of them may not.
     let half: Vec<_> = (0..10).map(|k| (0.459, if k % 2 == 0 { MISSED } else { DOCKED })).collect();
-    assert_eq!(judged(&half).verdict, Verdict::Inconsistent);
+    assert_eq!(judged(&half).verdict, PredictionVerdict::Inconsistent);
 }
 
 #[test]
 fn too_few_trials_decide_nothing() {
     let few =
         judged(&[(0.1, DOCKED), (0.2, DOCKED), (0.49, MISSED), (0.51, DOCKED), (0.6, MISSED), (0.3, None)]);
-    assert_eq!(few.verdict, Verdict::Undecided);
+    assert_eq!(few.verdict, PredictionVerdict::Undecided);
     assert_eq!((few.evidence.inside, few.evidence.outside), (2, 1));
     let settings = ValidationSettings::new(PoseError { x: 0.02, ..PoseError::default() });
     let nothing = run(&v_face(), &[row(1, 0.1, None)], &settings, &Exec::new());
@@ -281,13 +281,16 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     let found = with(1);
     let friction = found.friction.clone().unwrap();
     println!("{friction:?}");
-    assert_eq!((found.verdict, friction.fewest), (Verdict::Inconsistent, 0));
+    assert_eq!((found.verdict, friction.fewest), (PredictionVerdict::Inconsistent, 0));
     assert!(friction.low > 0.0 && friction.low <= 0.5 && friction.high >= 0.5, "{friction:?}");
     assert!(friction.tried[0].beyond > 0 && friction.high < 0.7, "{friction:?}");
     // With that friction the prediction holds; and threads change nothing.
     let with_friction = ValidationSettings { friction: 0.5, estimate_friction: false, ..settings.clone() };
     let again = run(&problem, &made, &with_friction, &Exec::new()).unwrap();
-    assert_eq!((again.verdict, again.agreement.agreed), (Verdict::Consistent, again.agreement.trials));
+    assert_eq!(
+        (again.verdict, again.agreement.agreed),
+        (PredictionVerdict::Consistent, again.agreement.trials)
+    );
     assert!(found == with(2) && found == with(4));
 }
 
@@ -299,13 +302,13 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let tried: Vec<Tried> =
         (1..=6).map(|k| row(k, 0.02 * k as f64, Some(Observed::AlignedElsewhere))).collect();
     let found = run(&fourfold, &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.verdict, found.turned), (Verdict::Consistent, 6));
+    assert_eq!((found.verdict, found.turned), (PredictionVerdict::Consistent, 6));
     let mut design = fourfold.design().clone();
     design.alignment.symmetry = 1;
     let found =
         run(&fourfold.with(design).unwrap(), &tried, &ValidationSettings::new(accuracy), &Exec::new())
             .unwrap();
-    assert_eq!((found.verdict, found.evidence.beyond, found.turned), (Verdict::Inconsistent, 6, 0));
+    assert_eq!((found.verdict, found.evidence.beyond, found.turned), (PredictionVerdict::Inconsistent, 6, 0));
     // Turned by nearly a quarter it does dock there, and that is predicted.
     let turned =
         Tried { error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() }, ..tried[0].clone() };

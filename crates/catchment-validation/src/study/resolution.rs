@@ -17,7 +17,7 @@ use catchment::method::Method;
 use catchment::method::correction::{self, Stop};
 use catchment::pose::Dof;
 use catchment::problem::Problem;
-use catchment::study::refinement::Sampled;
+use catchment::study::refinement::GridDecision;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -110,7 +110,8 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Found, Rec
             if method.name() == "descent" && resolution > settings.finest_descent {
                 continue;
             }
-            let decided = Sampled::by(&method, &problem, resolution, exec).map_err(|error| failed(&error))?;
+            let decided =
+                GridDecision::by(&method, &problem, resolution, exec).map_err(|error| failed(&error))?;
             let trial = decided.refinement(&problem, exec).map_err(|error| failed(&error))?;
             curve.points.push(Point { resolution, sum: trial.sum, seconds: trial.seconds });
             if method == Method::default() {

@@ -8,7 +8,7 @@
 
 use super::height::HeightMap;
 use super::{Grain, Sunk, Triangles};
-use crate::proposal::way::Lie;
+use crate::proposal::way::PartLayout;
 use glam::DMat3;
 
 /// The best place of those that differ by a turn about the approach.
@@ -28,8 +28,8 @@ pub(in crate::proposal) fn classes(moving: &Triangles, sunk: &[Sunk], grain: Gra
     let middle = low.midpoint(high);
     let at = |sunk: &Sunk| (sunk.lie.turns()[1] * middle).truncate() + sunk.offset;
     let sides = |sunk: &Sunk| match sunk.lie {
-        Lie::Facing { fixed, moving, .. } => Some((fixed, moving)),
-        Lie::Assembled { .. } => None,
+        PartLayout::Facing { fixed, moving, .. } => Some((fixed, moving)),
+        PartLayout::Assembled { .. } => None,
     };
     let mut found: Vec<Class> = Vec::new();
     for one in sunk {

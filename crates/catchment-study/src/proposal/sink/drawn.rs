@@ -9,7 +9,7 @@
 use super::height::{HeightMap, NOTHING};
 use super::refine::Window;
 use super::{Grain, Sunk, Triangles};
-use crate::proposal::way::{Lie, Way};
+use crate::proposal::way::{AxisDirection, PartLayout};
 use glam::{DMat3, DVec2, DVec3};
 
 /// What comes of an approach, lengths in the unit of the parts.
@@ -40,8 +40,13 @@ const WIDER: f64 = 8.0;
 const REACHES: [f64; 3] = [0.4, 1.2, ACROSS];
 
 /// The moving part let down as drawn, along an approach. `any` distance along it may be allowed.
-pub(in crate::proposal) fn drawn(parts: [&Triangles; 2], way: Way, any: bool, grain: Grain) -> Drawn {
-    let lie = Lie::as_drawn(way);
+pub(in crate::proposal) fn drawn(
+    parts: [&Triangles; 2],
+    way: AxisDirection,
+    any: bool,
+    grain: Grain,
+) -> Drawn {
+    let lie = PartLayout::as_drawn(way);
     let (mut flat, mut off, mut passes) = (None, None, false);
     // What is as wide as its hole fits by one cell that is worn away.
     for worn in [0, 1] {

@@ -18,7 +18,7 @@ use super::drawn::{columns, common};
 use super::height::HeightMap;
 use super::refine::Window;
 use super::{Grain, Triangles};
-use crate::proposal::way::{Lie, Way};
+use crate::proposal::way::{AxisDirection, PartLayout};
 use glam::{DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,8 +29,8 @@ const ACROSS: f64 = 0.4;
 const SHORT: f64 = 0.5;
 
 /// How far the walls of the fixed part would have to give way, on each side, so that the moving part comes to where it is drawn.
-pub(in crate::proposal) fn undercut(parts: [&Triangles; 2], way: Way, grain: Grain) -> Option<f64> {
-    let turns = Lie::as_drawn(way).turns();
+pub(in crate::proposal) fn undercut(parts: [&Triangles; 2], way: AxisDirection, grain: Grain) -> Option<f64> {
+    let turns = PartLayout::as_drawn(way).turns();
     WORN.into_iter().find_map(|worn| {
         let window = Window::around(parts, turns, DVec2::ZERO, worn, grain);
         let lowest = window.lowest(DVec2::ZERO, ACROSS * grain.small)?;
@@ -48,9 +48,9 @@ const COLUMNS: f64 = 160.0;
 const FITS: f64 = 0.2;
 
 /// The lead of a thread along an approach, positive for a right-handed one: how far one turn moves the moving part.
-pub(in crate::proposal) fn lead(parts: [&Triangles; 2], way: Way, grain: Grain) -> Option<f64> {
+pub(in crate::proposal) fn lead(parts: [&Triangles; 2], way: AxisDirection, grain: Grain) -> Option<f64> {
     let [fixed, moving] = parts;
-    let turn = Lie::as_drawn(way).turns()[0];
+    let turn = PartLayout::as_drawn(way).turns()[0];
     let (low, high) = HeightMap::bounds(moving, &turn);
     let middle = low.midpoint(high).truncate();
     let of_fixed = HeightMap::bounds(fixed, &turn);

@@ -29,7 +29,7 @@ pub(super) use classes::classes;
 pub(super) use drawn::{Drawn, drawn, together};
 pub(super) use interlock::{lead, undercut};
 
-use super::way::{Lie, Way};
+use super::way::{AxisDirection, PartLayout};
 use catchment_core::connector::Half;
 use catchment_core::exec::{Cancelled, Exec};
 use flood::{Basin, basins};
@@ -77,7 +77,7 @@ impl Grain {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sunk {
     /// How the parts lie.
-    pub(super) lie: Lie,
+    pub(super) lie: PartLayout,
     /// Where the origin of the turned moving part is, in the frame of the turned fixed one: in plan view, and how high.
     pub(super) offset: DVec2,
     pub(super) height: f64,
@@ -110,7 +110,7 @@ pub(super) const UPSIDE_DOWN: DMat3 = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3
 /// The places where the moving part sinks into the fixed one, the steepest first.
 pub(super) fn sinks(
     [fixed, moving]: [&Triangles; 2],
-    facing: [&[Way]; 2],
+    facing: [&[AxisDirection]; 2],
     grain: Grain,
     exec: &Exec,
 ) -> Result<Vec<Sunk>, Cancelled> {
@@ -124,7 +124,7 @@ pub(super) fn sinks(
     let views = views(moving, facing[1], cell, exec)?;
     let found = exec.each(facing[0].len(), usize::MAX, "facings", |k, exec| {
         let way = facing[0][k];
-        let turn = Lie::Facing { fixed: way, moving: way, turned: 0 }.turns()[0];
+        let turn = PartLayout::Facing { fixed: way, moving: way, turned: 0 }.turns()[0];
         let mut tops = Tops::of(fixed, &turn, cell);
         let mut found = Vec::new();
         for view in &views {
@@ -149,14 +149,14 @@ pub(super) fn sinks(
 }
 
 /// The directions half way between two axes along which a part may enter or be entered: it has walls parallel to them, on two sides.
-pub(super) fn diagonals(part: &Triangles) -> Vec<Way> {
+pub(super) fn diagonals(part: &Triangles) -> Vec<AxisDirection> {
     /// Seen from either side, walls cover at least this share of the surface: more than the strip of a cylinder whose axis lies across.
     const SHARE: f64 = 0.03;
     /// Normals of walls are square to the direction up to this sine.
     const SQUARE: f64 = 0.05;
     let normals: Vec<DVec3> = part.iter().map(|[a, b, c]| (b - a).cross(c - a)).collect();
     let all: f64 = normals.iter().map(|normal| normal.length()).sum();
-    let has_walls = |way: &Way| {
+    let has_walls = |way: &AxisDirection| {
         let along = way.vector();
         let flat = DVec3::AXES.into_iter().find(|axis| axis.dot(along) == 0.0).unwrap_or(DVec3::Z);
         let across = flat.cross(along);
@@ -166,23 +166,24 @@ pub(super) fn diagonals(part: &Triangles) -> Vec<Way> {
             seen.fold([0.0; 2], |[front, back], area| [front + area.max(0.0), back - area.min(0.0)]);
         front.min(back) >= SHARE * all
     };
-    Way::diagonals().filter(has_walls).collect()
+    AxisDirection::diagonals().filter(has_walls).collect()
 }
 
 /// A way in which the moving part may be turned, seen from below.
 struct View {
-    way: Way,
+    way: AxisDirection,
     turned: u8,
     bottom: HeightMap,
     points: Groups,
 }
 
 /// The ways in which the moving part may be turned; of those that look alike from below the first.
-fn views(moving: &Triangles, ways: &[Way], cell: f64, exec: &Exec) -> Result<Vec<View>, Cancelled> {
-    let all: Vec<(Way, u8)> = ways.iter().flat_map(|way| (0..4).map(|turned| (*way, turned))).collect();
+fn views(moving: &Triangles, ways: &[AxisDirection], cell: f64, exec: &Exec) -> Result<Vec<View>, Cancelled> {
+    let all: Vec<(AxisDirection, u8)> =
+        ways.iter().flat_map(|way| (0..4).map(|turned| (*way, turned))).collect();
     let maps = exec.each(all.len(), usize::MAX, "views", |k, _| {
         let (way, turned) = all[k];
-        let turn = Lie::Facing { fixed: way, moving: way, turned }.turns()[1];
+        let turn = PartLayout::Facing { fixed: way, moving: way, turned }.turns()[1];
         HeightMap::whole(moving, &(UPSIDE_DOWN * turn), cell / SUB as f64, SUB)
     });
     exec.check()?;
@@ -251,8 +252,8 @@ impl Tops {
     }
 
     /// The basins of one view, on the first lattice.
-    fn seen(&mut self, way: Way, view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
-        let lie = Lie::Facing { fixed: way, moving: view.way, turned: view.turned };
+    fn seen(&mut self, way: AxisDirection, view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
+        let lie = PartLayout::Facing { fixed: way, moving: view.way, turned: view.turned };
         let heights = self.heights(view);
         let mut found: Vec<Sunk> = Vec::new();
         for (map, h) in self.maps.iter().zip(&heights) {

@@ -42,7 +42,7 @@ fn pin([x, y, z]: [f64; 3]) -> Triangles {
 
 pub(super) const GRAIN: Grain = Grain { small: 0.5 };
 
-pub(super) fn down() -> Way {
+pub(super) fn down() -> AxisDirection {
     "-z".parse().unwrap()
 }
 
@@ -88,10 +88,10 @@ fn a_turned_pin_is_found_with_its_twin() {
     let lying =
         [block([30.0, 5.0, 7.0], [50.0, 15.0, 17.0]), block([50.0, 2.0, 4.0], [54.0, 18.0, 20.0])].concat();
     let exec = Exec::new();
-    let found = sinks([&plate, &lying], [&Way::ALL, &Way::ALL], GRAIN, &exec).unwrap();
+    let found = sinks([&plate, &lying], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
     let classes = classes(&lying, &found, GRAIN);
     let best = classes[0].best;
-    let faces = |fixed: &str, moving: &str, lie: Lie| matches!(lie, Lie::Facing { fixed: f, moving: m, .. } if f.name() == fixed && m.name() == moving);
+    let faces = |fixed: &str, moving: &str, lie: PartLayout| matches!(lie, PartLayout::Facing { fixed: f, moving: m, .. } if f.name() == fixed && m.name() == moving);
     assert!(faces("+z", "-x", best.lie), "{best:?}");
     assert!((best.climb - 12.0).abs() < 1e-3, "{best:?}");
     let middle = (best.lie.turns()[1] * DVec3::new(40.0, 10.0, 12.0)).truncate() + best.offset;
@@ -101,7 +101,7 @@ fn a_turned_pin_is_found_with_its_twin() {
     );
     // Without its head either end goes in.
     let plain = block([30.0, 5.0, 7.0], [54.0, 15.0, 17.0]);
-    let found = sinks([&plate, &plain], [&Way::ALL, &Way::ALL], GRAIN, &exec).unwrap();
+    let found = sinks([&plate, &plain], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
     let classes = super::classes(&plain, &found, GRAIN);
     let mut ends: Vec<bool> = classes[..2].iter().map(|class| faces("+z", "+x", class.best.lie)).collect();
     ends.sort_unstable();
@@ -122,12 +122,13 @@ fn what_is_drawn_at_45_degrees_is_found_along_diagonals() {
     let [fixed, moving] = [&plate, &pin].map(diagonals);
     let names: Vec<&str> = fixed.iter().map(|way| way.name()).collect();
     assert_eq!(names, ["+y+z", "-y-z", "+y-z", "-y+z"]);
-    let steepest =
-        |facing: [&[Way]; 2]| sinks([&plate, &pin], facing, GRAIN, &Exec::new()).unwrap().first().copied();
+    let steepest = |facing: [&[AxisDirection]; 2]| {
+        sinks([&plate, &pin], facing, GRAIN, &Exec::new()).unwrap().first().copied()
+    };
     let found = steepest([&fixed, &moving]).unwrap();
-    assert!(matches!(found.lie, Lie::Facing { fixed, .. } if fixed.name() == "-y+z"), "{found:?}");
+    assert!(matches!(found.lie, PartLayout::Facing { fixed, .. } if fixed.name() == "-y+z"), "{found:?}");
     assert!((found.climb - 12.0).abs() < 0.1, "{found:?}");
-    let along_axes = steepest([&Way::ALL, &Way::ALL]).map_or(0.0, |sunk| sunk.steep);
+    let along_axes = steepest([&AxisDirection::ALL, &AxisDirection::ALL]).map_or(0.0, |sunk| sunk.steep);
     assert!(along_axes < 0.5 * found.steep, "{along_axes} {found:?}");
 }
 

@@ -48,7 +48,7 @@ use catchment::connector::{Connector, Half};
 use catchment::design::{Design, Quantity};
 use catchment::exec::Exec;
 use catchment::pose::rotation;
-use catchment::study::sweep::Axis;
+use catchment::study::sweep::SweepAxis;
 use glam::{DMat3, DVec2};
 use serde::Serialize;
 
@@ -85,7 +85,7 @@ pub struct Between {
 /// In words, with what to write instead.
 pub fn list_of_angles(text: &str) -> Result<Vec<f64>, String> {
     // The ranges are those of a sweep, of any key that is an angle.
-    let axis: Axis = format!("errors.pitch={text}").parse().map_err(|_| {
+    let axis: SweepAxis = format!("errors.pitch={text}").parse().map_err(|_| {
         format!(
             "`{text}` is no list of angles: write 5 deg,10 deg or a range with its number, -10..10 deg/21"
         )

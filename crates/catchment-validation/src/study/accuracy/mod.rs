@@ -19,7 +19,7 @@ use catchment::exec::Exec;
 use catchment::method::Method;
 use catchment::method::correction::{self, Stop};
 use catchment::problem::{Problem, ProblemError};
-use catchment::study::refinement::{RefinementError, Sampled};
+use catchment::study::refinement::{GridDecision, RefinementError};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -177,7 +177,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
             if method.name() == "descent" && resolution.pow(case.free.len() as u32) > FOLLOWED {
                 continue;
             }
-            let sampled = Sampled::by(&method, &problem, resolution, exec)?;
+            let sampled = GridDecision::by(&method, &problem, resolution, exec)?;
             entries.push(Entry::of(&sampled, &method, &problem, exec)?);
             if method == Method::default() {
                 entries.push(Entry::corrected(&sampled, &method, &problem, exec)?);
@@ -204,7 +204,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
 impl Entry {
     /// The grid's own Sum; its error is not known yet.
     fn of(
-        sampled: &Sampled,
+        sampled: &GridDecision,
         method: &Method,
         problem: &Problem,
         exec: &Exec,
@@ -223,7 +223,7 @@ impl Entry {
 
     /// The same grid, corrected.
     fn corrected(
-        sampled: &Sampled,
+        sampled: &GridDecision,
         method: &Method,
         problem: &Problem,
         exec: &Exec,
