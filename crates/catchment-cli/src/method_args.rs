@@ -4,7 +4,7 @@ use crate::drop_args::DropArgs;
 use crate::failure::Failure;
 use crate::setting::number;
 use crate::setting::{Change, with_changes};
-use catchment::method::{Entry, Method, REGISTRY};
+use catchment::method::{Method, REGISTRY, RegistryEntry};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use serde_json::Value;
@@ -106,7 +106,7 @@ pub(crate) enum Choice {
 const ALL: &str = "all";
 
 /// What a person may write for some of the methods.
-fn possible(which: impl Fn(&Entry) -> bool) -> Vec<PossibleValue> {
+fn possible(which: impl Fn(&RegistryEntry) -> bool) -> Vec<PossibleValue> {
     REGISTRY
         .iter()
         .filter(|entry| which(entry))
@@ -121,7 +121,7 @@ pub(crate) fn method_parser() -> ValueParser {
 
 /// Reads the name of a method that decides each pose by itself.
 pub(crate) fn pose_method_parser() -> ValueParser {
-    let by_pose = |entry: &Entry| entry.method().follows().is_some();
+    let by_pose = |entry: &RegistryEntry| entry.method().follows().is_some();
     PossibleValuesParser::new(possible(by_pose)).try_map(|name| name.parse::<Method>()).into()
 }
 

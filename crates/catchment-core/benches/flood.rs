@@ -11,7 +11,7 @@ use catchment_core::contact::Pair;
 use catchment_core::design::Alignment;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Grid, Landscape};
-use catchment_core::method::flood::{self, FloodSettings, Flooding, Rule, brute, meyer};
+use catchment_core::method::flood::{self, DrainageRule, FloodSettings, Flooding, brute, meyer};
 use catchment_core::pose::{Dof, Mount};
 use designs::pair;
 use peak_alloc::PeakAlloc;
@@ -59,7 +59,7 @@ fn main() {
         let name = format!("with heights, {name}, {cells} cells per axis");
         rates.measure(&name, "floods of cells", grid.len(), &mut || accept(), None);
     }
-    for rule in [Rule::Lowest, Rule::Steepest] {
+    for rule in [DrainageRule::Lowest, DrainageRule::Steepest] {
         let pair = pair("pyramid.toml");
         let landscape = landscape(&pair, 12);
         let settings = FloodSettings { rule, ..FloodSettings::default() };

@@ -38,7 +38,7 @@ fn main() {
         for slices in SLICES.into_iter().filter(|slices| timed || *slices < 20) {
             let settings = PartitionSettings { slices, strips: per_strip.map_or(1, |n| slices.div_ceil(n)) };
             let mut seconds = Vec::new();
-            let mut counts = partition::Counts::default();
+            let mut counts = partition::PartitionCounts::default();
             for _ in 0..if timed { RUNS } else { 1 } {
                 let started = Instant::now();
                 let found = partition::run(&pair, &settings, &exec).expect("a partition");

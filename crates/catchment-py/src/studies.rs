@@ -6,7 +6,7 @@ use crate::refusal::Refusal;
 use crate::rendered::Rendered;
 use crate::work::{How, work};
 use catchment::exec::Stopwatch;
-use catchment::method::zraa::{self, Nilsson, Square};
+use catchment::method::zraa::{self, AcceptedSquare, Nilsson};
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::report::compare::{Source, compare as compared};
@@ -107,7 +107,7 @@ impl Problem {
         work(py, &how, |exec| {
             let problem = &self.inner;
             let found = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
-            let square = Square::of(&found, exec)?;
+            let square = AcceptedSquare::of(&found, exec)?;
             let nilsson = Nilsson::beside(&found, problem.pair());
             let offsets = AcceptedOffsets::new(problem.design(), &found, &square, nilsson.as_ref());
             let report = ZraaReport::new(problem.design(), offsets, Vec::new(), None);

@@ -4,7 +4,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Subject, Table, fixed};
 use catchment_core::method::kinematic::stepping::Halt;
-use catchment_core::method::kinematic::{Body, KinematicSettings, Lever, Start};
+use catchment_core::method::kinematic::{KinematicSettings, Lever, LeverBody, LeverPose};
 use catchment_core::pose::PoseError;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub struct FirstContact {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CornerContact {
     /// The body of the corner.
-    pub corner_of: Body,
+    pub corner_of: LeverBody,
     /// Rotation point of the moving half, `P_M`, in D.
     pub moving_pivot_d: [f64; 2],
     /// Rotation point of the base half, `P_B`, in D.
@@ -61,7 +61,7 @@ pub struct CornerContact {
 impl From<&Lever> for CornerContact {
     fn from(lever: &Lever) -> Self {
         let (own, other) = (lever.corner_pivot.to_array(), lever.edge_pivot.to_array());
-        let [moving, base] = if lever.corner == Body::Moving { [own, other] } else { [other, own] };
+        let [moving, base] = if lever.corner == LeverBody::Moving { [own, other] } else { [other, own] };
         Self {
             corner_of: lever.corner,
             moving_pivot_d: moving,
@@ -80,8 +80,8 @@ impl From<&Lever> for CornerContact {
     }
 }
 
-impl From<&Start> for FirstContact {
-    fn from(start: &Start) -> Self {
+impl From<&LeverPose> for FirstContact {
+    fn from(start: &LeverPose) -> Self {
         Self {
             method: "kinematic",
             settings: start.settings,
@@ -146,8 +146,8 @@ impl FirstContact {
 impl CornerContact {
     fn describe(&self, document: &mut Document) {
         let words = match self.corner_of {
-            Body::Moving => "a corner of the moving half on an edge of the base",
-            Body::Base => "a corner of the base on an edge of the moving half",
+            LeverBody::Moving => "a corner of the moving half on an edge of the base",
+            LeverBody::Base => "a corner of the base on an edge of the moving half",
         };
         document.row("first contact", words);
         if self.theta_2 < 0.0 {

@@ -2,7 +2,7 @@
 
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use catchment_core::acceptance::{Acceptance, Outcome, Reason};
+use catchment_core::acceptance::{Acceptance, FailureReason, Outcome};
 use catchment_core::design::Design;
 use catchment_core::document::number as number_in_table;
 use catchment_core::method::Method;
@@ -31,7 +31,7 @@ pub struct OutcomesReport<'a> {
     /// Where each motion ended.
     pub ends: &'a [End],
     /// Why each did not dock, where that can be told; `None` where there is nothing to tell of this design.
-    pub reasons: Option<Vec<Option<Reason>>>,
+    pub reasons: Option<Vec<Option<FailureReason>>>,
     /// Which of them could as well have stuck on their way, with friction.
     doubts: Option<&'a MayStick<'a>>,
     /// Doubts about the answer.
@@ -119,8 +119,8 @@ impl<'a> OutcomeRows<'a> {
             row.push(if doubts.may_stick(number) { "yes" } else { "no" }.to_owned());
         }
         if self.problem.may_cross() {
-            let reason = Reason::of(self.problem, end.outcome, &end.error);
-            row.push(reason.map_or("", Reason::name).to_owned());
+            let reason = FailureReason::of(self.problem, end.outcome, &end.error);
+            row.push(reason.map_or("", FailureReason::name).to_owned());
         }
         record(&row)
     }
@@ -174,7 +174,7 @@ struct Row {
     outcome: Outcome,
     /// Reason for the failure to dock.
     #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<Reason>,
+    reason: Option<FailureReason>,
     #[serde(rename = "final")]
     last: PoseError,
     /// z of the COR at the end, in D; null if the moving half missed.
@@ -202,7 +202,7 @@ impl<'a> OutcomesReport<'a> {
         let objections = problem.objections();
         let notes = objections.iter().map(WarningReport::note);
         let warnings = notes.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
-        let reason = |end: &End| Reason::of(problem, end.outcome, &end.error);
+        let reason = |end: &End| FailureReason::of(problem, end.outcome, &end.error);
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
         let finished = finished.as_deref();
@@ -262,7 +262,7 @@ impl<'a> OutcomesReport<'a> {
     }
 
     /// Why a pose did not dock, if that can be told.
-    fn reason(&self, pose: usize) -> Option<Reason> {
+    fn reason(&self, pose: usize) -> Option<FailureReason> {
         self.reasons.as_ref()?.get(pose).copied().flatten()
     }
 

@@ -3,7 +3,7 @@
 use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use catchment_core::acceptance::{Outcome, Reason};
+use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, Document, Format, Table, decimals};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
@@ -39,7 +39,7 @@ pub struct TraceBody {
     /// Outcome of the motion.
     pub outcome: Outcome,
     /// Reason for the failure to dock; null if it is not known.
-    pub reason: Option<Reason>,
+    pub reason: Option<FailureReason>,
     /// The last pose error; null if the halves never meet.
     pub end: Option<PoseError>,
     /// Waypoints from first contact on; for a drop test from the release on.
@@ -89,7 +89,7 @@ impl TraceReport {
         settings: &DescentSettings,
         start: PoseError,
         path: &Trajectory,
-        reason: Option<Reason>,
+        reason: Option<FailureReason>,
     ) -> Self {
         let waypoints: Vec<WaypointReport> = path.waypoints.iter().map(WaypointReport::from).collect();
         let body = TraceBody {
@@ -115,7 +115,7 @@ impl TraceReport {
         path: &drop::Path,
         warnings: Vec<WarningReport>,
     ) -> Self {
-        let waypoint = |moment: &drop::Moment| WaypointReport {
+        let waypoint = |moment: &drop::DropMoment| WaypointReport {
             time_s: Some(moment.time),
             ..WaypointReport::from(&moment.waypoint)
         };

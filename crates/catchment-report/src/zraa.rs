@@ -4,7 +4,7 @@ use super::document::OfDesign;
 use catchment_core::design::Design;
 use catchment_core::document::rounded;
 use catchment_core::document::{Document, Subject, Table};
-use catchment_core::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
+use catchment_core::method::zraa::{AcceptedSquare, Catch, Nilsson, Zraa, circle_bounds, circle_square};
 use catchment_core::pose::Dof;
 use serde::Serialize;
 
@@ -107,7 +107,7 @@ impl NilssonReport {
     /// The bound in a few words.
     pub fn bound(&self) -> String {
         let share = if self.ungendered { 3 } else { 2 };
-        if (self.width_d - 1.0).abs() < Square::TOLERANCE {
+        if (self.width_d - 1.0).abs() < AcceptedSquare::TOLERANCE {
             format!("D/{share}")
         } else {
             format!("{} D/{share}", rounded(self.width_d))
@@ -134,7 +134,7 @@ impl NilssonReport {
 
 impl AcceptedOffsets {
     /// Of a design; `nilsson` is of its profile, if it has one.
-    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
+    pub fn new(design: &Design, zraa: &Zraa, square: &AcceptedSquare, nilsson: Option<&Nilsson>) -> Self {
         let bounds = circle_bounds(design, zraa);
         match zraa {
             Zraa::Interval { axis, from, to } => Self::Interval {
@@ -192,7 +192,7 @@ impl AcceptedOffsets {
                 // The edge is exact to 1e-8 D: more digits would be noise.
                 document.row("onaa", format!("{onaa_d:.7} D{}", in_unit(design, *onaa_d, 1)));
                 document.more(format!("edge of the largest square, {}", around(*x, *y)));
-                if onaa_d - onaa_centered_d > Square::TOLERANCE {
+                if onaa_d - onaa_centered_d > AcceptedSquare::TOLERANCE {
                     document.more(format!("{onaa_centered_d:.7} D for the largest around zero"));
                 }
                 if let Some([lower, upper]) = circle_onaa_d {
@@ -238,7 +238,7 @@ impl Subject for AcceptedOffsets {
 
 /// Where a square lies.
 fn around(x: f64, y: f64) -> String {
-    if x.abs().max(y.abs()) < Square::TOLERANCE {
+    if x.abs().max(y.abs()) < AcceptedSquare::TOLERANCE {
         "around zero".to_owned()
     } else {
         format!("around x = {}, y = {} D", rounded(x), rounded(y))
@@ -267,8 +267,8 @@ mod tests {
         design.name = "\u{1b}[2Jx".to_owned();
         let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
         let center = DVec2::new(0.25, 0.25);
-        let square = Square { edge: 0.5, center, centered_edge: 0.0 };
-        let of = |design: &Design, zraa: &Zraa, square: &Square| {
+        let square = AcceptedSquare { edge: 0.5, center, centered_edge: 0.0 };
+        let of = |design: &Design, zraa: &Zraa, square: &AcceptedSquare| {
             let offsets = AcceptedOffsets::new(design, zraa, square, None);
             ZraaReport::new(design, offsets, Vec::new(), None)
         };
@@ -291,7 +291,7 @@ mod tests {
                 && region.table().contains("0.500000000 D² = 1250.000000 mm²")
         );
         assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
-        let square = Square { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
+        let square = AcceptedSquare { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
         let interval = of(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square);
         let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
         assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));

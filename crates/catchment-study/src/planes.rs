@@ -20,7 +20,7 @@ use catchment_core::contact::Pair;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::landscape::{Grid, GridAxis};
 use catchment_core::merit::slice;
-use catchment_core::method::{Decide, descent};
+use catchment_core::method::{DecisionMethod, descent};
 use catchment_core::pose::Dof;
 
 /// Cells per axis of a plane that is shown alone.

@@ -9,8 +9,8 @@ use catchment_core::landscape::Grid;
 use catchment_core::merit::MeritError;
 use catchment_core::merit::onaa::Onaa;
 use catchment_core::merit::sum::{Sum, bracket};
-use catchment_core::method::correction::{self, Corrected, CorrectionError};
-use catchment_core::method::{DecideError, Decided, Method, ensure_fits};
+use catchment_core::method::correction::{self, CorrectionError, UnbiasedSum};
+use catchment_core::method::{DecideError, Method, MethodOutput, ensure_fits};
 use catchment_core::problem::Problem;
 use catchment_core::run;
 use serde::Serialize;
@@ -43,7 +43,7 @@ pub struct Refinement {
 pub struct GridDecision {
     method: Method,
     grid: Grid,
-    decided: Decided,
+    decided: MethodOutput,
     seconds: f64,
 }
 
@@ -127,7 +127,7 @@ impl GridDecision {
         problem: &Problem,
         settings: &correction::CorrectionSettings,
         exec: &Exec,
-    ) -> Result<Corrected, CorrectionError> {
+    ) -> Result<UnbiasedSum, CorrectionError> {
         let doubts = self.decided.doubts.as_deref();
         let (method, acceptance) = (&self.method, &self.decided.acceptance);
         Ok(run::correct(method, problem, &self.grid, acceptance, doubts, settings, exec)?.found)

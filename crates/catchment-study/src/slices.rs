@@ -24,7 +24,7 @@ use catchment_core::merit::estimate::Estimate;
 use catchment_core::merit::onaa::Onaa;
 use catchment_core::merit::sum::{Sum, bracket};
 use catchment_core::merit::{MeritError, doubts, slice};
-use catchment_core::method::{DecideError, Follow, Method, descent};
+use catchment_core::method::{DecideError, Method, PoseMethod, descent};
 use catchment_core::pose::Dof;
 use catchment_core::problem::Problem;
 use serde::ser::SerializeMap;
@@ -179,7 +179,12 @@ pub fn run(problem: &Problem, settings: &SlicesSettings, exec: &Exec) -> Result<
 }
 
 /// Decides a plane by itself.
-fn decide(problem: &Problem, grid: Grid, judge: &dyn Follow, exec: &Exec) -> Result<Acceptance, SlicesError> {
+fn decide(
+    problem: &Problem,
+    grid: Grid,
+    judge: &dyn PoseMethod,
+    exec: &Exec,
+) -> Result<Acceptance, SlicesError> {
     Ok(judge.follow(problem, Domain::Grid(grid), exec)?.0)
 }
 
@@ -250,7 +255,7 @@ mod tests {
         );
         let outcomes = all.unwrap().0.outcomes;
         let plane =
-            slice::Slice::of(&whole, &[Dof::X, Dof::Yaw], &catchment_core::pose::PoseError::default())
+            slice::GridSlice::of(&whole, &[Dof::X, Dof::Yaw], &catchment_core::pose::PoseError::default())
                 .unwrap();
         assert_eq!(found.slices[0].axes, [Dof::X, Dof::Yaw]);
         assert_eq!(found.slices[0].acceptance.outcomes, plane.pick(&outcomes));

@@ -4,7 +4,7 @@ use crate::published::{self, Published, PublishedError};
 use crate::recipe::Recipe;
 use crate::recipe::dissertation::Errors;
 use catchment::design::Family;
-use catchment::method::kinematic::Face;
+use catchment::method::kinematic::PlanarFace;
 
 /// A table that can be reproduced.
 #[derive(Debug, Clone, Copy)]
@@ -172,7 +172,7 @@ pub const TABLES: &[Table] = &[
         column_name: "rotation point behind mid height (half-widths)",
         csv: published!("table-3.2-x-face-kinematic"),
         tolerance: None,
-        recipe: Recipe::Kinematic(Face::XFace),
+        recipe: Recipe::Kinematic(PlanarFace::XFace),
         known: &[],
         highlights: false,
         notes: STEPPING_NOTES,
@@ -184,7 +184,7 @@ pub const TABLES: &[Table] = &[
         column_name: "rotation point behind mid height (half-widths)",
         csv: published!("table-3.3-v-face-kinematic"),
         tolerance: Some(0.0),
-        recipe: Recipe::Kinematic(Face::VFace),
+        recipe: Recipe::Kinematic(PlanarFace::VFace),
         known: &[],
         highlights: false,
         notes: KINEMATIC_NOTES,
@@ -196,7 +196,7 @@ pub const TABLES: &[Table] = &[
         column_name: "rotation point behind mid height (half-widths)",
         csv: published!("table-3.4-s-face-kinematic"),
         tolerance: Some(0.0),
-        recipe: Recipe::Kinematic(Face::SFace),
+        recipe: Recipe::Kinematic(PlanarFace::SFace),
         known: &[],
         highlights: false,
         notes: KINEMATIC_NOTES,

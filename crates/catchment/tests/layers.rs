@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::acceptance::{Outcome, Reason};
+use catchment::acceptance::{FailureReason, Outcome};
 use catchment::contact::mated::MatedProblem;
 use catchment::design::family::XFace;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
@@ -39,9 +39,9 @@ fn problem(free: &[Dof], layers: Option<[f64; 2]>, docked_y: f64) -> Problem {
     Problem::of(Design { name: String::new(), connector, width: 1.0, unit: None, alignment }).unwrap()
 }
 
-fn fate(problem: &Problem, error: PoseError) -> (Outcome, Option<Reason>) {
+fn fate(problem: &Problem, error: PoseError) -> (Outcome, Option<FailureReason>) {
     let end = descent::outcome(problem.pair(), &error, &DescentSettings::default());
-    (end.outcome, Reason::of(problem, end.outcome, &end.error))
+    (end.outcome, FailureReason::of(problem, end.outcome, &end.error))
 }
 
 /// What is written as the default is the default, to the bit.
@@ -73,7 +73,7 @@ fn the_range_of_y_has_a_closed_form() {
                 assert_eq!(at(y), (Outcome::Aligned, None), "{s} {y}");
             }
             for y in [GAP + 1e-6, 0.3, THICK - 1e-6] {
-                assert_eq!(at(y), (Outcome::Jammed, Some(Reason::Crossed)), "{s} {y}");
+                assert_eq!(at(y), (Outcome::Jammed, Some(FailureReason::Crossed)), "{s} {y}");
             }
             for y in [THICK + 1e-6, GAP + 2.0 * THICK - 1e-6, GAP + 2.0 * THICK + 1e-6] {
                 assert_eq!(at(y), (Outcome::Missed, None), "{s} {y}");

@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, warnings};
-use catchment::method::partition::{PartitionSettings, Subject, shapes};
+use catchment::method::partition::{PartitionSettings, SolidShape, shapes};
 use catchment::report::{Body, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
@@ -30,7 +30,7 @@ pub(crate) struct SolidsArgs {
     pub(super) design: DesignArgs,
     /// Which shape
     #[arg(long, value_name = "SHAPE", default_value = "collision", value_parser = shape_parser())]
-    shape: Subject,
+    shape: SolidShape,
     /// Slices across the error box of the angle
     #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.slices)]
     slices: usize,
@@ -48,13 +48,13 @@ const DEFAULT: PartitionSettings = PartitionSettings { slices: 15, strips: 1 };
 
 fn shape_parser() -> ValueParser {
     let shapes = [
-        ("halves", "both halves as convex pieces, docked", Subject::Halves),
-        ("swept", "the moving half, reflected and turned through its slices", Subject::Swept),
-        ("collision", "places of the centre of rotation at which the halves overlap", Subject::Collision),
+        ("halves", "both halves as convex pieces, docked", SolidShape::Halves),
+        ("swept", "the moving half, reflected and turned through its slices", SolidShape::Swept),
+        ("collision", "places of the centre of rotation at which the halves overlap", SolidShape::Collision),
     ];
     PossibleValuesParser::new(shapes.map(|(name, help, _)| PossibleValue::new(name).help(help)))
         .map(move |name| {
-            shapes.iter().find(|shape| shape.0 == name).map_or(Subject::Collision, |shape| shape.2)
+            shapes.iter().find(|shape| shape.0 == name).map_or(SolidShape::Collision, |shape| shape.2)
         })
         .into()
 }

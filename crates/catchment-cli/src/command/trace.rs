@@ -9,7 +9,7 @@ use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::method::descent::{DescentSettings, Trajectory};
 use catchment::method::drop::Bench;
-use catchment::method::kinematic::Start;
+use catchment::method::kinematic::LeverPose;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
 use catchment::report::{Body, FirstContact, LeverReport, TraceBody, TraceReport, figure, gltf, vtk};
@@ -82,7 +82,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
                     Some("leave it out, or follow the pose exactly (--method descent)".to_owned()),
                 ));
             }
-            let start = Start::of(&problem, &error)?;
+            let start = LeverPose::of(&problem, &error)?;
             let report = LeverReport::new(design, FirstContact::from(&start), Vec::new(), None);
             output.finish(&report, || Ok(figure::lever(design, problem.connector(), &start)?))
         }

@@ -12,7 +12,7 @@ use catchment::design::Design;
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::method::Method;
-use catchment::method::zraa::{Nilsson, Square, Zraa, ZraaSettings, run as accepted_offsets};
+use catchment::method::zraa::{AcceptedSquare, Nilsson, Zraa, ZraaSettings, run as accepted_offsets};
 use catchment::problem::{Draft, Problem};
 use catchment::report::figure::{self, Face};
 use catchment::report::schema::Timing;
@@ -125,14 +125,14 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
 /// The offsets that a design corrects without rotation.
 struct Correction {
     zraa: Zraa,
-    square: Square,
+    square: AcceptedSquare,
     nilsson: Option<Nilsson>,
 }
 
 impl Correction {
     fn of(problem: &Problem, exec: &Exec) -> Result<Self, Failure> {
         let zraa = accepted_offsets(problem.pair(), &ZraaSettings::default(), exec)?;
-        let square = Square::of(&zraa, exec)?;
+        let square = AcceptedSquare::of(&zraa, exec)?;
         let nilsson = Nilsson::beside(&zraa, problem.pair());
         Ok(Self { zraa, square, nilsson })
     }

@@ -63,12 +63,12 @@ impl Outcome {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Reason {
+pub enum FailureReason {
     /// Jammed: a layer rests on, or stands against, a layer of the other half that is not its partner.
     Crossed,
 }
 
-impl Reason {
+impl FailureReason {
     /// Why a motion that ended with this outcome at this pose error did not dock, if that can be told.
     pub fn of(problem: &Problem, outcome: Outcome, end: &PoseError) -> Option<Self> {
         let crossed = outcome == Outcome::Jammed && problem.may_cross() && problem.pair().crosses(end);

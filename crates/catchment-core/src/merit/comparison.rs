@@ -232,7 +232,7 @@ impl Comparison {
         if first.grid().is_some() {
             onaa_edges = Some([Onaa::of(first, exec)?.edge, Onaa::of(second, exec)?.edge]);
         }
-        let overlap = Overlap::of(&confusion);
+        let overlap = AcceptanceOverlap::of(&confusion);
         Ok(Self {
             poses: first.outcomes.len(),
             jaccard: overlap.jaccard(),
@@ -278,7 +278,7 @@ pub fn confusion(
 
 /// Who accepts how many poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Overlap {
+pub struct AcceptanceOverlap {
     /// Both.
     pub both: usize,
     /// The first alone.
@@ -289,7 +289,7 @@ pub struct Overlap {
     pub neither: usize,
 }
 
-impl Overlap {
+impl AcceptanceOverlap {
     /// From the table of confusions.
     pub fn of(confusion: &[[usize; 4]; 4]) -> Self {
         let accepted = Outcome::Aligned as usize - 1;

@@ -16,7 +16,7 @@ use crate::pose::{Dof, PoseError};
 
 /// A slice: which cells of the grid it shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slice {
+pub struct GridSlice {
     /// The kept axes in the order asked for; the first runs fastest.
     pub axes: Vec<GridAxis>,
     /// The fixed axes and the cell centres used, in D and radians.
@@ -25,7 +25,7 @@ pub struct Slice {
     pub cells: Vec<usize>,
 }
 
-impl Slice {
+impl GridSlice {
     /// The slice of `grid` that keeps `axes` and fixes the others at the values of `at`.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ mod tests {
     fn a_slice_shows_the_cells_it_says() {
         let g = grid(&[4, 5, 6], &[1.0, 1.0, 1.5]);
         let at = PoseError { y: 0.41, ..PoseError::default() };
-        let slice = Slice::of(&g, &[Dof::Roll, Dof::X], &at).unwrap();
+        let slice = GridSlice::of(&g, &[Dof::Roll, Dof::X], &at).unwrap();
         assert_eq!(slice.cells.len(), 24);
         assert_eq!(slice.at, [(Dof::Y, g.axes[1].center(3))]);
         for (position, index) in slice.cells.iter().enumerate() {
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn every_axis_kept_is_the_whole_grid() {
         let g = grid(&[3, 4], &[1.0, 1.0]);
-        let slice = Slice::of(&g, &[Dof::X, Dof::Y], &PoseError::default()).unwrap();
+        let slice = GridSlice::of(&g, &[Dof::X, Dof::Y], &PoseError::default()).unwrap();
         assert_eq!(slice.cells, (0..12).collect::<Vec<_>>());
         assert_eq!(pairs(&grid(&[2; 4], &[1.0; 4])).len(), 6);
     }
@@ -109,9 +109,9 @@ mod tests {
     fn what_is_not_there_is_refused() {
         let g = grid(&[3, 3], &[1.0, 1.0]);
         let zero = PoseError::default();
-        assert!(matches!(Slice::of(&g, &[Dof::Yaw], &zero), Err(MeritError::NoAxis { .. })));
-        assert!(matches!(Slice::of(&g, &[Dof::X, Dof::X], &zero), Err(MeritError::RepeatedAxis { .. })));
+        assert!(matches!(GridSlice::of(&g, &[Dof::Yaw], &zero), Err(MeritError::NoAxis { .. })));
+        assert!(matches!(GridSlice::of(&g, &[Dof::X, Dof::X], &zero), Err(MeritError::RepeatedAxis { .. })));
         let far = PoseError { y: 1.5, ..zero };
-        assert!(matches!(Slice::of(&g, &[Dof::X], &far), Err(MeritError::OutsideBox { .. })));
+        assert!(matches!(GridSlice::of(&g, &[Dof::X], &far), Err(MeritError::OutsideBox { .. })));
     }
 }

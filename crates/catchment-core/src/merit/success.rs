@@ -26,7 +26,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 /// A success probability.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Success {
+pub struct SuccessProbability {
     /// Probability that the error is accepted, in [0, 1].
     pub probability: f64,
     /// The probability with all cells at the border of the accepted set counted as failures, and as successes.
@@ -46,7 +46,7 @@ pub fn success(
     acceptance: &Acceptance,
     distribution: &Distribution,
     exec: &Exec,
-) -> Result<Success, MeritError> {
+) -> Result<SuccessProbability, MeritError> {
     let grid = grid_of(acceptance)?;
     let masks = Masks::of(acceptance, grid, exec)?;
     match distribution {
@@ -86,9 +86,9 @@ impl Masks {
         Ok(Self { decided, inner, outer })
     }
 
-    fn integrate(&self, weights: &[Vec<f64>], exec: &Exec) -> Result<Success, Cancelled> {
+    fn integrate(&self, weights: &[Vec<f64>], exec: &Exec) -> Result<SuccessProbability, Cancelled> {
         let in_box: f64 = weights.iter().map(|w| w.iter().sum::<f64>()).product();
-        Ok(Success {
+        Ok(SuccessProbability {
             probability: weigh(&self.decided, weights, exec)?,
             bracket: [weigh(&self.inner, weights, exec)?, weigh(&self.outer, weights, exec)?],
             ci95: None,
@@ -104,7 +104,7 @@ impl Masks {
         samples: u32,
         seed: u64,
         exec: &Exec,
-    ) -> Result<Success, MeritError> {
+    ) -> Result<SuccessProbability, MeritError> {
         for (dof, row) in Dof::ALL.into_iter().zip(covariance) {
             if mean.to_array()[dof.index()] != 0.0 || row.iter().any(|c| *c != 0.0) {
                 axis_number(grid, dof)?;
@@ -135,7 +135,7 @@ impl Masks {
         }
         let trials = samples as usize;
         let share = |n: usize| if trials == 0 { 0.0 } else { n as f64 / trials as f64 };
-        Ok(Success {
+        Ok(SuccessProbability {
             probability: share(decided),
             bracket: [share(inner), share(outer)],
             ci95: Some(wilson95(decided, trials)),
@@ -250,7 +250,10 @@ mod tests {
     const SIGMA: PoseError = PoseError { x: 0.3, y: 0.2, roll: 0.5, pitch: 0.0, yaw: 0.0 };
     const ZERO: PoseError = PoseError { x: 0.0, y: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
 
-    fn success(acceptance: &Acceptance, distribution: &Distribution) -> Result<Success, MeritError> {
+    fn success(
+        acceptance: &Acceptance,
+        distribution: &Distribution,
+    ) -> Result<SuccessProbability, MeritError> {
         super::success(acceptance, distribution, &Exec::new())
     }
 

@@ -21,7 +21,7 @@ use crate::contact::Pair;
 use crate::design::Design;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape};
-use crate::method::certified::Certificate;
+use crate::method::certified::BoxCertificate;
 use crate::method::confluence::Joined;
 use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
@@ -57,7 +57,7 @@ pub struct Cost {
 }
 
 /// A way to decide what becomes of pose errors.
-pub trait Decide: fmt::Debug + Send + Sync {
+pub trait DecisionMethod: fmt::Debug + Send + Sync {
     /// What is known of it beforehand.
     fn info(&self) -> &'static Info;
 
@@ -105,7 +105,7 @@ pub trait Decide: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// See [`DecideError`].
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError>;
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError>;
 
     /// How it follows motions, and how random poses beside it are followed.
     fn motions(&self) -> descent::DescentSettings {
@@ -118,7 +118,7 @@ pub trait Decide: fmt::Debug + Send + Sync {
     }
 
     /// The same method pose by pose, where each is decided by itself.
-    fn follows(&self) -> Option<&dyn Follow> {
+    fn follows(&self) -> Option<&dyn PoseMethod> {
         None
     }
 }
@@ -127,7 +127,7 @@ pub trait Decide: fmt::Debug + Send + Sync {
 pub type Finished<'a> = &'a (dyn Fn(usize, End) + Sync);
 
 /// A method that decides each pose by itself.
-pub trait Follow: Decide {
+pub trait PoseMethod: DecisionMethod {
     /// Where every pose of a domain ends, in its order, and their outcomes.
     ///
     /// # Errors
@@ -142,7 +142,7 @@ pub trait Follow: Decide {
     /// The same, each until it has come to rest, also where it is known before what becomes of it.
     ///
     /// # Errors
-    /// As for [`Follow::follow`].
+    /// As for [`PoseMethod::follow`].
     fn rest(
         &self,
         problem: &Problem,
@@ -155,7 +155,7 @@ pub trait Follow: Decide {
     /// The same; `finished` is told of every pose as soon as it is decided.
     ///
     /// # Errors
-    /// As for [`Follow::follow`].
+    /// As for [`PoseMethod::follow`].
     fn rest_told(
         &self,
         problem: &Problem,
@@ -199,7 +199,7 @@ pub trait Doubts: fmt::Debug + Send + Sync {
 
 /// What a method found.
 #[derive(Debug)]
-pub struct Decided {
+pub struct MethodOutput {
     /// Outcomes over the domain.
     pub acceptance: Acceptance,
     /// How sure it is of them, where it can say.
@@ -222,12 +222,12 @@ pub struct ByProducts {
     /// The polytopes of the contact space.
     pub partition: Option<Partition>,
     /// What is certain.
-    pub certificate: Option<Certificate>,
+    pub certificate: Option<BoxCertificate>,
     /// How many cells were decided by others, and how often that was wrong.
     pub joined: Option<Joined>,
 }
 
-impl Decided {
+impl MethodOutput {
     /// Outcomes and nothing else.
     pub fn plain(acceptance: Acceptance, settings: Value) -> Self {
         Self { acceptance, doubts: None, by_products: ByProducts::default(), settings }

@@ -34,6 +34,7 @@ pub mod zraa;
 
 pub use cost::{affordable, ensure_fits, motions_in, seconds_per_motion};
 pub use door::{
-    ByProducts, Cost, Decide, DecideError, Decided, Doubts, Finished, Follow, Info, NotApplicable,
+    ByProducts, Cost, DecideError, DecisionMethod, Doubts, Finished, Info, MethodOutput, NotApplicable,
+    PoseMethod,
 };
-pub use registry::{Entry, Method, MethodError, REGISTRY};
+pub use registry::{Method, MethodError, REGISTRY, RegistryEntry};

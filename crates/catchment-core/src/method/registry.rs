@@ -1,6 +1,6 @@
 //! The methods by name: each is a line of the registry, and a value that can be read, changed and stored.
 
-use super::door::{Decide, Info};
+use super::door::{DecisionMethod, Info};
 use crate::design::nearest;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -11,7 +11,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 /// Every method, the default first.
-pub static REGISTRY: &[Entry] = &[
+pub static REGISTRY: &[RegistryEntry] = &[
     super::confluence::door::ENTRY,
     super::descent::door::ENTRY,
     super::flood::door::ENTRY,
@@ -27,15 +27,15 @@ pub static REGISTRY: &[Entry] = &[
 
 /// A line of the registry.
 #[derive(Debug)]
-pub struct Entry {
+pub struct RegistryEntry {
     /// What is known of the method.
     pub info: &'static Info,
     read: fn(Value) -> Result<Method, serde_json::Error>,
 }
 
-impl Entry {
+impl RegistryEntry {
     /// The line of a method whose settings are read as `M`, missing ones being those of `{}`.
-    pub const fn of<M: Decide + DeserializeOwned + 'static>(info: &'static Info) -> Self {
+    pub const fn of<M: DecisionMethod + DeserializeOwned + 'static>(info: &'static Info) -> Self {
         Self::by(info, |settings| Ok(Method::new(serde_json::from_value::<M>(settings)?)))
     }
 
@@ -63,21 +63,21 @@ pub(super) const MOTIONS: &str = "descent";
 ///
 /// As text its name; as JSON `{"name": …, "settings": {…}}`, settings that are missing being the defaults.
 #[derive(Debug, Clone)]
-pub struct Method(Arc<dyn Decide>);
+pub struct Method(Arc<dyn DecisionMethod>);
 
 impl Method {
     /// Every registered method with its default settings, the default method first.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
-        REGISTRY.iter().map(Entry::method)
+        REGISTRY.iter().map(RegistryEntry::method)
     }
 
     /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
     pub fn on_grids() -> Vec<Self> {
-        REGISTRY.iter().filter(|entry| entry.info.on_grids).map(Entry::method).collect()
+        REGISTRY.iter().filter(|entry| entry.info.on_grids).map(RegistryEntry::method).collect()
     }
 
     /// A method of one's own making, registered or not.
-    pub fn new(method: impl Decide + 'static) -> Self {
+    pub fn new(method: impl DecisionMethod + 'static) -> Self {
         Self(Arc::new(method))
     }
 
@@ -140,7 +140,7 @@ impl Method {
 }
 
 impl Deref for Method {
-    type Target = dyn Decide;
+    type Target = dyn DecisionMethod;
 
     fn deref(&self) -> &Self::Target {
         &*self.0

@@ -1,6 +1,6 @@
 //! The boundary as polygons, for pictures and files.
 
-use super::{MAX_DIMENSION, Point, Polytope, dot};
+use super::{MAX_DIMENSION, Polytope, PolytopePoint, dot};
 
 impl Polytope {
     /// The boundary as closed walks along edges, each a list of vertex indices: in three dimensions every facet,
@@ -21,7 +21,7 @@ impl Polytope {
     }
 
     /// The vertices of a polygon in the order in which its edges join them, counter-clockwise against its `normal`.
-    fn walk(&self, corners: &[usize], normal: &Point) -> Vec<usize> {
+    fn walk(&self, corners: &[usize], normal: &PolytopePoint) -> Vec<usize> {
         let mut left = corners.to_vec();
         let mut walked: Vec<usize> = left.pop().into_iter().collect();
         while let Some(&last) = walked.last()

@@ -7,13 +7,13 @@
 //! In plain floating point, and slow: n^(dimension + 1) for the facets of n points. Wrong for points closer
 //! to a common plane than [`RESOLUTION`] without being in it.
 
-use super::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, dot};
+use super::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION, dot};
 
 /// Pivots below this share of their row's first length are rounding: the points lie in something flatter.
 const DEPENDENT: f64 = 1e-7;
 
 /// The facets of the hull of points, one per plane.
-pub fn facets(dimension: usize, points: &[Point]) -> Vec<Halfspace> {
+pub fn facets(dimension: usize, points: &[PolytopePoint]) -> Vec<Halfspace> {
     let mut found: Vec<Halfspace> = Vec::new();
     let mut chosen = Vec::new();
     each_subset(points.len(), dimension, 0, &mut chosen, &mut |subset| {
@@ -33,7 +33,7 @@ pub fn facets(dimension: usize, points: &[Point]) -> Vec<Halfspace> {
 }
 
 /// Is the point behind all of these?
-pub fn contains(facets: &[Halfspace], point: &Point) -> bool {
+pub fn contains(facets: &[Halfspace], point: &PolytopePoint) -> bool {
     facets.iter().all(|facet| facet.excess(point) <= RESOLUTION)
 }
 
@@ -44,10 +44,10 @@ pub fn contains(facets: &[Halfspace], point: &Point) -> bool {
 /// additive recurrence): no random numbers, and fewer clumps than those have.
 pub fn volume(
     dimension: usize,
-    low: &Point,
-    high: &Point,
+    low: &PolytopePoint,
+    high: &PolytopePoint,
     samples: usize,
-    mut inside: impl FnMut(&Point) -> bool,
+    mut inside: impl FnMut(&PolytopePoint) -> bool,
 ) -> f64 {
     let mut root = 2.0f64;
     for _ in 0..60 {
@@ -69,7 +69,7 @@ pub fn volume(
 
 /// Is there an edge between two vertices of a polytope?
 pub fn is_edge(polytope: &Polytope, a: usize, b: usize) -> bool {
-    let shared: Vec<Point> = polytope
+    let shared: Vec<PolytopePoint> = polytope
         .vertex_facets(a)
         .filter(|facet| polytope.vertex_facets(b).any(|other| other == *facet))
         .map(|facet| polytope.facets()[facet].normal)
@@ -97,9 +97,9 @@ pub(super) fn each_subset(
 }
 
 /// A normal of the plane through points; none where they lie in something flatter.
-fn normal(dimension: usize, points: &[Point], subset: &[usize]) -> Option<Point> {
+fn normal(dimension: usize, points: &[PolytopePoint], subset: &[usize]) -> Option<PolytopePoint> {
     let origin = &points[subset[0]];
-    let span: Vec<Point> =
+    let span: Vec<PolytopePoint> =
         subset[1..].iter().map(|i| std::array::from_fn(|axis| points[*i][axis] - origin[axis])).collect();
     let basis = orthonormal(&span);
     if basis.len() + 1 != dimension {
@@ -116,13 +116,13 @@ fn normal(dimension: usize, points: &[Point], subset: &[usize]) -> Option<Point>
 }
 
 /// How many of the vectors are independent.
-fn rank(vectors: &[Point]) -> usize {
+fn rank(vectors: &[PolytopePoint]) -> usize {
     orthonormal(vectors).len()
 }
 
 /// Orthogonal unit vectors that span the same.
-fn orthonormal(vectors: &[Point]) -> Vec<Point> {
-    let mut basis: Vec<Point> = Vec::new();
+fn orthonormal(vectors: &[PolytopePoint]) -> Vec<PolytopePoint> {
+    let mut basis: Vec<PolytopePoint> = Vec::new();
     for vector in vectors {
         let rest = reduced(reduced(*vector, &basis), &basis);
         let length = dot(&rest, &rest).sqrt();
@@ -134,7 +134,7 @@ fn orthonormal(vectors: &[Point]) -> Vec<Point> {
 }
 
 /// What of a vector is orthogonal to a basis.
-fn reduced(mut vector: Point, basis: &[Point]) -> Point {
+fn reduced(mut vector: PolytopePoint, basis: &[PolytopePoint]) -> PolytopePoint {
     for unit in basis {
         let along = dot(&vector, unit);
         for (c, u) in vector.iter_mut().zip(unit) {

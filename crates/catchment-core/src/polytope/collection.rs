@@ -3,7 +3,7 @@
 //! The polytopes may overlap. Operations process polytope by polytope, so that their number can grow with the
 //! product of the numbers; [`Collection::disjoint`] represents the same set by polytopes that do not overlap.
 
-use super::{Point, Polytope};
+use super::{Polytope, PolytopePoint};
 
 /// A finite union of polytopes of one dimension. Empty where there are none.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +62,7 @@ impl Collection {
     }
 
     /// Does one of the polytopes contain the point?
-    pub fn contains(&self, point: &Point) -> bool {
+    pub fn contains(&self, point: &PolytopePoint) -> bool {
         self.polytopes.iter().any(|polytope| polytope.contains(point))
     }
 

@@ -15,7 +15,7 @@
 //! Cost: vertices inside × vertices outside words, and a search for a third vertex per edge.
 
 use super::incidence::{Incidence, ones};
-use super::{Gap, Halfspace, Point, Polytope, RESOLUTION};
+use super::{Gap, Halfspace, Polytope, PolytopePoint, RESOLUTION};
 
 /// What a plane does to a polytope.
 enum Cut {
@@ -32,7 +32,7 @@ struct Section {
     /// How far each vertex is outside; 0 for those on the plane.
     excess: Vec<f64>,
     /// New vertices: where, and on the edge between which vertices.
-    crossings: Vec<(Point, usize, usize)>,
+    crossings: Vec<(PolytopePoint, usize, usize)>,
     /// There are vertices on the plane.
     touches: bool,
     /// Whether those are on it up to rounding, rather than by decision.

@@ -14,7 +14,7 @@
 //! below 2^52, which floating point holds exactly. By Hadamard's inequality a k × k minor is below k^(k/2) ·
 //! 2^(52 k), and with k ≤ 6 that is below 2^(64 k − 1): it fits k words with its sign.
 
-use super::{MAX_DIMENSION, Point};
+use super::{MAX_DIMENSION, PolytopePoint};
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
@@ -39,7 +39,7 @@ type Wide = [u64; MAX_DIMENSION];
 
 /// The lattice point next to `point`, or none where a coordinate is no number or out of reach. What is beyond the
 /// dimension becomes 0.
-pub(super) fn snapped(dimension: usize, point: &Point) -> Option<Lattice> {
+pub(super) fn snapped(dimension: usize, point: &PolytopePoint) -> Option<Lattice> {
     let mut lattice = [0; MAX_DIMENSION];
     for (to, from) in lattice.iter_mut().zip(point).take(dimension) {
         if !within_reach(*from) {
@@ -56,12 +56,12 @@ pub(super) fn within_reach(coordinate: f64) -> bool {
 }
 
 /// A lattice point's coordinates; exact.
-pub(super) fn coordinates(lattice: &Lattice) -> Point {
+pub(super) fn coordinates(lattice: &Lattice) -> PolytopePoint {
     lattice.map(|c| c as f64 * SPACING)
 }
 
 /// The differences `a` − `b` as numbers, exact.
-pub(super) fn difference(a: &Lattice, b: &Lattice) -> Point {
+pub(super) fn difference(a: &Lattice, b: &Lattice) -> PolytopePoint {
     std::array::from_fn(|j| (a[j] - b[j]) as f64)
 }
 
@@ -70,9 +70,9 @@ pub(super) struct Plane {
     dimension: usize,
     corners: [Lattice; MAX_DIMENSION],
     /// The unit normal, pointing away from what lies below; after [`Self::refine`] right to [`TILT`].
-    pub(super) unit: Point,
+    pub(super) unit: PolytopePoint,
     /// Its components with all signs positive, which bound its error.
-    bound: Point,
+    bound: PolytopePoint,
     /// Length of the whole-number normal: (dimension − 1)! times the measure of the simplex it was made from.
     pub(super) size: f64,
     /// All signs of the normal's components are turned.
@@ -176,7 +176,7 @@ impl Plane {
 }
 
 /// The normal, not yet turned or scaled, and its components with all signs positive.
-fn rough_normal(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> (Point, Point) {
+fn rough_normal(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> (PolytopePoint, PolytopePoint) {
     let all = (1usize << dimension) - 1;
     // By the set of columns; one row after another.
     let mut minors = [(0.0, 0.0); 1 << MAX_DIMENSION];

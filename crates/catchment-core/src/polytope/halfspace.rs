@@ -1,12 +1,12 @@
 //! A half-space: the points behind a plane, `normal · x ≤ offset`.
 
-use super::{MAX_DIMENSION, Point, dot};
+use super::{MAX_DIMENSION, PolytopePoint, dot};
 
 /// What lies behind a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Halfspace {
     /// The unit normal, pointing out.
-    pub normal: Point,
+    pub normal: PolytopePoint,
     /// Distance of the plane from the origin along the normal, in D or rad.
     pub offset: f64,
 }
@@ -14,7 +14,7 @@ pub struct Halfspace {
 impl Halfspace {
     /// `normal · x ≤ offset`, scaled so that the normal has length 1. None where the normal is zero or a number is not
     /// finite.
-    pub fn new(normal: Point, offset: f64) -> Option<Self> {
+    pub fn new(normal: PolytopePoint, offset: f64) -> Option<Self> {
         // Scaled by the largest component first, so that no square overflows.
         let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
         let scaled = normal.map(|c| c / largest);
@@ -36,7 +36,7 @@ impl Halfspace {
     }
 
     /// How far a point is outside; negative inside.
-    pub fn excess(&self, point: &Point) -> f64 {
+    pub fn excess(&self, point: &PolytopePoint) -> f64 {
         dot(&self.normal, point) - self.offset
     }
 }

@@ -19,7 +19,7 @@
 //! tolerances.
 
 use super::exact::{self, Lattice, Plane};
-use super::{MAX_DIMENSION, Point, RESOLUTION};
+use super::{MAX_DIMENSION, PolytopePoint, RESOLUTION};
 use std::cmp::Ordering;
 
 /// No facet.
@@ -223,7 +223,7 @@ impl Waiting {
 /// that is nearer than [`RESOLUTION`].
 fn first_simplex(dimension: usize, points: &[Lattice]) -> Option<Vec<usize>> {
     let first = points.first()?;
-    let mut rest: Vec<Point> = points.iter().map(|point| exact::difference(point, first)).collect();
+    let mut rest: Vec<PolytopePoint> = points.iter().map(|point| exact::difference(point, first)).collect();
     let mut corners = vec![0];
     while corners.len() <= dimension {
         let (mut farthest, mut distance) = (0, 0.0);

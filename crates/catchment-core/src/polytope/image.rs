@@ -4,16 +4,20 @@
 //! they should be.
 
 use super::exact::{self, Lattice};
-use super::{MAX_DIMENSION, Point, Polytope, RESOLUTION};
+use super::{MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION};
 
 /// The hull of all sums of a point of the one and a point of the other set: the Minkowski sum of their hulls, either of
 /// which may be flat, or a single point. None where the sum is thinner than [`RESOLUTION`], or a coordinate of a point is
 /// no number or beyond 1024.
-pub fn minkowski_sum_of(dimension: usize, one: &[Point], other: &[Point]) -> Option<Polytope> {
+pub fn minkowski_sum_of(
+    dimension: usize,
+    one: &[PolytopePoint],
+    other: &[PolytopePoint],
+) -> Option<Polytope> {
     if !(1..=MAX_DIMENSION).contains(&dimension) {
         return None;
     }
-    let lattice = |points: &[Point]| -> Option<Vec<Lattice>> {
+    let lattice = |points: &[PolytopePoint]| -> Option<Vec<Lattice>> {
         points.iter().map(|point| exact::snapped(dimension, point)).collect()
     };
     let (one, other) = (lattice(one)?, lattice(other)?);
@@ -38,7 +42,7 @@ impl Polytope {
         if axes.iter().any(|axis| *axis >= self.dimension) {
             return None;
         }
-        let shadow = |vertex: &Point| {
+        let shadow = |vertex: &PolytopePoint| {
             let mut point = [0.0; MAX_DIMENSION];
             for (to, axis) in point.iter_mut().zip(axes) {
                 *to = vertex[*axis];
@@ -65,7 +69,8 @@ impl Polytope {
                     let above = to[axis] - value;
                     if above > RESOLUTION && self.incidence.joined(a, b, self.dimension) {
                         let share = below / (below - above);
-                        let crossing: Point = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
+                        let crossing: PolytopePoint =
+                            std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
                         points.push(without(&crossing, axis));
                     }
                 }
@@ -81,14 +86,14 @@ impl Polytope {
         if drop_axis >= self.dimension {
             return None;
         }
-        let points: Vec<Point> =
+        let points: Vec<PolytopePoint> =
             self.facet_vertices(facet).map(|vertex| without(&self.vertices[vertex], drop_axis)).collect();
         Self::hull(self.dimension - 1, &points)
     }
 }
 
 /// The point without one of its coordinates.
-fn without(point: &Point, axis: usize) -> Point {
+fn without(point: &PolytopePoint, axis: usize) -> PolytopePoint {
     let mut rest = [0.0; MAX_DIMENSION];
     let others = point.iter().enumerate().filter(|(index, _)| *index != axis);
     for (to, (_, from)) in rest.iter_mut().zip(others) {

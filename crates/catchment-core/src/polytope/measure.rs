@@ -7,14 +7,14 @@
 //! The facets of a face are its intersections with the polytope's facets that are maximal by inclusion.
 
 use super::incidence::ones;
-use super::{MAX_DIMENSION, Point, Polytope};
+use super::{MAX_DIMENSION, Polytope, PolytopePoint};
 
 /// Simplices, summed up.
 #[derive(Default)]
 struct Sum {
     volume: f64,
     /// Volume times centroid.
-    moment: Point,
+    moment: PolytopePoint,
 }
 
 impl Polytope {
@@ -24,7 +24,7 @@ impl Polytope {
     }
 
     /// The centre of mass.
-    pub fn centroid(&self) -> Point {
+    pub fn centroid(&self) -> PolytopePoint {
         let sum = self.measured();
         sum.moment.map(|c| c / sum.volume)
     }
@@ -94,7 +94,7 @@ impl Polytope {
 }
 
 /// The determinant of the leading square, by elimination with the largest pivot of each column.
-fn determinant(rows: &mut [Point]) -> f64 {
+fn determinant(rows: &mut [PolytopePoint]) -> f64 {
     let mut product = 1.0;
     for column in 0..rows.len() {
         let mut pivot = column;

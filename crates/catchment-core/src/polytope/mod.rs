@@ -88,7 +88,7 @@ use incidence::Incidence;
 pub const MAX_DIMENSION: usize = 6;
 
 /// A point or direction, in D and rad. Components beyond the dimension are 0.
-pub type Point = [f64; MAX_DIMENSION];
+pub type PolytopePoint = [f64; MAX_DIMENSION];
 
 /// Nearer to a plane than this, in D or rad, is on it, and what is thinner is nothing: 2⁻³⁰ ≈ 9e-10.
 ///
@@ -140,10 +140,10 @@ impl Gap {
 pub struct Polytope {
     dimension: usize,
     facets: Vec<Halfspace>,
-    vertices: Vec<Point>,
+    vertices: Vec<PolytopePoint>,
     incidence: Incidence,
-    low: Point,
-    high: Point,
+    low: PolytopePoint,
+    high: PolytopePoint,
 }
 
 impl Polytope {
@@ -152,7 +152,7 @@ impl Polytope {
     ///
     /// None where they all lie in something thinner than [`RESOLUTION`], where a coordinate is no number or beyond 1024,
     /// and for a dimension of 0 or above [`MAX_DIMENSION`].
-    pub fn hull(dimension: usize, points: &[Point]) -> Option<Self> {
+    pub fn hull(dimension: usize, points: &[PolytopePoint]) -> Option<Self> {
         if !(1..=MAX_DIMENSION).contains(&dimension) {
             return None;
         }
@@ -170,7 +170,7 @@ impl Polytope {
 
     /// The box from `low` to `high`. None where a side is shorter than [`RESOLUTION`], a coordinate is no number or
     /// beyond 1024, and for a dimension of 0 or above [`MAX_DIMENSION`].
-    pub fn cuboid(dimension: usize, low: &Point, high: &Point) -> Option<Self> {
+    pub fn cuboid(dimension: usize, low: &PolytopePoint, high: &PolytopePoint) -> Option<Self> {
         if !(1..=MAX_DIMENSION).contains(&dimension) {
             return None;
         }
@@ -202,7 +202,7 @@ impl Polytope {
     fn assembled(
         dimension: usize,
         facets: Vec<Halfspace>,
-        vertices: Vec<Point>,
+        vertices: Vec<PolytopePoint>,
         incidence: Incidence,
     ) -> Option<Self> {
         let thick = facets.iter().all(|f| vertices.iter().any(|v| f.excess(v) < -RESOLUTION));
@@ -227,7 +227,7 @@ impl Polytope {
     }
 
     /// The V-form: the vertices, in no particular order.
-    pub fn vertices(&self) -> &[Point] {
+    pub fn vertices(&self) -> &[PolytopePoint] {
         &self.vertices
     }
 
@@ -249,22 +249,22 @@ impl Polytope {
     }
 
     /// The smallest box around it: its lowest and its highest corner.
-    pub fn bounds(&self) -> (Point, Point) {
+    pub fn bounds(&self) -> (PolytopePoint, PolytopePoint) {
         (self.low, self.high)
     }
 
     /// Does the point lie inside, on the border, or within [`RESOLUTION`] of all facets that it is outside of?
-    pub fn contains(&self, point: &Point) -> bool {
+    pub fn contains(&self, point: &PolytopePoint) -> bool {
         self.facets.iter().all(|facet| facet.excess(point) <= RESOLUTION)
     }
 
     /// The support function: the largest `direction` · x over the polytope.
-    pub fn support(&self, direction: &Point) -> f64 {
+    pub fn support(&self, direction: &PolytopePoint) -> f64 {
         self.vertices.iter().map(|vertex| dot(direction, vertex)).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-fn dot(a: &Point, b: &Point) -> f64 {
+fn dot(a: &PolytopePoint, b: &PolytopePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

@@ -42,7 +42,7 @@ mod written;
 
 pub use covariance::Matrix;
 pub use distribution::{Distribution, parse_sizes};
-pub use dynamics::{Circumstance, Dynamics, Law, parse_draw, read_dynamics};
+pub use dynamics::{Circumstance, Dynamics, ScalarDistribution, parse_draw, read_dynamics};
 pub use lists::{MOST_ANGLES, parse_angles, parse_counts, parse_length};
 pub use offsets::OffsetsAt;
 pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};

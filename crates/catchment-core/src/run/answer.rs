@@ -7,7 +7,7 @@ use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
 use crate::merit::Merits;
 use crate::merit::onaa::Onaa;
-use crate::merit::success::Success;
+use crate::merit::success::SuccessProbability;
 use crate::method::{ByProducts, correction};
 use crate::problem::Problem;
 use serde_json::Value;
@@ -33,7 +33,7 @@ pub struct Answer {
     /// The same with roll and pitch locked, of problems with all five errors free that exact motions answer.
     pub upright: Option<Upright>,
     /// The success probability for the errors asked about.
-    pub success: Option<Success>,
+    pub success: Option<SuccessProbability>,
     /// Where motions rest that do not dock, if that was asked.
     pub jams: Option<Jams>,
     /// The largest box of errors that all dock, or why there is none, if that was asked.
@@ -50,7 +50,7 @@ pub struct Answer {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunCorrection {
     /// The estimate with its interval and strata.
-    pub found: correction::Corrected,
+    pub found: correction::UnbiasedSum,
     /// Seed of the poses.
     pub seed: u64,
     /// Name of the method that followed them.

@@ -54,7 +54,7 @@ impl<'a> EndContacts<'a> {
         let pair = problem.pair();
         let mut nearby = pair.about(TOUCHING);
         nearby.look_under();
-        let give = method.follows().map_or(0.0, crate::method::Follow::give);
+        let give = method.follows().map_or(0.0, crate::method::PoseMethod::give);
         Self { problem, features: Features::of(pair), nearby, give, last: None, met: Vec::new() }
     }
 

@@ -1,6 +1,6 @@
 //! Exact motions of given poses: outcomes and trajectories.
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Reason, Warning};
+use crate::acceptance::{Acceptance, Domain, FailureReason, Outcome, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
 use crate::method::{DecideError, Finished, Method};
@@ -104,10 +104,10 @@ impl Problem {
         &self,
         start: &PoseError,
         settings: &descent::DescentSettings,
-    ) -> (Trajectory, Option<Reason>) {
+    ) -> (Trajectory, Option<FailureReason>) {
         let path = descent::trace(self.pair(), start, settings);
         let end = path.waypoints.last().map(|waypoint| waypoint.error);
-        let reason = end.and_then(|end| Reason::of(self, path.outcome, &end));
+        let reason = end.and_then(|end| FailureReason::of(self, path.outcome, &end));
         (path, reason)
     }
 }

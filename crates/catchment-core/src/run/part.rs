@@ -24,7 +24,7 @@
 use super::{Answer, Run, RunError, RunPlan, stages};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::{Exec, Stopwatch};
-use crate::method::{DecideError, Decided};
+use crate::method::{DecideError, MethodOutput};
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -170,7 +170,7 @@ impl Run {
         let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
         let method = plan.method.name();
         let acceptance = Acceptance { method, domain: plan.domain.clone(), outcomes, warnings };
-        let decided = Decided::plain(acceptance, plan.method.settings_for(problem));
+        let decided = MethodOutput::plain(acceptance, plan.method.settings_for(problem));
         let upright = stages::upright(self, &plan, problem, exec)?;
         Ok(stages::finish(self, &plan, problem, (upright, decided), started, exec)?)
     }

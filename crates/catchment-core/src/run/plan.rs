@@ -7,7 +7,9 @@ use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::merit::tolerance::BISECTIONS;
 use crate::method::correction::{self, Stop};
-use crate::method::{Cost, Decide, Method, affordable, descent, ensure_fits, motions_in, seconds_per_motion};
+use crate::method::{
+    Cost, DecisionMethod, Method, affordable, descent, ensure_fits, motions_in, seconds_per_motion,
+};
 use crate::pose::{DofSet, PoseError};
 use crate::problem::Problem;
 

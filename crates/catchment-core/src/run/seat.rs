@@ -15,7 +15,7 @@ use crate::contact::{Pair, Play, Seat, play};
 use crate::design::{ConnectorSpec, Findings};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower};
-use crate::method::{Decide, motions_in};
+use crate::method::{DecisionMethod, motions_in};
 use crate::pose::{Dof, PoseError, rotation, rotation_angle};
 use crate::problem::{Problem, ProblemError};
 use crate::tolerance;

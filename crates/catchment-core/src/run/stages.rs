@@ -10,7 +10,7 @@ use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::merit::tolerance::{Tolerance, followed};
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
-use crate::method::{Decided, Doubts, Follow, Method, descent};
+use crate::method::{Doubts, Method, MethodOutput, PoseMethod, descent};
 use crate::problem::Problem;
 
 /// Follows sampled poses and ambiguous cells: the method itself where it decides each pose by itself (descents would know
@@ -21,23 +21,23 @@ pub(super) fn follower(method: &Method) -> ExactFollower<'_> {
 
 /// Either of the two.
 pub(super) struct ExactFollower<'a> {
-    own: Option<&'a dyn Follow>,
+    own: Option<&'a dyn PoseMethod>,
     descent: descent::DescentSettings,
 }
 
 impl ExactFollower<'_> {
-    pub(super) fn as_follow(&self) -> &dyn Follow {
+    pub(super) fn as_follow(&self) -> &dyn PoseMethod {
         self.own.unwrap_or(&self.descent)
     }
 
     /// Whether a grid that rests on its motions, or was corrected by them, may use exact descents for more.
     fn is_descent(&self) -> bool {
-        self.own.is_none_or(Follow::is_descent)
+        self.own.is_none_or(PoseMethod::is_descent)
     }
 }
 
 /// Decides every pose of the plan.
-pub(super) fn decide(plan: &RunPlan, problem: &Problem, exec: &Exec) -> Result<Decided, RunError> {
+pub(super) fn decide(plan: &RunPlan, problem: &Problem, exec: &Exec) -> Result<MethodOutput, RunError> {
     Ok(plan.method.decide(problem, &plan.domain, exec)?)
 }
 
@@ -66,7 +66,7 @@ pub(super) fn finish(
     run: &Run,
     plan: &RunPlan,
     problem: &Problem,
-    (upright, decided): (Option<Upright>, Decided),
+    (upright, decided): (Option<Upright>, MethodOutput),
     started: Stopwatch,
     exec: &Exec,
 ) -> Result<Answer, RunError> {
@@ -74,7 +74,7 @@ pub(super) fn finish(
     let [sum, step, limit, boxes, all] = SHARES;
     let stages =
         Stages { run, plan, problem, follower: follower(&plan.method), motions: plan.method.motions() };
-    let Decided { mut acceptance, doubts, mut by_products, settings } = decided;
+    let MethodOutput { mut acceptance, doubts, mut by_products, settings } = decided;
     let doubts = doubts.as_deref();
     if let (true, Domain::Grid(grid), None) = (plan.heights, &plan.domain, &by_products.landscape) {
         by_products.landscape = Some(Landscape::compute(problem.pair(), grid, exec)?);

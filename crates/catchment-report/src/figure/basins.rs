@@ -15,7 +15,7 @@ use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n, widt
 use super::{FigureError, Picture, headline};
 use crate::Report;
 use catchment_core::acceptance::{Acceptance, Outcome};
-use catchment_core::method::flood::{Hierarchy, Minimum, Reason};
+use catchment_core::method::flood::{Hierarchy, Minimum, ToleranceReason};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -96,8 +96,8 @@ pub fn basins(
     let unit = units.symbol();
     let shown = |depth: f64| significant(depth * units.lengths());
     let why = match hierarchy.tolerance.reason {
-        Reason::Given => String::new(),
-        Reason::WidestGap { between: [a, b], .. } => {
+        ToleranceReason::Given => String::new(),
+        ToleranceReason::WidestGap { between: [a, b], .. } => {
             format!(", in the gap of the depths from {} to {} {unit}", shown(a), shown(b))
         }
     };
@@ -112,7 +112,7 @@ pub fn basins(
     );
     svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
 
-    if let Reason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
+    if let ToleranceReason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
         let (a, b) = (scale.px(a), scale.px(b));
         for rect in [top, bottom] {
             svg.rect(Rect { x: a, w: b - a, ..rect }, r##"fill="#e9f1f7""##);

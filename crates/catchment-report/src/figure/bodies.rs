@@ -9,7 +9,7 @@ use super::solid::{self, Body};
 use super::{FigureError, Picture};
 use catchment_core::connector::{Facet, Surface};
 use catchment_core::design::Design;
-use catchment_core::method::partition::{Solid, Solids, Subject};
+use catchment_core::method::partition::{Solid, SolidShape, Solids};
 use glam::{DMat3, DVec3};
 
 /// Draws a shape.
@@ -65,14 +65,14 @@ fn colours(shape: &Solids, solid: &Solid) -> [Rgb; 2] {
     /// Share of white in the face of a piece.
     const LIGHT: f64 = 0.45;
     match (shape.subject, solid.fixed) {
-        (Subject::Halves, Some(_)) => [colour::FIXED, colour::FIXED_EDGE],
-        (Subject::Halves, None) => [colour::MOVING, colour::MOVING_EDGE],
-        (Subject::Swept, _) => {
+        (SolidShape::Halves, Some(_)) => [colour::FIXED, colour::FIXED_EDGE],
+        (SolidShape::Halves, None) => [colour::MOVING, colour::MOVING_EDGE],
+        (SolidShape::Swept, _) => {
             let odd = solid.slice.is_some_and(|(slice, _)| slice % 2 == 1);
             let fill = if odd { mix(colour::MOVING, [255; 3], 0.35) } else { colour::MOVING };
             [fill, colour::MOVING_EDGE]
         }
-        (Subject::Collision, fixed) => {
+        (SolidShape::Collision, fixed) => {
             let piece = CURVES[fixed.unwrap_or_default() % CURVES.len()];
             [mix(piece, [255; 3], LIGHT), mix(piece, [0; 3], LIGHT)]
         }
@@ -143,10 +143,12 @@ fn legend(svg: &mut Svg, shape: &Solids, [mut x, y]: [f64; 2]) {
     /// Most pieces that have words of their own.
     const MOST: usize = 4;
     let entries: Vec<(Rgb, String)> = match shape.subject {
-        Subject::Halves => vec![(colour::FIXED, "fixed".to_owned()), (colour::MOVING, "moving".to_owned())],
-        Subject::Swept => vec![(colour::MOVING, "moving, a shade for every other slice".to_owned())],
-        Subject::Collision if shape.pieces[0] > MOST => Vec::new(),
-        Subject::Collision => (0..shape.pieces[0])
+        SolidShape::Halves => {
+            vec![(colour::FIXED, "fixed".to_owned()), (colour::MOVING, "moving".to_owned())]
+        }
+        SolidShape::Swept => vec![(colour::MOVING, "moving, a shade for every other slice".to_owned())],
+        SolidShape::Collision if shape.pieces[0] > MOST => Vec::new(),
+        SolidShape::Collision => (0..shape.pieces[0])
             .map(|k| {
                 let of_piece = shape.solids.iter().find(|solid| solid.fixed == Some(k));
                 let fill = of_piece.map_or(colour::NOTHING, |solid| colours(shape, solid)[0]);

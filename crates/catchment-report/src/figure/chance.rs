@@ -203,7 +203,7 @@ mod tests {
     use crate::schema::testing::design;
     use catchment_core::exec::Exec;
     use catchment_core::pose::{Dof, PoseError};
-    use catchment_core::poses::{Dynamics, Law, Spread};
+    use catchment_core::poses::{Dynamics, ScalarDistribution, Spread};
     use catchment_core::problem::Problem;
     use catchment_study::chance::{ChanceSettings, Question, run};
 
@@ -211,8 +211,8 @@ mod tests {
     fn maps_and_curves_are_drawn() {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let dynamics = Dynamics::default()
-            .with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.2 })
-            .with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.5 });
+            .with(Circumstance::Speed, ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 })
+            .with(Circumstance::DriftX, ScalarDistribution::Normal { mean: 0.0, sigma: 1.5 });
         let settings = ChanceSettings { dynamics, trials: 4, overall: 100, ..ChanceSettings::default() };
         let sigma = PoseError { x: 0.2, pitch: 0.4, ..PoseError::default() };
         let asked =

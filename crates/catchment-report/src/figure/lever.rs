@@ -9,7 +9,7 @@ use super::section::{Placement, View, describe};
 use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
-use catchment_core::method::kinematic::{Body, Lever, Start};
+use catchment_core::method::kinematic::{Lever, LeverBody, LeverPose};
 use glam::DVec2;
 
 /// Length of the drawn normal, in SVG units.
@@ -23,7 +23,7 @@ const ARC: f64 = 24.0;
 ///
 /// # Errors
 /// If nothing touches, or corner meets corner.
-pub fn lever(design: &Design, connector: &Connector, start: &Start) -> Result<Picture, FigureError> {
+pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Result<Picture, FigureError> {
     let Some((lever, height)) = start.lever.zip(start.height) else {
         return Err(FigureError::Empty { what: "no corner touches an edge" });
     };
@@ -102,7 +102,7 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
         svg.haloed(at, LABEL + 1.0, anchor, colour, name);
     };
     let [moving, base] = ["P_M moving", "P_B base"];
-    let [own, other] = if lever.corner == Body::Moving { [moving, base] } else { [base, moving] };
+    let [own, other] = if lever.corner == LeverBody::Moving { [moving, base] } else { [base, moving] };
     for (p, name) in [(corner, own), (edge, other)] {
         word([p.x + 9.0, p.y + 4.0], Anchor::Start, name, INK);
     }
@@ -137,8 +137,8 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
         ("βₚ + αₑ", "θ₂ when aligned", degrees(lever.aligned())),
     ];
     let whose = match lever.corner {
-        Body::Moving => "a corner of the moving half on an edge",
-        Body::Base => "a corner of the base on an edge",
+        LeverBody::Moving => "a corner of the moving half on an edge",
+        LeverBody::Base => "a corner of the base on an edge",
     };
     svg.bold([x, 86.0], LABEL, Anchor::Start, whose);
     for (k, (name, meaning, value)) in rows.iter().enumerate() {

@@ -7,19 +7,19 @@ use super::{FigureError, raster};
 use crate::schema::Interval;
 use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::landscape::Grid;
-use catchment_core::merit::slice::Slice;
+use catchment_core::merit::slice::GridSlice;
 use catchment_core::pose::{Dof, PoseError};
 
 /// Two axes of a grid, where the others are fixed, and the outcomes there.
 pub(super) struct Map {
-    pub(super) slice: Slice,
+    pub(super) slice: GridSlice,
     pub(super) outcomes: Vec<Outcome>,
 }
 
 impl Map {
     pub(super) fn of(acceptance: &Acceptance, pair: [Dof; 2], at: &PoseError) -> Result<Self, FigureError> {
         let grid = acceptance.grid().ok_or(catchment_core::merit::MeritError::NotAGrid)?;
-        let slice = Slice::of(grid, &pair, at)?;
+        let slice = GridSlice::of(grid, &pair, at)?;
         let outcomes = slice.pick(&acceptance.outcomes);
         Ok(Self { slice, outcomes })
     }
@@ -316,7 +316,7 @@ mod tests {
             GridAxis { dof: Dof::X, lo: 0.0, hi: 1.0, cells: width },
             GridAxis { dof: Dof::Y, lo: 0.0, hi: 1.0, cells },
         ];
-        Map { slice: Slice { axes, at: Vec::new(), cells: (0..outcomes.len()).collect() }, outcomes }
+        Map { slice: GridSlice { axes, at: Vec::new(), cells: (0..outcomes.len()).collect() }, outcomes }
     }
 
     fn frame(map: &Map, side: f64) -> Frame {

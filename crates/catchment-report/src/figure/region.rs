@@ -7,7 +7,7 @@ use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use catchment_core::design::Design;
 use catchment_core::document::significant;
-use catchment_core::method::zraa::{Square, Zraa};
+use catchment_core::method::zraa::{AcceptedSquare, Zraa};
 use catchment_core::pose::Dof;
 
 /// Half-range of the picture, in D, at least: the face itself.
@@ -16,7 +16,7 @@ const LEAST: f64 = 0.5;
 const MARGIN: f64 = 1.15;
 
 /// Draws a zero-rotation area of acceptance over x and y, or over its one axis.
-pub fn region(design: &Design, zraa: &Zraa, square: &Square) -> Picture {
+pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture {
     let units = Units::of(design);
     let left = 78.0;
     let (rect, measure) = match zraa {
@@ -101,14 +101,14 @@ mod tests {
             DVec2::new(0.5, 0.5),
             DVec2::new(-0.5, 0.5),
         ]];
-        let square = Square { edge: 1.0, center: DVec2::ZERO, centered_edge: 1.0 };
+        let square = AcceptedSquare { edge: 1.0, center: DVec2::ZERO, centered_edge: 1.0 };
         let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0, seam: 0.0 }, &square);
         look("zraa-region", &picture);
         assert!(
             picture.svg().contains("1.000000 D² accepted, ONAA 1.000 D") && picture.svg().contains("y [mm]")
         );
         let zraa = Zraa::Interval { axis: Dof::X, from: -1.0, to: 1.0 };
-        let picture = region(&design(free), &zraa, &Square { edge: 2.0, ..square });
+        let picture = region(&design(free), &zraa, &AcceptedSquare { edge: 2.0, ..square });
         look("zraa-interval", &picture);
         assert!(picture.svg().contains("2.000000 D accepted") && !picture.svg().contains("NaN"));
     }

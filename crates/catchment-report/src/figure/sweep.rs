@@ -20,7 +20,7 @@ use crate::SweepReport;
 use catchment_core::acceptance::Outcome;
 use catchment_core::document::significant;
 use catchment_core::landscape::GridAxis;
-use catchment_core::merit::slice::Slice;
+use catchment_core::merit::slice::GridSlice;
 use catchment_study::sweep::{Outline, SweepAxis};
 
 /// Cells of a heat map.
@@ -194,7 +194,7 @@ fn draw(
         hi: outline.hi[k],
         cells: outline.cells[k],
     };
-    let slice = Slice { axes: vec![axis(0), axis(1)], at: outline.at.clone(), cells: Vec::new() };
+    let slice = GridSlice { axes: vec![axis(0), axis(1)], at: outline.at.clone(), cells: Vec::new() };
     let outcome =
         |digit: u8| Outcome::ALL.into_iter().find(|o| *o as u8 == digit - b'0').unwrap_or(Outcome::Undecided);
     let map = Map { slice, outcomes: outline.outcomes.bytes().map(outcome).collect() };

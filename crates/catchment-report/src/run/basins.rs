@@ -2,7 +2,7 @@
 
 use crate::schema::{BasinsReport, RunBody};
 use catchment_core::document::{Column, Document, Format, Table, grouped, percent, rounded, significant};
-use catchment_core::method::flood::Reason;
+use catchment_core::method::flood::ToleranceReason;
 
 /// Basins that are shown.
 const SHOWN: usize = 6;
@@ -46,8 +46,8 @@ pub(super) fn describe(document: &mut Document, basins: &BasinsReport, run: &Run
     }
     let used = significant(basins.tolerance.depth);
     let why = match basins.tolerance.reason {
-        Reason::Given => "as given".to_owned(),
-        Reason::WidestGap { between: [low, high], .. } => {
+        ToleranceReason::Given => "as given".to_owned(),
+        ToleranceReason::WidestGap { between: [low, high], .. } => {
             format!("no depth lies between {} and {}", significant(low), significant(high))
         }
     };

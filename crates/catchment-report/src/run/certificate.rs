@@ -2,11 +2,11 @@
 
 use crate::schema::RunBody;
 use catchment_core::document::{Document, grouped, percent, rounded_down, significant};
-use catchment_core::method::certified::Certificate;
+use catchment_core::method::certified::BoxCertificate;
 use catchment_core::pose::Dof;
 
 /// Describes a certificate.
-pub(super) fn describe(document: &mut Document, found: &Certificate, run: &RunBody) {
+pub(super) fn describe(document: &mut Document, found: &BoxCertificate, run: &RunBody) {
     let unit = &run.acceptance.unit;
     let [yes, no, open] = found.measures;
     let boxes = format!("{} boxes", grouped(found.boxes));

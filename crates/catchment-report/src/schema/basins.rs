@@ -118,7 +118,7 @@ pub(crate) mod tests {
     use catchment_core::design::Design;
     use catchment_core::exec::Exec;
     use catchment_core::landscape::{Grid, Landscape};
-    use catchment_core::method::flood::{FloodSettings, Flooding, Reason, flood};
+    use catchment_core::method::flood::{FloodSettings, Flooding, ToleranceReason, flood};
     use catchment_core::pose::Dof;
 
     /// A mated valley, two jams beside it, one of them shallow, and nothing beyond.
@@ -148,7 +148,7 @@ pub(crate) mod tests {
         let report = report.with_basins(&acceptance, &hierarchy);
         assert_eq!(Report::from_json(&report.to_json().unwrap()).unwrap(), report);
         let basins = report.basins.clone().unwrap();
-        assert!(matches!(basins.tolerance.reason, Reason::WidestGap { .. }));
+        assert!(matches!(basins.tolerance.reason, ToleranceReason::WidestGap { .. }));
         assert_eq!(basins.largest.iter().map(|b| b.cells).sum::<usize>(), acceptance.outcomes.len());
         assert!(basins.minima >= basins.merged);
         let mated = basins.largest.iter().find(|b| b.outcome == Outcome::Aligned).unwrap();

@@ -7,11 +7,11 @@ use catchment_core::design::Design;
 use catchment_core::exec::Exec;
 use catchment_core::merit::centered::CenteredBox;
 use catchment_core::merit::onaa::Onaa;
-use catchment_core::merit::success::{Distribution, Success, success};
+use catchment_core::merit::success::{Distribution, SuccessProbability, success};
 use catchment_core::merit::sum::Sum;
 use catchment_core::merit::tolerance::Tolerance;
 use catchment_core::merit::{MeritError, Merits};
-use catchment_core::method::certified::Certificate;
+use catchment_core::method::certified::BoxCertificate;
 use catchment_core::method::confluence::Joined;
 use catchment_core::pose::Dof;
 use catchment_core::run::jams::Jams;
@@ -59,7 +59,7 @@ pub struct RunBody {
     /// Certified shares of the error box and certified retention; null for all methods but `certified`, and
     /// in reports of older versions.
     #[serde(default)]
-    pub certificate: Option<Certificate>,
+    pub certificate: Option<BoxCertificate>,
     /// Number of cells with an inherited label, and how often it was wrong; null for all methods but
     /// `confluence`, and in reports of older versions.
     #[serde(default)]
@@ -410,7 +410,7 @@ impl From<Sum> for AcceptanceReport {
 
 impl SuccessReport {
     /// Of a probability that was found for a distribution.
-    pub fn new(distribution: Distribution, found: &Success) -> Self {
+    pub fn new(distribution: Distribution, found: &SuccessProbability) -> Self {
         Self {
             distribution,
             probability: found.probability,

@@ -1,7 +1,7 @@
 //! The polyhedral partition behind the outcomes: its size, and its exact measure.
 
 use catchment_core::acceptance::Outcome;
-use catchment_core::method::partition::{Counts, Partition};
+use catchment_core::method::partition::{Partition, PartitionCounts};
 use serde::{Deserialize, Serialize};
 
 /// A partition of the contact space.
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartitionReport {
     /// Numbers of polytopes of the Minkowski sum, cells of the contact space, parts of cells, and rests.
-    pub counts: Counts,
+    pub counts: PartitionCounts,
     /// Measure of the accepted polytopes inside the error box, in the unit of the Sum, independent of any
     /// grid.
     pub sum: f64,

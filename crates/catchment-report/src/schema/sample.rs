@@ -4,7 +4,7 @@
 //! [`catchment_core::method::correction`], with its interval. The measure of the cells is still reported.
 
 use super::Report;
-use catchment_core::method::certified::Certificate;
+use catchment_core::method::certified::BoxCertificate;
 use catchment_core::method::correction::Stratum;
 use catchment_core::run::RunCorrection;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ const fn open() -> [f64; 2] {
 impl Report {
     /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
     #[must_use]
-    pub(crate) fn with_certificate(mut self, found: Certificate) -> Self {
+    pub(crate) fn with_certificate(mut self, found: BoxCertificate) -> Self {
         let [docks, _, open] = found.measures;
         let acceptance = &mut self.body.acceptance;
         acceptance.sum_bracket = Some([docks, docks + open]);

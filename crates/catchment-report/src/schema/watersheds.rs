@@ -1,6 +1,6 @@
 //! The watersheds behind the outcomes: their numbers before and after merging.
 
-use catchment_core::method::flood::{Counts, Watersheds};
+use catchment_core::method::flood::{WatershedCounts, Watersheds};
 use serde::{Deserialize, Serialize};
 
 /// Watersheds of a flooded grid, without the region of cells without contact.
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct WatershedsReport {
     /// First labels, merged ones, and cells of either fate.
     #[serde(flatten)]
-    pub counts: Counts,
+    pub counts: WatershedCounts,
     /// Share of all cells whose first watershed was merged into another.
     pub moved_share: f64,
 }

@@ -19,7 +19,7 @@ use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, Document, Format, Table, grouped};
-use catchment_core::method::partition::{PartitionSettings, Solid, Solids, Subject};
+use catchment_core::method::partition::{PartitionSettings, Solid, SolidShape, Solids};
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -34,7 +34,7 @@ pub struct SolidsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// The exported solid.
-    pub shape: Subject,
+    pub shape: SolidShape,
     /// Meaning of the three axes of a file: `x`, `y` and `z` are lengths in D, the others angles in radians.
     pub axes: [&'static str; 3],
     /// 3, or 2 for flat bodies.
@@ -71,7 +71,7 @@ impl SolidsReport {
             shape: shape.subject,
             axes: shape.axes,
             dimension: shape.dimension,
-            settings: (shape.subject != Subject::Halves).then_some(shape.settings),
+            settings: (shape.subject != SolidShape::Halves).then_some(shape.settings),
             fixed_pieces: shape.pieces[0],
             moving_pieces: shape.pieces[1],
             bodies: shape.solids.len(),
@@ -117,11 +117,11 @@ impl Printed for SolidsBody {
 }
 
 /// What a shape is, in words.
-pub fn in_words(shape: Subject) -> &'static str {
+pub fn in_words(shape: SolidShape) -> &'static str {
     match shape {
-        Subject::Halves => "both halves as convex pieces, docked",
-        Subject::Swept => "the moving half, reflected and turned through its slices",
-        Subject::Collision => "places of the centre of rotation at which the halves overlap",
+        SolidShape::Halves => "both halves as convex pieces, docked",
+        SolidShape::Swept => "the moving half, reflected and turned through its slices",
+        SolidShape::Collision => "places of the centre of rotation at which the halves overlap",
     }
 }
 

@@ -7,7 +7,7 @@ use catchment_core::method::partition::shapes;
 use catchment_core::pose::Dof;
 use roxmltree::Document;
 
-fn shape(family: Family, free: &[Dof], subject: Subject) -> (Design, Solids) {
+fn shape(family: Family, free: &[Dof], subject: SolidShape) -> (Design, Solids) {
     let mut alignment = Alignment::default_for(Some(family));
     alignment.free = free.iter().copied().collect();
     let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(0.5));
@@ -19,11 +19,11 @@ fn shape(family: Family, free: &[Dof], subject: Subject) -> (Design, Solids) {
 
 fn all() -> Vec<(Design, Solids)> {
     vec![
-        shape(Family::XFace3d, &[Dof::X, Dof::Y], Subject::Collision),
-        shape(Family::VFace, &[Dof::X, Dof::Pitch], Subject::Swept),
-        shape(Family::VFace, &[Dof::X, Dof::Pitch], Subject::Collision),
-        shape(Family::XFace, &[Dof::X], Subject::Collision),
-        shape(Family::Pyramid, &[Dof::X, Dof::Y], Subject::Halves),
+        shape(Family::XFace3d, &[Dof::X, Dof::Y], SolidShape::Collision),
+        shape(Family::VFace, &[Dof::X, Dof::Pitch], SolidShape::Swept),
+        shape(Family::VFace, &[Dof::X, Dof::Pitch], SolidShape::Collision),
+        shape(Family::XFace, &[Dof::X], SolidShape::Collision),
+        shape(Family::Pyramid, &[Dof::X, Dof::Y], SolidShape::Halves),
     ]
 }
 
@@ -111,7 +111,7 @@ fn an_obj_file_has_a_group_for_every_body() {
 
 #[test]
 fn the_report_tells_the_axes_and_their_units() {
-    let (design, shape) = shape(Family::VFace, &[Dof::X, Dof::Pitch], Subject::Collision);
+    let (design, shape) = shape(Family::VFace, &[Dof::X, Dof::Pitch], SolidShape::Collision);
     let report = SolidsReport::new(&design, &shape, Vec::new());
     let json: serde_json::Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
     assert_eq!((&json["kind"], &json["shape"]), (&"solids".into(), &"collision".into()));
@@ -120,7 +120,7 @@ fn the_report_tells_the_axes_and_their_units() {
     assert_eq!(json["settings"], serde_json::json!({"slices": 4, "strips": 1}));
     let table = report.table();
     assert!(table.contains("2 fixed, 1 moving") && table.contains("pitch   -1.571   1.571  rad"), "{table}");
-    let halves = Solids { subject: Subject::Halves, ..shape };
+    let halves = Solids { subject: SolidShape::Halves, ..shape };
     assert_eq!(SolidsReport::new(&design, &halves, Vec::new()).settings, None);
 }
 

@@ -17,8 +17,8 @@ use catchment_core::acceptance::Acceptance;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Resolution, ResolutionError};
 use catchment_core::merit::MeritError;
-use catchment_core::merit::comparison::{ComparisonError, Overlap, Paired, confusion};
-use catchment_core::method::{Decide, Method, descent};
+use catchment_core::merit::comparison::{AcceptanceOverlap, ComparisonError, Paired, confusion};
+use catchment_core::method::{DecisionMethod, Method, descent};
 use catchment_core::problem::Problem;
 use catchment_core::run::{Answer, Over, Run, RunError, Sample};
 use serde::Serialize;
@@ -183,7 +183,7 @@ pub fn run(
     }
     let between = |a: &Acceptance, b: &Acceptance| -> Result<PairAgreement, AgreementError> {
         let paired = Paired::of(a, b)?;
-        let overlap = Overlap::of(&confusion(&paired.first, &paired.second, exec)?);
+        let overlap = AcceptanceOverlap::of(&confusion(&paired.first, &paired.second, exec)?);
         Ok(PairAgreement { agreement: overlap.agreement(), jaccard: overlap.jaccard() })
     };
     let agreement = decided

@@ -39,13 +39,13 @@ pub(super) struct Trials<'a> {
 /// use catchment_core::design::read;
 /// use catchment_core::exec::Exec;
 /// use catchment_core::pose::PoseError;
-/// use catchment_core::poses::{Circumstance, Dynamics, Law};
+/// use catchment_core::poses::{Circumstance, Dynamics, ScalarDistribution};
 /// use catchment_core::problem::Problem;
 /// use catchment_study::chance::{self, Question, ChanceSettings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
-/// let dynamics = Dynamics::default().with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.2 });
+/// let dynamics = Dynamics::default().with(Circumstance::Speed, ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 });
 /// let settings = ChanceSettings { dynamics, trials: 10, ..ChanceSettings::default() };
 /// let at = |x: f64| PoseError { x, ..PoseError::default() };
 /// let asked = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };

@@ -6,7 +6,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::landscape::GridAxis;
 use catchment_core::method::correction::wilson95;
 use catchment_core::pose::PoseError;
-use catchment_core::poses::{Circumstance, Law};
+use catchment_core::poses::{Circumstance, ScalarDistribution};
 use serde::{Serialize, Serializer};
 
 /// A number for each outcome, in the order of [`Outcome::ALL`].
@@ -46,7 +46,7 @@ pub struct Declared {
     /// Unit of its values; empty if they have no unit.
     pub unit: &'static str,
     /// Its distribution.
-    pub law: Law,
+    pub law: ScalarDistribution,
     /// Share of the distribution outside the possible range, in [0, 1]; such values are drawn again.
     pub cut: f64,
 }

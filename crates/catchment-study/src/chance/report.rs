@@ -9,7 +9,7 @@ use catchment_core::document::{
 };
 use catchment_core::method::drop::Push;
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::{Circumstance, Law};
+use catchment_core::poses::{Circumstance, ScalarDistribution};
 
 /// Poses that people see.
 const MOST_POSES: usize = 40;
@@ -247,18 +247,22 @@ impl ChanceMap {
 }
 
 /// `50 ± 10 mm/s, normal`, `0.1 … 0.3, uniform`.
-fn law_in_words(design: &Design, of: Circumstance, law: &Law) -> String {
+fn law_in_words(design: &Design, of: Circumstance, law: &ScalarDistribution) -> String {
     let (factor, unit) = unit_of(design, of);
     let shown = |value: f64| without_zeros(value * factor);
     let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
     match law {
-        Law::Constant { value } => format!("{}{unit}", shown(*value)),
-        Law::Normal { mean, sigma } => format!("{} ± {}{unit}, normal", shown(*mean), shown(*sigma)),
-        Law::Uniform { from, to } => format!("{} … {}{unit}, uniform", shown(*from), shown(*to)),
-        Law::Lognormal { median, factor } => {
+        ScalarDistribution::Constant { value } => format!("{}{unit}", shown(*value)),
+        ScalarDistribution::Normal { mean, sigma } => {
+            format!("{} ± {}{unit}, normal", shown(*mean), shown(*sigma))
+        }
+        ScalarDistribution::Uniform { from, to } => {
+            format!("{} … {}{unit}, uniform", shown(*from), shown(*to))
+        }
+        ScalarDistribution::Lognormal { median, factor } => {
             format!("{}{unit} times or by {}, lognormal", shown(*median), without_zeros(*factor))
         }
-        Law::Measured { measured } => {
+        ScalarDistribution::Measured { measured } => {
             format!("{}{unit} on average, {} measured values", shown(law.mean()), measured.len())
         }
     }

@@ -7,7 +7,7 @@ use catchment_core::design::Family;
 use catchment_core::exec::Exec;
 use catchment_core::method::drop::{Launch, Push};
 use catchment_core::pose::DofSet;
-use catchment_core::poses::Law;
+use catchment_core::poses::ScalarDistribution;
 use catchment_core::problem::Problem;
 
 fn free(dofs: &[Dof]) -> DofSet {
@@ -24,7 +24,7 @@ fn x(x: f64) -> PoseError {
 }
 
 fn speed(speed: f64) -> Dynamics {
-    Dynamics::default().with(Circumstance::Speed, Law::constant(speed))
+    Dynamics::default().with(Circumstance::Speed, ScalarDistribution::constant(speed))
 }
 
 fn normal(x: f64, pitch: f64) -> Spread {
@@ -48,8 +48,8 @@ fn holds([lo, hi]: [f64; 2], value: f64) -> bool {
 #[test]
 fn what_drifts_lands_where_the_closed_form_says() {
     let dynamics = speed(0.1)
-        .with(Circumstance::DriftX, Law::Uniform { from: 0.0, to: 4.0 })
-        .with(Circumstance::Height, Law::constant(0.5));
+        .with(Circumstance::DriftX, ScalarDistribution::Uniform { from: 0.0, to: 4.0 })
+        .with(Circumstance::Height, ScalarDistribution::constant(0.5));
     let settings = ChanceSettings { dynamics, trials: 200, ..ChanceSettings::default() };
     let pose = of_poses(&sliding(), &[x(0.3)], &settings)[0];
     assert!(holds(pose.ci95, 0.5), "{pose:?}");
@@ -82,10 +82,10 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     for friction in [0.0, 0.2] {
         let dynamics = Dynamics::default()
-            .with(Circumstance::Speed, Law::Lognormal { median: 1.0, factor: 1.3 })
-            .with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.0 })
-            .with(Circumstance::Friction, Law::constant(friction))
-            .with(Circumstance::Restitution, Law::constant(0.2));
+            .with(Circumstance::Speed, ScalarDistribution::Lognormal { median: 1.0, factor: 1.3 })
+            .with(Circumstance::DriftX, ScalarDistribution::Normal { mean: 0.0, sigma: 1.0 })
+            .with(Circumstance::Friction, ScalarDistribution::constant(friction))
+            .with(Circumstance::Restitution, ScalarDistribution::constant(0.2));
         let settings = ChanceSettings { dynamics, overall: 300, ..ChanceSettings::default() };
         let errors = Some(normal(0.3, 0.5));
         let asked = Question { errors, times: vec![16.0, 0.01], ..Question::default() };
@@ -113,7 +113,7 @@ fn a_given_push_is_taken_as_it_is() {
         perturbation: 0.0,
         ..drop::DropSettings::default()
     };
-    let dynamics = speed(2.0).with(Circumstance::DriftX, Law::constant(3.0));
+    let dynamics = speed(2.0).with(Circumstance::DriftX, ScalarDistribution::constant(3.0));
     let settings =
         ChanceSettings { drop: drop.clone(), dynamics, held: false, trials: 1, ..ChanceSettings::default() };
     let by_hand =
@@ -134,15 +134,15 @@ fn a_given_push_is_taken_as_it_is() {
 fn a_heavy_half_coasts_as_a_fast_one() {
     let problem = sliding();
     let at = |mass: f64, speed: f64| {
-        let law = Law::Measured { measured: vec![mass, mass] };
+        let law = ScalarDistribution::Measured { measured: vec![mass, mass] };
         // Its mean is that of the settings where the law is a constant.
-        let nominal = Law::Measured { measured: vec![1.0] };
+        let nominal = ScalarDistribution::Measured { measured: vec![1.0] };
         let drop = drop::DropSettings { perturbation: 0.0, ..ChanceSettings::default().drop };
         let dynamics = Dynamics::default().with(Circumstance::Mass, nominal);
         let settings = ChanceSettings { drop, dynamics, ..ChanceSettings::default() };
         let dynamics = Dynamics::default()
-            .with(Circumstance::Speed, Law::constant(speed))
-            .with(Circumstance::DriftX, Law::constant(2.0 * speed))
+            .with(Circumstance::Speed, ScalarDistribution::constant(speed))
+            .with(Circumstance::DriftX, ScalarDistribution::constant(2.0 * speed))
             .with(Circumstance::Mass, law);
         let draw = trial::Draw::of(&dynamics, catchment_core::acceptance::Stream::new(1));
         draw.settings(&settings, 1.0, 1.0)
@@ -164,8 +164,8 @@ fn a_heavy_half_coasts_as_a_fast_one() {
 fn neither_threads_nor_other_poses_change_a_bit() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     let dynamics = Dynamics::default()
-        .with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.3 })
-        .with(Circumstance::Friction, Law::Uniform { from: 0.0, to: 0.3 });
+        .with(Circumstance::Speed, ScalarDistribution::Normal { mean: 1.0, sigma: 0.3 })
+        .with(Circumstance::Friction, ScalarDistribution::Uniform { from: 0.0, to: 0.3 });
     let settings = ChanceSettings { dynamics, trials: 8, overall: 100, ..ChanceSettings::default() };
     let axis = |dof, cells| GridAxis { dof, lo: -0.6, hi: 0.6, cells };
     let poses = vec![x(0.3), x(0.45), PoseError { pitch: 0.4, ..x(0.2) }];
@@ -198,7 +198,8 @@ fn neither_threads_nor_other_poses_change_a_bit() {
 #[test]
 fn mirror_images_are_as_likely() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
-    let dynamics = speed(2.0).with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.0 });
+    let dynamics =
+        speed(2.0).with(Circumstance::DriftX, ScalarDistribution::Normal { mean: 0.0, sigma: 1.0 });
     let settings = ChanceSettings { dynamics, trials: 60, ..ChanceSettings::default() };
     for [at, pitch] in [[0.4, 0.2], [0.3, -0.5], [0.5, 0.3]] {
         let pose = |side: f64| PoseError { pitch: side * pitch, ..x(side * at) };
@@ -235,7 +236,7 @@ fn what_is_asked_in_vain_is_refused() {
     let mut undamped = sound.clone();
     undamped.drop.damping = 0.0;
     assert!(refused(&pose(), &undamped).contains("without damping"));
-    let turns = speed(1.0).with(Circumstance::SpinYaw, Law::constant(1.0));
+    let turns = speed(1.0).with(Circumstance::SpinYaw, ScalarDistribution::constant(1.0));
     let turning = ChanceSettings { dynamics: turns, ..ChanceSettings::default() };
     assert!(refused(&pose(), &turning).contains("spin_yaw is declared, and the design locks yaw"));
     assert!(refused(&pose(), &ChanceSettings { trials: 0, ..sound.clone() }).contains("too few"));

@@ -2,9 +2,9 @@
 
 use super::{ChanceError, ChanceSettings};
 use catchment_core::acceptance::Stream;
-use catchment_core::method::drop::{self, Bench, Body, Launch, Push};
+use catchment_core::method::drop::{self, Bench, Launch, MassProperties, Push};
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::{Circumstance, Dynamics, Law};
+use catchment_core::poses::{Circumstance, Dynamics, ScalarDistribution};
 use catchment_core::problem::Problem;
 
 /// Approach speed at which trials of held speed are computed, in D/s of their own time: with the engine's default step 0.005 D per step, what
@@ -25,7 +25,7 @@ impl Draw {
     /// By numbers that can be looked up.
     pub(super) fn of(dynamics: &Dynamics, stream: Stream) -> Self {
         let value = |of: Circumstance| {
-            let uniform = |k: u64| stream.uniform(START + Law::DRAWN * of.index() as u64 + k);
+            let uniform = |k: u64| stream.uniform(START + ScalarDistribution::DRAWN * of.index() as u64 + k);
             dynamics.law(of).map(|law| law.draw(of.range(), uniform))
         };
         let off = std::array::from_fn(|k| 2.0 * stream.uniform(k as u64) - 1.0);
@@ -63,8 +63,10 @@ impl Draw {
         let of = |of: Circumstance, rest: f64| self.get(of).unwrap_or(rest);
         let mass = of(Circumstance::Mass, nominal);
         drop.body = match drop.body {
-            Body::Given { gyration, center, .. } => Body::Given { mass, gyration, center },
-            Body::Solid { density } => Body::Solid { density: density * mass / nominal },
+            MassProperties::Given { gyration, center, .. } => {
+                MassProperties::Given { mass, gyration, center }
+            }
+            MassProperties::Solid { density } => MassProperties::Solid { density: density * mass / nominal },
         };
         drop.damping *= nominal / mass;
         drop.angular_damping *= nominal / mass;
@@ -124,7 +126,7 @@ pub(super) fn check(problem: &Problem, settings: &ChanceSettings) -> Result<(), 
     if settings.held {
         let stands = match settings.dynamics.law(Circumstance::Speed) {
             None => settings.drop.launch.speed <= 0.0,
-            Some(Law::Measured { measured }) => measured.contains(&0.0),
+            Some(ScalarDistribution::Measured { measured }) => measured.contains(&0.0),
             Some(law) => law.is_constant() && law.mean() <= 0.0,
         };
         if stands {

@@ -18,7 +18,7 @@ use super::refinement::{GridDecision, Refinement, RefinementError};
 use catchment_core::exec::{Bytes, Exec, OutOfBudget};
 use catchment_core::landscape::Resolution;
 use catchment_core::method::correction::{self, Stop};
-use catchment_core::method::{Decide, Method, descent};
+use catchment_core::method::{DecisionMethod, Method, descent};
 use catchment_core::problem::Problem;
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Test whether motions with friction pass states in which Coulomb's law also permits stiction.
 
 use catchment_core::method::descent::{self, Follower};
-use catchment_core::method::{Follow, Method};
+use catchment_core::method::{Method, PoseMethod};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use std::sync::OnceLock;
@@ -18,7 +18,7 @@ pub struct MayStick<'a> {
 impl<'a> MayStick<'a> {
     /// Of poses that a method decides; `None` of methods without exact motions, and without friction.
     pub fn of(problem: &'a Problem, method: &Method, poses: &'a [PoseError]) -> Option<Self> {
-        let is_descent = method.follows().is_some_and(Follow::is_descent);
+        let is_descent = method.follows().is_some_and(PoseMethod::is_descent);
         let settings = is_descent.then(|| method.motions())?;
         let known = vec![OnceLock::new(); poses.len()];
         (settings.friction > 0.0).then_some(Self { problem, poses, settings, known })

@@ -36,7 +36,7 @@ use report::by_share;
 use catchment_core::acceptance::{Domain, Outcome};
 use catchment_core::document::Share;
 use catchment_core::exec::{Cancelled, Exec};
-use catchment_core::method::Decide;
+use catchment_core::method::DecisionMethod;
 use catchment_core::method::correction::Z95;
 use catchment_core::method::descent::{self, Doubt, Follower, FrictionOutOfRange, HARDLY};
 use catchment_core::pose::PoseError;

@@ -27,7 +27,7 @@ use catchment_core::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::sum::Sum;
 use catchment_core::method::correction::Z95;
-use catchment_core::method::{Decide, descent};
+use catchment_core::method::{DecisionMethod, descent};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use serde::{Deserialize, Serialize};

@@ -41,7 +41,7 @@ mod tolerable;
 
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
-use catchment_core::method::{Decide, DecideError};
+use catchment_core::method::{DecideError, DecisionMethod};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Moments, Robot, Spread};
 use catchment_core::problem::Problem;

@@ -23,7 +23,7 @@ pub use axis::{SweepAxis, SweepAxisError};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::{Complaint, Design, Finding, Parameter, SourceText, with_key};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
-use catchment_core::merit::slice::Slice;
+use catchment_core::merit::slice::GridSlice;
 use catchment_core::method::NotApplicable;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::problem::{Draft, Problem, ProblemError};
@@ -449,7 +449,7 @@ fn figures(answer: &Answer) -> Result<Figures, SweepError> {
 fn outline(answer: &Answer) -> Result<Option<Outline>, catchment_core::merit::MeritError> {
     let Some(grid) = answer.grid().filter(|grid| grid.axes.len() >= 2) else { return Ok(None) };
     let pair = [grid.axes[0].dof, grid.axes[1].dof];
-    let slice = Slice::of(grid, &pair, &PoseError::default())?;
+    let slice = GridSlice::of(grid, &pair, &PoseError::default())?;
     let digit = |outcome: Outcome| char::from(b'0' + outcome as u8);
     let outcomes = slice.pick(&answer.acceptance.outcomes).into_iter().map(digit).collect();
     let [a, b] = [slice.axes[0], slice.axes[1]];

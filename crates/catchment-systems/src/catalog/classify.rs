@@ -5,7 +5,7 @@ use super::data::{Catalog, Source, System};
 use super::facts::Fact;
 use super::rule::{Degree, Extents};
 use catchment::exec::{Cancelled, Exec};
-use catchment::method::zraa::{Square, Zraa, ZraaError, ZraaSettings, run};
+use catchment::method::zraa::{AcceptedSquare, Zraa, ZraaError, ZraaSettings, run};
 use catchment::problem::Problem;
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ pub struct Classified {
     /// Which offsets it corrects without rotation.
     pub zraa: Zraa,
     /// The largest square among them; where one translation is locked, its edge is the length of the interval.
-    pub square: Square,
+    pub square: AcceptedSquare,
     /// How far they reach through zero.
     pub extents: Extents,
     /// The degree by the rule.
@@ -64,7 +64,7 @@ pub enum ClassifyError {
 /// Where its zero-rotation area of acceptance is not decided.
 pub fn classify(problem: &Problem, exec: &Exec) -> Result<Classified, ClassifyError> {
     let zraa = run(problem.pair(), &ZraaSettings::default(), exec)?;
-    let square = Square::of(&zraa, exec)?;
+    let square = AcceptedSquare::of(&zraa, exec)?;
     let extents = Extents::of(&zraa);
     Ok(Classified {
         name: problem.design().name.clone(),

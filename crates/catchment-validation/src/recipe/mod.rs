@@ -21,7 +21,7 @@ use catchment::merit::brute::largest_cube;
 use catchment::merit::onaa::Onaa;
 use catchment::method::correction::{self, ByFraction, Stop};
 use catchment::method::descent;
-use catchment::method::kinematic::{self, Face};
+use catchment::method::kinematic::{self, PlanarFace};
 use catchment::method::partition;
 use catchment::method::transport;
 use catchment::method::zraa::{self, Zraa};
@@ -37,7 +37,7 @@ pub const RHO: f64 = 0.5;
 #[derive(Debug, Clone, Copy)]
 pub enum Recipe {
     /// Starts that slide home, by the kinematic method.
-    Kinematic(Face),
+    Kinematic(PlanarFace),
     /// Sum by the polyhedral partition.
     Partition(Family),
     /// Sum of the flooded target basin.

@@ -225,7 +225,7 @@ impl Trial<'_> {
         let exact_error = Z95 * (exact * (1.0 - exact) / plain as f64).sqrt();
         let measure = self.grid.measure();
         let mean =
-            |f: &dyn Fn(&correction::Corrected) -> f64| found.iter().map(f).sum::<f64>() / repeats as f64;
+            |f: &dyn Fn(&correction::UnbiasedSum) -> f64| found.iter().map(f).sum::<f64>() / repeats as f64;
         let held = mean(&|c| {
             let [down, up] = [c.sum - c.ci95[0], c.ci95[1] - c.sum].map(|w| (w / measure).hypot(exact_error));
             f64::from(u8::from(c.fraction - down <= exact && exact <= c.fraction + up))

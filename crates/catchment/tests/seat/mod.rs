@@ -318,7 +318,7 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
                 Ok(ref region @ Zraa::Region { area, .. }) => {
                     assert!((area - right).abs() < 1e-4 * right, "{peg:?}: {area} for {right}");
                     // No gap between tiles counts as border: a square fits into the circle inside of the n-gon.
-                    let square = zraa::Square::of(region, &Exec::new()).unwrap();
+                    let square = zraa::AcceptedSquare::of(region, &Exec::new()).unwrap();
                     let inner = peg.inside(&at(0.0, 0.0)) * 2f64.sqrt();
                     assert!(
                         square.edge > inner - 1e-3 && square.edge < right.sqrt(),

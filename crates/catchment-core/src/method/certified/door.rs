@@ -7,8 +7,10 @@ use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::descent;
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, NotApplicable, grid_of};
-use crate::method::registry::{Entry, Method};
+use crate::method::door::{
+    ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable, grid_of,
+};
+use crate::method::registry::{Method, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -21,13 +23,13 @@ pub(super) const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<CertifiedSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<CertifiedSettings>(&INFO);
 
 /// Core-seconds per box, and bytes.
 const BOX_SECONDS: f64 = 1e-4;
 const BOX_BYTES: u64 = 256;
 
-impl Decide for CertifiedSettings {
+impl DecisionMethod for CertifiedSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -79,7 +81,7 @@ impl Decide for CertifiedSettings {
         &["certificate"]
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let grid = grid_of(&INFO, domain)?;
         let pair = problem.pair();
         let refused = |reason: &str| NotApplicable { method: INFO.name, reason: reason.to_owned() };
@@ -100,7 +102,7 @@ impl Decide for CertifiedSettings {
         let certified = certify(pair, self, exec)?;
         let acceptance = certified.acceptance(grid, exec)?;
         let by_products = ByProducts { certificate: Some(certified.certificate), ..ByProducts::default() };
-        Ok(Decided { by_products, ..Decided::plain(acceptance, self.settings()) })
+        Ok(MethodOutput { by_products, ..MethodOutput::plain(acceptance, self.settings()) })
     }
 }
 

@@ -121,7 +121,7 @@ pub const MOST_MEETINGS: usize = 200_000;
 /// Certified shares of an error box.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Certificate {
+pub struct BoxCertificate {
     /// Share of the error box in which every pose docks.
     pub yes: f64,
     /// Share in which no pose docks.
@@ -145,7 +145,7 @@ pub struct Certificate {
 #[derive(Debug, Clone)]
 pub(crate) struct Certified {
     tree: Tree,
-    pub(crate) certificate: Certificate,
+    pub(crate) certificate: BoxCertificate,
 }
 
 /// Levels of boxes that are looked at anyway, for one to five free errors.
@@ -480,7 +480,7 @@ impl Tree {
     }
 
     /// The shares of labels, of a tree and a window; the seat is not spoken of.
-    fn certificate(&self, window: f64) -> Certificate {
+    fn certificate(&self, window: f64) -> BoxCertificate {
         let [mut yes, mut no] = [0.0; 2];
         for (_, cell) in self.leaves().filter(|(_, cell)| self.is_asked(cell)) {
             match cell.label {
@@ -493,14 +493,14 @@ impl Tree {
         yes = yes.max(self.axes.iter().map(|_| window).product());
         let undecided = (1.0 - yes - no).max(0.0);
         let measure: f64 = self.axes.iter().map(|dof| self.asked[dof.index()].width()).product();
-        Certificate {
+        BoxCertificate {
             yes,
             no,
             undecided,
             measures: [yes, no, undecided].map(|share| share * measure),
             window,
             boxes: self.cells.len(),
-            ..Certificate::default()
+            ..BoxCertificate::default()
         }
     }
 }

@@ -162,7 +162,8 @@ fn no_motion_contradicts_a_planar_certificate() {
     {
         let pair = pair_of(family, &[], cor);
         let found = certified(&pair, 20_000);
-        let Certificate { yes, no, undecided, retention_at_least, retention_at_most, .. } = found.certificate;
+        let BoxCertificate { yes, no, undecided, retention_at_least, retention_at_most, .. } =
+            found.certificate;
         assert!((yes + no + undecided - 1.0).abs() < 1e-9, "{:?}", found.certificate);
         assert!(undecided < most && yes > 0.02, "{family:?} {:?}", found.certificate);
         let motions = motions();
@@ -229,7 +230,7 @@ fn the_pyramid_is_held_by_its_depth() {
     let pair = pair_of(Family::Pyramid, &[Dof::X, Dof::Y], 0.0);
     let found = certified(&pair, 20_000);
     let depth = FamilySpec::new(Family::Pyramid).aspect_ratio();
-    let Certificate { retention_at_least: least, retention_at_most: most, yes, .. } = found.certificate;
+    let BoxCertificate { retention_at_least: least, retention_at_most: most, yes, .. } = found.certificate;
     let most = most.unwrap();
     assert!(
         least <= depth + 1e-9 && depth <= most + 1e-9 && most - least < 0.2 * depth,
@@ -270,7 +271,7 @@ fn all_of_a_box_of_three_errors_docks() {
 fn a_border_in_three_errors_is_told() {
     let pair = narrow(Family::Pyramid, 0.0, &[(Dof::X, 0.6), (Dof::Y, 0.6), (Dof::Yaw, 0.35)]);
     let found = certified(&pair, 100_000);
-    let Certificate { yes, no, undecided, .. } = found.certificate;
+    let BoxCertificate { yes, no, undecided, .. } = found.certificate;
     assert!(yes > 0.6 && no > 0.2 && undecided < 0.12, "{:?}", found.certificate);
     let motions = motions();
     assert!(contradicts_nothing(&pair, &found, motions) > motions * 8 / 10);
@@ -369,7 +370,7 @@ fn the_merge_tree_lets_the_seat_go_as_high() {
         [(Family::VFace, &[][..], 0.0), (Family::XFace, &[], 0.5), (Family::Pyramid, &translations, 0.0)]
     {
         let pair = pair_of(family, free, cor);
-        let Certificate { retention_at_least: least, retention_at_most: most, .. } =
+        let BoxCertificate { retention_at_least: least, retention_at_most: most, .. } =
             certified(&pair, 20_000).certificate;
         let grid =
             Resolution::uniform(200).unwrap().grid(&pair.alignment, &Resolution::DEFAULT_CELLS).unwrap();
@@ -448,7 +449,7 @@ fn a_ball_is_held_by_the_rim_of_its_pit() {
         wedges.join(", ")
     );
     let problem = Draft::read(SourceText::new("ball.toml", text)).and_then(Draft::build).unwrap();
-    let Certificate { retention_at_least: least, retention_at_most: most, .. } =
+    let BoxCertificate { retention_at_least: least, retention_at_most: most, .. } =
         certified(problem.pair(), 12_000).certificate;
     let closed = depth + radius - f64::sqrt(2.0) * radius;
     // Facets that stand for the ball lie within it, by no more than their chord error where it touches.

@@ -7,8 +7,8 @@ use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::cost::{DESCENT_SECONDS, affordable, affordable_cells};
 use crate::method::descent;
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
-use crate::method::registry::{Entry, Method};
+use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
+use crate::method::registry::{Method, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -23,9 +23,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<ConfluenceSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<ConfluenceSettings>(&INFO);
 
-impl Decide for ConfluenceSettings {
+impl DecisionMethod for ConfluenceSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -80,13 +80,13 @@ impl Decide for ConfluenceSettings {
         &["joined"]
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let labels = run(problem.pair(), grid_of(&INFO, domain)?, self, exec)?;
         let by_products = ByProducts { joined: Some(labels.joined), ..ByProducts::default() };
         // A clock that ended nothing has no part in the answer.
         let budget_s = self.budget_s.filter(|_| labels.unreached() > 0);
         let settings = Self { budget_s, ..self.clone() }.settings();
-        Ok(Decided { by_products, ..Decided::plain(labels.acceptance(exec), settings) })
+        Ok(MethodOutput { by_products, ..MethodOutput::plain(labels.acceptance(exec), settings) })
     }
 }
 

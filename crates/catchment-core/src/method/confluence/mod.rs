@@ -130,7 +130,7 @@ pub struct Joined {
 
 /// The outcome of every cell of a grid.
 #[derive(Debug, Clone)]
-pub struct Labels {
+pub struct GridLabels {
     grid: Grid,
     fold: Fold,
     kept: Vec<Label>,
@@ -147,7 +147,7 @@ pub fn run(
     grid: &Grid,
     settings: &ConfluenceSettings,
     exec: &Exec,
-) -> Result<Labels, ConfluenceError> {
+) -> Result<GridLabels, ConfluenceError> {
     let cells = grid.checked_len().unwrap_or(usize::MAX);
     if cells >= u32::MAX as usize {
         return Err(ConfluenceError::TooManyCells { cells });
@@ -169,7 +169,7 @@ pub fn run(
     let river = River { pair, falls: &falls, settings, started };
     let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
     let Falls { grid, fold, .. } = falls;
-    Ok(Labels { grid, fold, kept, joined })
+    Ok(GridLabels { grid, fold, kept, joined })
 }
 
 const STAGE: &str = "motions";
@@ -211,7 +211,7 @@ pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
     kept.saturating_mul(per_kept).saturating_add(cells)
 }
 
-impl Labels {
+impl GridLabels {
     /// The grid.
     pub const fn grid(&self) -> &Grid {
         &self.grid

@@ -17,12 +17,12 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Do
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-fn labels(pair: &Pair, cells: usize) -> Labels {
+fn labels(pair: &Pair, cells: usize) -> GridLabels {
     run(pair, &Grid::over(&pair.alignment, |_| cells), &ConfluenceSettings::default(), &Exec::new()).unwrap()
 }
 
 /// Every cell by its own motion: the judge.
-fn judge(labels: &Labels, pair: &Pair) -> Vec<Outcome> {
+fn judge(labels: &GridLabels, pair: &Pair) -> Vec<Outcome> {
     let domain = Domain::Grid(labels.grid().clone());
     let (acceptance, _) =
         descent::run(pair, domain, &descent::DescentSettings::default(), &Exec::new()).unwrap();

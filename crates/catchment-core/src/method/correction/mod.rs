@@ -108,7 +108,7 @@ pub struct Stratum {
 
 /// An unbiased Sum.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Corrected {
+pub struct UnbiasedSum {
     /// Measure of the accepted set, Dᵃ·radᵇ.
     pub sum: f64,
     /// Its 95 % interval; undecided poses widen it upwards.
@@ -117,7 +117,7 @@ pub struct Corrected {
     pub fraction: f64,
     /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; and its 95 % interval.
     pub differing: f64,
-    /// See [`Corrected::differing`].
+    /// See [`UnbiasedSum::differing`].
     pub differing_ci95: [f64; 2],
     /// Poses followed.
     pub descents: usize,
@@ -138,7 +138,7 @@ pub fn correct(
     settings: &CorrectionSettings,
     descents: &descent::DescentSettings,
     exec: &Exec,
-) -> Result<Corrected, CorrectionError> {
+) -> Result<UnbiasedSum, CorrectionError> {
     estimate(grid, by, settings, exec, |poses, exec| {
         Ok(descent::run(pair, Domain::Poses(poses), descents, exec)?.0.outcomes)
     })
@@ -154,7 +154,7 @@ pub fn estimate(
     settings: &CorrectionSettings,
     exec: &Exec,
     mut decide: impl FnMut(Vec<PoseError>, &Exec) -> Result<Vec<Outcome>, CorrectionError>,
-) -> Result<Corrected, CorrectionError> {
+) -> Result<UnbiasedSum, CorrectionError> {
     let CorrectionSettings { seed, stop } = *settings;
     if let Stop::Tolerance(share) = stop
         && (share <= 0.0 || share.is_nan())
@@ -204,7 +204,7 @@ pub fn estimate(
     let measure = grid.measure();
     let against = |(s, seen): (&usize, &Seen)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
     let differing = Whole::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
-    Ok(Corrected {
+    Ok(UnbiasedSum {
         sum: whole.fraction * measure,
         ci95: whole.ci95.map(|share| share * measure),
         fraction: whole.fraction,

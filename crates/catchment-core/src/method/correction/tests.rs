@@ -46,7 +46,7 @@ impl Case {
         Self { name, radius, fraction, outcomes, grid, nearly_pure: false }
     }
 
-    fn estimate(&self, stop: Stop, seed: u64, exec: &Exec) -> Corrected {
+    fn estimate(&self, stop: Stop, seed: u64, exec: &Exec) -> UnbiasedSum {
         let by = ByNeighbours::new(&self.outcomes, self.grid.shape());
         estimate(&self.grid, &by, &CorrectionSettings { seed, stop }, exec, |poses, _| {
             let inside = |p: &PoseError| distance(p, 0.0) < self.radius;
@@ -76,9 +76,9 @@ fn cases() -> Vec<Case> {
 fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
     // Not by one pool: a thread that waits in one repeat would begin another, and another in that.
     let one = |seed: usize, exec: &Exec| case.estimate(stop, seed as u64, exec);
-    let found: Vec<Corrected> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
+    let found: Vec<UnbiasedSum> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
     let n = repeats as f64;
-    let mean = |f: &dyn Fn(&Corrected) -> f64| found.iter().map(f).sum::<f64>() / n;
+    let mean = |f: &dyn Fn(&UnbiasedSum) -> f64| found.iter().map(f).sum::<f64>() / n;
     let measure = case.grid.measure();
     let held = mean(&|c| {
         let [lo, hi] = c.ci95.map(|v| v / measure);

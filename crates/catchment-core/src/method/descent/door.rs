@@ -6,8 +6,8 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells, motions_in};
-use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
-use crate::method::registry::Entry;
+use crate::method::door::{Cost, DecideError, DecisionMethod, Finished, Info, MethodOutput, PoseMethod};
+use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -15,9 +15,9 @@ const INFO: Info =
     Info { name: "descent", summary: "exact motion of every cell's centre", on_grids: true, departs: false };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<DescentSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<DescentSettings>(&INFO);
 
-impl Decide for DescentSettings {
+impl DecisionMethod for DescentSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -47,9 +47,9 @@ impl Decide for DescentSettings {
         }
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let (acceptance, _) = run(problem.pair(), domain.clone(), self, exec)?;
-        Ok(Decided::plain(acceptance, self.settings()))
+        Ok(MethodOutput::plain(acceptance, self.settings()))
     }
 
     fn check(&self) -> Result<(), DecideError> {
@@ -61,12 +61,12 @@ impl Decide for DescentSettings {
         self.clone()
     }
 
-    fn follows(&self) -> Option<&dyn Follow> {
+    fn follows(&self) -> Option<&dyn PoseMethod> {
         Some(self)
     }
 }
 
-impl Follow for DescentSettings {
+impl PoseMethod for DescentSettings {
     fn follow(
         &self,
         problem: &Problem,

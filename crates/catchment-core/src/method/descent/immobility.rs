@@ -27,7 +27,7 @@ use super::holding::Holding;
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::acceptance::Stream;
 use crate::contact::Pair;
-use crate::polytope::{Point, Polytope};
+use crate::polytope::{Polytope, PolytopePoint};
 use crate::pose::{PoseError, rotation};
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ const HALVINGS: usize = 40;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Order {
+pub enum ImmobilityOrder {
     /// Height rises in proportion to the displacement, in every direction.
     First,
     /// In some direction height rises with the square of the displacement.
@@ -69,7 +69,7 @@ pub enum Order {
     Unstable,
 }
 
-impl Order {
+impl ImmobilityOrder {
     /// The lower-case name used in files and reports.
     pub const fn name(self) -> &'static str {
         match self {
@@ -86,7 +86,7 @@ impl Order {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Immobility {
     /// `first`, `second`, `neutral` or `unstable`.
-    pub order: Order,
+    pub order: ImmobilityOrder,
     /// Bounds on the smallest slope of a first-order rest, in D per D of the metric of the motion; 0 if the
     /// rest is not first-order immobile.
     pub slope: [f64; 2],
@@ -106,7 +106,7 @@ pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) 
     if rest.is_inside() {
         let slope = rest.slope();
         return Some(Immobility {
-            order: Order::First,
+            order: ImmobilityOrder::First,
             slope,
             free: 0,
             curvature: None,
@@ -118,15 +118,21 @@ pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) 
     if free.is_empty() {
         // Held, but by less than what counts as a slope.
         let (slope, weakest) = ([0.0, LEVEL], PoseError::default());
-        return Some(Immobility { order: Order::Neutral, slope, free: 0, curvature: None, weakest });
+        return Some(Immobility {
+            order: ImmobilityOrder::Neutral,
+            slope,
+            free: 0,
+            curvature: None,
+            weakest,
+        });
     }
     let (curvature, way) = rest.least_curvature(&free, Stream::new(seed))?;
     let order = if curvature > FLAT {
-        Order::Second
+        ImmobilityOrder::Second
     } else if curvature < -FLAT {
-        Order::Unstable
+        ImmobilityOrder::Unstable
     } else {
-        Order::Neutral
+        ImmobilityOrder::Neutral
     };
     let weakest = rest.as_error(&way);
     Some(Immobility { order, slope: [0.0; 2], free: free.len(), curvature: Some(curvature), weakest })
@@ -168,7 +174,7 @@ impl<'a> At<'a> {
 
     /// The least slope: of the nearest facet of the hull of all gradients, or between what is withstood along the axes.
     fn slope(&mut self) -> [f64; 2] {
-        let mut gradients: Vec<Point> = Vec::new();
+        let mut gradients: Vec<PolytopePoint> = Vec::new();
         for row in self.holding.rows() {
             let size = self.axes.iter().map(|axis| row[*axis] * row[*axis]).sum::<f64>().sqrt();
             let up = row[2].max(size / STEEPEST);
@@ -349,7 +355,7 @@ impl<'a> At<'a> {
     }
 }
 
-fn distance(a: &Point, b: &Point) -> f64 {
+fn distance(a: &PolytopePoint, b: &PolytopePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 

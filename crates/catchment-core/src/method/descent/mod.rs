@@ -50,7 +50,7 @@ pub(in crate::method) use door::default_samples;
 pub(in crate::method) use fall::all_count;
 pub use fall::fall;
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
-pub use immobility::{Immobility, Order, immobility};
+pub use immobility::{Immobility, ImmobilityOrder, immobility};
 pub use rest::{Rest, settle};
 pub use sticking::{Doubt, HARDLY, Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};

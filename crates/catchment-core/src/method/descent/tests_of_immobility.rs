@@ -1,7 +1,7 @@
 //! Rests of known order: fingers, plates, a wedge between two fingers.
 
 use super::holding::{Holding, TOUCHING};
-use super::{Immobility, Order, immobility};
+use super::{Immobility, ImmobilityOrder, immobility};
 use crate::connector::Connector;
 use crate::contact::Pair;
 use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, OwnSpec};
@@ -50,18 +50,18 @@ fn three_fingers_hold_a_plate_by_their_triangle() {
     });
     let tilts = [Dof::Roll, Dof::Pitch];
     let found = mated(&pair(fingers.to_vec(), vec![plate()], &tilts, 0.0));
-    assert_eq!(found.order, Order::First);
+    assert_eq!(found.order, ImmobilityOrder::First);
     assert!(found.slope.iter().all(|slope| (slope - 0.5 * radius / RHO).abs() < 1e-6), "{found:?}");
     // Free to slide and spin it does so, to any order.
     let found = mated(&pair(fingers.to_vec(), vec![plate()], &Dof::ALL, 0.0));
-    assert_eq!((found.order, found.free), (Order::Neutral, 3), "{found:?}");
+    assert_eq!((found.order, found.free), (ImmobilityOrder::Neutral, 3), "{found:?}");
     assert!(found.curvature.unwrap().abs() < 1e-6, "{found:?}");
 }
 
 /// A plate on two fingers in a line, its centre of rotation held above or below them, c in front of its face: tilted by θ its height is −c/cos θ, so that κ = −c/ρ².
 #[test]
 fn a_plate_on_two_fingers_stands_with_its_weight_above() {
-    for (cor, order) in [(-0.4f64, Order::Second), (0.4, Order::Unstable)] {
+    for (cor, order) in [(-0.4f64, ImmobilityOrder::Second), (0.4, ImmobilityOrder::Unstable)] {
         let fingers = vec![finger(0.0, 0.3), finger(0.0, -0.3)];
         let found = mated(&pair(fingers, vec![plate()], &[Dof::Pitch], cor));
         assert_eq!((found.order, found.free), (order, 1), "{found:?}");
@@ -77,9 +77,12 @@ fn a_wedge_between_two_fingers_stands_below_four_radii() {
     let (below, radius) = (a / beta.tan(), a / (2.0 * beta).sin());
     let wedge = prism(&[[0.0, 1.0 + below], [beta.tan(), below], [-beta.tan(), below]]);
     let spike = |x: f64| prism(&[[x, 1.0], [x + 0.02, 0.0], [x - 0.02, 0.0]]);
-    for (share, order) in
-        [(2.0, Order::Second), (3.5, Order::Second), (4.0, Order::Neutral), (5.0, Order::Unstable)]
-    {
+    for (share, order) in [
+        (2.0, ImmobilityOrder::Second),
+        (3.5, ImmobilityOrder::Second),
+        (4.0, ImmobilityOrder::Neutral),
+        (5.0, ImmobilityOrder::Unstable),
+    ] {
         let weight = share * radius;
         let pair =
             pair(vec![spike(a), spike(-a)], vec![wedge.clone()], &[Dof::X, Dof::Pitch], below - weight);

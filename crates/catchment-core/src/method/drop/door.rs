@@ -8,8 +8,8 @@ use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::cost::POSE_BYTES;
 use crate::method::descent::End;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
-use crate::method::registry::Entry;
+use crate::method::door::{Cost, DecideError, DecisionMethod, Finished, Info, MethodOutput, PoseMethod};
+use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -21,9 +21,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<DropSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<DropSettings>(&INFO);
 
-impl Decide for DropSettings {
+impl DecisionMethod for DropSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -48,17 +48,17 @@ impl Decide for DropSettings {
         Cost { what: "the outcome of every cell", bytes_per_cell: POSE_BYTES, seconds: cells * POSE_SECONDS }
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let (acceptance, _) = run(problem.pair(), domain.clone(), self, exec)?;
-        Ok(Decided::plain(acceptance, Decide::settings(self)))
+        Ok(MethodOutput::plain(acceptance, DecisionMethod::settings(self)))
     }
 
-    fn follows(&self) -> Option<&dyn Follow> {
+    fn follows(&self) -> Option<&dyn PoseMethod> {
         Some(self)
     }
 }
 
-impl Follow for DropSettings {
+impl PoseMethod for DropSettings {
     fn follow(
         &self,
         problem: &Problem,

@@ -9,7 +9,7 @@
 //! velocity that has the momentum `M·u`. Contacts see `M + Δt·C` too: if damping dominates, they push in the
 //! metric of friction, for any inertia, and every step is stable.
 
-use super::settings::{Body, DropSettings};
+use super::settings::{DropSettings, MassProperties};
 use crate::connector::{Half, Surface};
 use crate::design::Alignment;
 use crate::pose::face_from_cor;
@@ -30,13 +30,13 @@ impl Mass {
     /// What the settings say of the moving half, given from the COR.
     pub(super) fn of(moving: &Half, settings: &DropSettings, alignment: &Alignment) -> Self {
         let mass = match settings.body {
-            Body::Given { mass, gyration, center } => {
+            MassProperties::Given { mass, gyration, center } => {
                 let radius = gyration.unwrap_or(alignment.rotation_length);
                 let face = face_from_cor(&DMat3::IDENTITY, alignment.center_of_rotation);
                 let center = center.map_or(DVec3::ZERO, |center| face + DVec3::from_array(center));
                 Self { weight: mass, center, inertia: isotropic(mass * radius * radius) }
             }
-            Body::Solid { density } => Self::solid(&moving.surfaces, density),
+            MassProperties::Solid { density } => Self::solid(&moving.surfaces, density),
         };
         Self { inertia: mass.inertia * settings.inertia_factor, ..mass }
     }

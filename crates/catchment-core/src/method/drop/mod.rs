@@ -40,8 +40,8 @@ mod settings;
 mod tests;
 mod turning;
 
-pub use path::{Moment, Path};
-pub use settings::{Body, DropSettings, Launch, PRESETS, Preset, Push, SettingError};
+pub use path::{DropMoment, Path};
+pub use settings::{DropSettings, Launch, MassProperties, PRESETS, Preset, Push, SettingError};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::advice::Advice;

@@ -19,14 +19,14 @@ use glam::{DMat3, DVec3};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// From where it was let go to its end; empty where the halves pass each other by.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<DropMoment>,
     /// How it ended.
     pub outcome: Outcome,
 }
 
 /// One moment of a trial.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moment {
+pub struct DropMoment {
     /// Since it was let go, in s.
     pub time: f64,
     /// Where it is.
@@ -46,10 +46,10 @@ const STEP: f64 = 0.01;
 
 /// Follows one trial and keeps its way.
 pub(super) fn trace(engine: &Engine<'_>, error: &PoseError, exec: &Exec) -> Result<Path, Cancelled> {
-    let mut moments: Vec<Moment> = Vec::new();
+    let mut moments: Vec<DropMoment> = Vec::new();
     let mut travelled = 0.0;
     let mut before: Option<(DVec3, DMat3)> = None;
-    let mut latest: Option<Moment> = None;
+    let mut latest: Option<DropMoment> = None;
     let mut touched = false;
     let mut seen = |step: usize, fall: &Fall<'_>| {
         let (cor, rotation) = fall.place();
@@ -61,7 +61,7 @@ pub(super) fn trace(engine: &Engine<'_>, error: &PoseError, exec: &Exec) -> Resu
         let changes = touches.is_empty() == touched;
         touched = !touches.is_empty();
         let error = engine.end(Outcome::Undecided, cor, &rotation).error;
-        let moment = Moment {
+        let moment = DropMoment {
             time: engine.time(step),
             waypoint: Waypoint { error, height: cor.z, travelled, touches },
         };

@@ -13,7 +13,7 @@ pub struct DropSettings {
     /// Force that drives the moving half along the approach.
     pub push: Push,
     /// Mass and inertia of the moving half.
-    pub body: Body,
+    pub body: MassProperties,
     /// Damping by the surroundings per velocity of the COR and per mass, in 1/s: the force −mass·`damping`·v.
     pub damping: f64,
     /// Rotational damping, in 1/s: the torque −mass·`angular_damping`·ρ²·ω, with the characteristic length ρ
@@ -80,7 +80,7 @@ pub struct Launch {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
-pub enum Body {
+pub enum MassProperties {
     /// Given.
     Given {
         /// Mass in kg.
@@ -105,7 +105,7 @@ impl Default for DropSettings {
     fn default() -> Self {
         Self {
             push: Push::Force(5000.0),
-            body: Body::Given { mass: 1.0, gyration: None, center: None },
+            body: MassProperties::Given { mass: 1.0, gyration: None, center: None },
             damping: 1000.0,
             angular_damping: 1000.0,
             friction: 0.0,
@@ -178,7 +178,7 @@ impl DropSettings {
         let rate = DECAY / (1.0 - DECAY) / default.timestep;
         Self {
             push: Push::Gravity(GRAVITY / WIDTH),
-            body: Body::Solid { density: 1.0 },
+            body: MassProperties::Solid { density: 1.0 },
             damping: rate,
             angular_damping: rate,
             ground: Some(0.0),
@@ -228,12 +228,12 @@ impl DropSettings {
             Push::Gravity(gravity) => positive("gravity", gravity)?,
         }
         match self.body {
-            Body::Given { mass, gyration, center } => {
+            MassProperties::Given { mass, gyration, center } => {
                 positive("mass", mass)?;
                 gyration.map_or(Ok(()), |gyration| positive("gyration", gyration))?;
                 center.into_iter().flatten().try_for_each(|part| finite("center", part))?;
             }
-            Body::Solid { density } => positive("density", density)?,
+            MassProperties::Solid { density } => positive("density", density)?,
         }
         for (name, value) in [
             ("damping", self.damping),

@@ -110,7 +110,7 @@ fn hinges_stay_hinges() {
 fn a_solid_falls_by_gravity_like_a_given_mass() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
     let settings = DropSettings {
-        body: Body::Solid { density: 2.0 },
+        body: MassProperties::Solid { density: 2.0 },
         push: Push::Gravity(5000.0),
         ..DropSettings::default()
     };
@@ -176,7 +176,7 @@ fn what_cannot_run_is_refused() {
             launch: Launch { drift: [0.0, f64::NAN], ..Launch::default() },
             ..DropSettings::default()
         },
-        DropSettings { body: Body::Solid { density: -1.0 }, ..DropSettings::default() },
+        DropSettings { body: MassProperties::Solid { density: -1.0 }, ..DropSettings::default() },
     ] {
         assert!(matches!(refused(&settings, &Exec::new()), DropError::Setting(_)));
     }
@@ -191,7 +191,7 @@ fn what_cannot_run_is_refused() {
 fn settings_survive_json_and_refuse_what_they_do_not_know() {
     let settings = DropSettings {
         push: Push::Gravity(9.81),
-        body: Body::Solid { density: 3.0 },
+        body: MassProperties::Solid { density: 3.0 },
         ..DropSettings::default()
     };
     let text = serde_json::to_string(&settings).unwrap();
@@ -280,7 +280,7 @@ fn a_push_beside_the_centre_of_mass_turns_a_half() {
         let center = Some([0.2, 0.0, -0.5]);
         let settings = DropSettings {
             push,
-            body: Body::Given { mass: 2.0, gyration: Some(0.4), center },
+            body: MassProperties::Given { mass: 2.0, gyration: Some(0.4), center },
             damping: 0.0,
             angular_damping: 0.0,
             drop_height: 0.5,

@@ -1,12 +1,12 @@
 //! Flooding as a method, by either rule: two lines of the registry, one implementation.
 
-use super::{FloodError, FloodSettings, Rule, bytes, docks, flood};
+use super::{DrainageRule, FloodError, FloodSettings, bytes, docks, flood};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
-use crate::method::registry::{Entry, Method};
+use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
+use crate::method::registry::{Method, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -24,24 +24,24 @@ const STEEPEST: Info = Info {
     departs: true,
 };
 
-/// The line of [`Rule::Lowest`] in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<FloodSettings>(&LOWEST);
+/// The line of [`DrainageRule::Lowest`] in the registry.
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<FloodSettings>(&LOWEST);
 
-/// The line of [`Rule::Steepest`], which is the rule where none is named.
-pub(in crate::method) const ENTRY_STEEPEST: Entry = Entry::by(&STEEPEST, |value| {
+/// The line of [`DrainageRule::Steepest`], which is the rule where none is named.
+pub(in crate::method) const ENTRY_STEEPEST: RegistryEntry = RegistryEntry::by(&STEEPEST, |value| {
     let named = value.get("rule").is_some();
     let settings: FloodSettings = serde_json::from_value(value)?;
-    Ok(Method::new(if named { settings } else { FloodSettings { rule: Rule::Steepest, ..settings } }))
+    Ok(Method::new(if named { settings } else { FloodSettings { rule: DrainageRule::Steepest, ..settings } }))
 });
 
 /// Core-seconds per cell.
 const CELL_SECONDS: f64 = 1e-7;
 
-impl Decide for FloodSettings {
+impl DecisionMethod for FloodSettings {
     fn info(&self) -> &'static Info {
         match self.rule {
-            Rule::Lowest => &LOWEST,
-            Rule::Steepest => &STEEPEST,
+            DrainageRule::Lowest => &LOWEST,
+            DrainageRule::Steepest => &STEEPEST,
         }
     }
 
@@ -71,7 +71,7 @@ impl Decide for FloodSettings {
         &["landscape", "basins", "watersheds"]
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let landscape = Landscape::compute(problem.pair(), grid_of(self.info(), domain)?, exec)
             .map_err(FloodError::from)?;
         let flooding =
@@ -83,7 +83,7 @@ impl Decide for FloodSettings {
             watersheds: Some(flooding.watersheds),
             ..ByProducts::default()
         };
-        Ok(Decided { by_products, ..Decided::plain(flooding.acceptance, used.settings()) })
+        Ok(MethodOutput { by_products, ..MethodOutput::plain(flooding.acceptance, used.settings()) })
     }
 }
 

@@ -15,7 +15,7 @@
 use super::meyer::neighbourhood::Neighbourhood;
 use super::steepest::Metric;
 use super::sweep::{Slabs, level, level_of, number_of};
-use super::{FloodError, Rule};
+use super::{DrainageRule, FloodError};
 use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
@@ -52,7 +52,7 @@ const FLATS_PER_CHECK: usize = 1 << 12;
 pub(super) fn drain(
     shape: &[usize],
     heights: &[f32],
-    rule: Rule,
+    rule: DrainageRule,
     metric: &Metric,
     exec: &Exec,
 ) -> Result<Basins, FloodError> {
@@ -61,8 +61,8 @@ pub(super) fn drain(
     let mut ways: Vec<AtomicU32> = Vec::with_capacity(heights.len());
     ways.resize_with(heights.len(), AtomicU32::default);
     match rule {
-        Rule::Lowest => exec.install(|| lowest(&slabs, heights, &mut ways, exec))?,
-        Rule::Steepest => exec.install(|| metric.steepest(heights, &mut ways, exec))?,
+        DrainageRule::Lowest => exec.install(|| lowest(&slabs, heights, &mut ways, exec))?,
+        DrainageRule::Steepest => exec.install(|| metric.steepest(heights, &mut ways, exec))?,
     }
     let minima = settle(heights, &Neighbourhood::new(shape), &mut ways, exec)?;
     let outside = minima.iter().position(|cell| *ways[*cell as usize].get_mut() == OUTSIDE);

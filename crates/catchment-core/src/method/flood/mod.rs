@@ -67,15 +67,15 @@ use crate::method::descent;
 use drain::LABEL_LIMIT;
 use serde::{Deserialize, Serialize};
 use steepest::Metric;
-pub use tolerance::{Choice, Reason};
-pub use tree::{Link, MergeTree, Minimum, Step};
-pub use watersheds::{Counts, DAM, Watersheds};
+pub use tolerance::{Choice, ToleranceReason};
+pub use tree::{Link, MergeTree, Minimum, ToleranceStep};
+pub use watersheds::{DAM, WatershedCounts, Watersheds};
 
 /// Rule that selects the cell to which a cell drains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Rule {
+pub enum DrainageRule {
     /// The lowest of its 3ⁿ − 1 neighbours, the first in memory if several are equal. Distance has no effect.
     #[default]
     Lowest,
@@ -84,7 +84,7 @@ pub enum Rule {
     Steepest,
 }
 
-impl Rule {
+impl DrainageRule {
     /// The name of the method that floods by this rule.
     pub const fn method(self) -> &'static str {
         match self {
@@ -103,7 +103,7 @@ pub struct FloodSettings {
     /// depths.
     pub depth_tolerance: Option<f64>,
     /// Rule that selects the cell to which a cell drains.
-    pub rule: Rule,
+    pub rule: DrainageRule,
 }
 
 impl FloodSettings {
@@ -190,7 +190,7 @@ pub struct Hierarchy {
     /// The tolerance that was used, and why.
     pub tolerance: Choice,
     /// Accepted cells over the tolerance; empty if no cell holds the mated pose.
-    pub staircase: Vec<Step>,
+    pub staircase: Vec<ToleranceStep>,
 }
 
 /// Heights of `pair` over `grid`, flooded.
@@ -242,7 +242,7 @@ pub fn flood(
     let mated = targets.iter().copied().reduce(lower);
     let staircase = mated.map_or_else(Vec::new, |cell| tree.staircase(labels[cell], heights[cell].into()));
     let tolerance = match settings.depth_tolerance {
-        Some(depth) => Choice { depth, reason: Reason::Given },
+        Some(depth) => Choice { depth, reason: ToleranceReason::Given },
         None => tolerance::choose(&tree, &staircase, tolerance::height_step(&grid.shape(), heights)),
     };
     let (mut acceptance, basins) =
@@ -257,7 +257,7 @@ fn divide(
     shape: &[usize],
     heights: &[f32],
     targets: &[usize],
-    rule: Rule,
+    rule: DrainageRule,
     metric: &Metric,
     exec: &Exec,
 ) -> Result<(Vec<u32>, MergeTree), FloodError> {

@@ -29,7 +29,7 @@ fn fast(shape: &[usize], heights: &[f32], threads: usize) -> (Vec<u32>, MergeTre
     let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
     let metric = Metric { grid: &Grid { axes: Vec::new() }, alignment: &alignment };
     let exec = Exec::new().with_threads(threads).unwrap();
-    divide(shape, heights, &[], Rule::Lowest, &metric, &exec).unwrap()
+    divide(shape, heights, &[], DrainageRule::Lowest, &metric, &exec).unwrap()
 }
 
 proptest! {
@@ -265,7 +265,7 @@ fn the_bias_of_flooding_is_what_the_documentation_says() {
         let mut pair = pair(family, aspect_ratio, cor, 1);
         pair.alignment.rotation_length = 1.0;
         let grid = Grid::over(&pair.alignment, |_| 100);
-        [Rule::Lowest, Rule::Steepest].map(|rule| {
+        [DrainageRule::Lowest, DrainageRule::Steepest].map(|rule| {
             let settings = FloodSettings { rule, ..FloodSettings::default() };
             let acceptance = accept(&pair, &grid, &settings, &Exec::new()).unwrap();
             assert!(!acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
@@ -361,7 +361,7 @@ fn threads_do_not_change_a_bit() {
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
         let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
-        [Rule::Lowest, Rule::Steepest].map(|rule| {
+        [DrainageRule::Lowest, DrainageRule::Steepest].map(|rule| {
             let settings = FloodSettings { rule, ..FloodSettings::default() };
             flood(&landscape, &pair.alignment, &|_| true, &settings, &exec).unwrap()
         })
@@ -378,7 +378,7 @@ fn field(cells: usize, height: impl Fn(f32, f32) -> f32) -> (Landscape, Alignmen
 }
 
 /// First and merged watersheds by both kinds of flooding at a tolerance.
-fn counted(field: &(Landscape, Alignment), tolerance: f64) -> [Counts; 2] {
+fn counted(field: &(Landscape, Alignment), tolerance: f64) -> [WatershedCounts; 2] {
     let (landscape, alignment) = field;
     let docks = |_: usize| true;
     let exec = Exec::new();
@@ -391,7 +391,7 @@ fn counted(field: &(Landscape, Alignment), tolerance: f64) -> [Counts; 2] {
 #[test]
 fn a_bowl_is_one_watershed_and_nothing_is_merged() {
     let bowl = field(41, |u, v| (u - 20.0).powi(2) + 0.5 * (v - 20.0).powi(2));
-    let one = Counts { first: 1, merged: 1, dams: 0, moved: 0 };
+    let one = WatershedCounts { first: 1, merged: 1, dams: 0, moved: 0 };
     for tolerance in [0.0, 0.1, 1e3] {
         assert_eq!(counted(&bowl, tolerance), [one; 2]);
     }

@@ -23,7 +23,7 @@
 //! reported. *Not guaranteed:* on a coarse grid δ reaches the depth of true jams; then the gap between them
 //! counts.
 
-use super::tree::{MergeTree, Step};
+use super::tree::{MergeTree, ToleranceStep};
 use serde::{Deserialize, Serialize};
 
 /// The tolerance that was used, and the reason for it.
@@ -33,14 +33,14 @@ pub struct Choice {
     /// Basins shallower than this were merged, in D.
     pub depth: f64,
     /// Reason for this tolerance.
-    pub reason: Reason,
+    pub reason: ToleranceReason,
 }
 
 /// Reason for a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Reason {
+pub enum ToleranceReason {
     /// The caller set it.
     Given,
     /// It lies in the widest gap between the depths.
@@ -56,8 +56,8 @@ pub enum Reason {
 const NOISE: f64 = 1.0 / 8.0;
 
 /// The tolerance in the widest gap. `staircase` is that of the mated basin, `height_step` as in
-/// [`Reason::WidestGap`].
-pub(super) fn choose(tree: &MergeTree, staircase: &[Step], height_step: f64) -> Choice {
+/// [`ToleranceReason::WidestGap`].
+pub(super) fn choose(tree: &MergeTree, staircase: &[ToleranceStep], height_step: f64) -> Choice {
     // Where the mated basin holds first, and where it runs into a lower one.
     let first = staircase.iter().position(|step| step.cells > 0).unwrap_or(0);
     let holds = staircase.get(first).map_or(0.0, |step| step.above);
@@ -82,7 +82,7 @@ pub(super) fn choose(tree: &MergeTree, staircase: &[Step], height_step: f64) -> 
     }
     let [low, high] = best;
     let depth = if low > 0.0 { (low * high).sqrt() } else { 0.5 * high };
-    Choice { depth, reason: Reason::WidestGap { between: best, height_step } }
+    Choice { depth, reason: ToleranceReason::WidestGap { between: best, height_step } }
 }
 
 /// How many cells are looked at for the height step: enough for its first two digits.
@@ -120,14 +120,15 @@ mod tests {
         let link = |depth: &f64| Link { basins: [0, 0], height: 0.0, depth: *depth };
         let links = depths.iter().map(link).collect();
         let tree = MergeTree { minima: Vec::new(), links, joined: Vec::new(), outside: None };
-        let steps: Vec<Step> = staircase.iter().map(|&(above, cells)| Step { above, cells }).collect();
+        let steps: Vec<ToleranceStep> =
+            staircase.iter().map(|&(above, cells)| ToleranceStep { above, cells }).collect();
         choose(&tree, &steps, height_step)
     }
 
     fn gap(depths: &[f64], staircase: &[(f64, usize)], height_step: f64) -> [f64; 2] {
         match choice(depths, staircase, height_step).reason {
-            Reason::WidestGap { between, .. } => between,
-            Reason::Given => [f64::NAN; 2],
+            ToleranceReason::WidestGap { between, .. } => between,
+            ToleranceReason::Given => [f64::NAN; 2],
         }
     }
 

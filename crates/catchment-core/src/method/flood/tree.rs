@@ -111,7 +111,7 @@ impl MergeTree {
     ///
     /// The mated basin grows from step to step until it runs into a lower one by more than the tolerance explains:
     /// then nothing is accepted.
-    pub fn staircase(&self, target: u32, mated: f64) -> Vec<Step> {
+    pub fn staircase(&self, target: u32, mated: f64) -> Vec<ToleranceStep> {
         let mut sets = joined_sets(&self.minima, &self.joined);
         let mut cells: Vec<usize> = self.minima.iter().map(|m| m.cells).collect();
         for basin in &self.joined {
@@ -120,8 +120,8 @@ impl MergeTree {
                 cells[leader] += std::mem::take(&mut cells[*basin as usize]);
             }
         }
-        let mut steps: Vec<Step> = Vec::new();
-        let mut push = |step: Step| {
+        let mut steps: Vec<ToleranceStep> = Vec::new();
+        let mut push = |step: ToleranceStep| {
             while steps.last().is_some_and(|last| last.above >= step.above) {
                 steps.pop();
             }
@@ -133,10 +133,10 @@ impl MergeTree {
         let mut at = |above: f64, basin: u32, cells: usize| {
             let below = mated - self.minima[basin as usize].height;
             if !explains(above, below) {
-                push(Step { above, cells: 0 });
+                push(ToleranceStep { above, cells: 0 });
             }
             if below.is_finite() {
-                push(Step { above: above.max(below), cells });
+                push(ToleranceStep { above: above.max(below), cells });
             }
         };
         let first = sets.find(target);
@@ -154,7 +154,7 @@ impl MergeTree {
 
 /// A step of the staircase of accepted cells over the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct ToleranceStep {
     /// Tolerances above this, in D, …
     pub above: f64,
     /// … accept so many cells.

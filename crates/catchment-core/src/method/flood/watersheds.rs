@@ -28,7 +28,7 @@ pub struct Watersheds {
 /// Numbers of watersheds, without the region of cells without contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Counts {
+pub struct WatershedCounts {
     /// Before merging.
     pub first: usize,
     /// After merging.
@@ -47,7 +47,7 @@ impl Watersheds {
     }
 
     /// How many there are.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> WatershedCounts {
         let mut cells = vec![0usize; self.into.len()];
         let mut dams = 0;
         for label in &self.first {
@@ -66,6 +66,6 @@ impl Watersheds {
             moved += if last == number { 0 } else { cells };
         }
         let merged = (0..kept.len()).filter(|number| kept[*number] && !is_outside(*number)).count();
-        Counts { first, merged, dams, moved }
+        WatershedCounts { first, merged, dams, moved }
     }
 }

@@ -6,8 +6,8 @@ use crate::contact::Pair;
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Info, NotApplicable, grid_of};
-use crate::method::registry::Entry;
+use crate::method::door::{Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable, grid_of};
+use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Kinematic>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<Kinematic>(&INFO);
 
 /// The bounds and the stepping of planar faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ pub(in crate::method) const ENTRY: Entry = Entry::of::<Kinematic>(&INFO);
 #[serde(deny_unknown_fields)]
 pub(in crate::method) struct Kinematic {}
 
-impl Decide for Kinematic {
+impl DecisionMethod for Kinematic {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -62,9 +62,9 @@ impl Decide for Kinematic {
         }
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let acceptance = accept(problem.design(), grid_of(&INFO, domain)?, exec)?;
-        Ok(Decided::plain(acceptance, self.settings_for(problem)))
+        Ok(MethodOutput::plain(acceptance, self.settings_for(problem)))
     }
 }
 

@@ -30,7 +30,7 @@
 //! Not promised: any later contact, or that the first contact is unique (figure 3.6 has two).
 
 use super::stepping::{self, Faces, Halt};
-use super::{Face, KinematicSettings, Unfit};
+use super::{KinematicSettings, PlanarFace, Unfit};
 use crate::acceptance::Outcome;
 use crate::connector::{Half, Surface};
 use crate::contact::Contact;
@@ -47,14 +47,14 @@ const SAME: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Body {
+pub enum LeverBody {
     /// The fixed half.
     Base,
     /// The moving half.
     Moving,
 }
 
-impl Body {
+impl LeverBody {
     /// For a person.
     pub const fn name(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl Body {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lever {
     /// Whose corner it is; the edge is the other's.
-    pub corner: Body,
+    pub corner: LeverBody,
     /// Rotation point of the corner's body.
     pub corner_pivot: DVec2,
     /// Rotation point of the edge's body.
@@ -118,9 +118,15 @@ impl Lever {
     }
 
     /// Of a contact; `facings` are the approach axes of both bodies, from the rotation point to the face.
-    fn new(corner: Body, contact: DVec2, outward: DVec2, pivots: [DVec2; 2], facings: [DVec2; 2]) -> Self {
+    fn new(
+        corner: LeverBody,
+        contact: DVec2,
+        outward: DVec2,
+        pivots: [DVec2; 2],
+        facings: [DVec2; 2],
+    ) -> Self {
         let [base, moving] = [0, 1];
-        let (own, other) = if corner == Body::Moving { (moving, base) } else { (base, moving) };
+        let (own, other) = if corner == LeverBody::Moving { (moving, base) } else { (base, moving) };
         let (corner_pivot, edge_pivot) = (pivots[own], pivots[other]);
         let lever = contact - corner_pivot;
         // Turns from the normal, to the vertical of its body, to that of the corner's body, to the lever; all point into the edge's body.
@@ -148,7 +154,7 @@ impl Lever {
 
 /// What the kinematic method sees of one pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Start {
+pub struct LeverPose {
     /// Its settings.
     pub settings: KinematicSettings,
     /// The pose error.
@@ -163,7 +169,7 @@ pub struct Start {
     pub halt: Option<Halt>,
 }
 
-impl Start {
+impl LeverPose {
     /// Of a pose of a problem.
     ///
     /// # Errors
@@ -190,18 +196,18 @@ impl Start {
                 .filter_map(|contact| {
                     let corner = corner_of(&pair.fixed, &pair.moving, &pose.rotation, position, contact)?;
                     let normal = flat(contact.normal);
-                    let outward = if corner == Body::Moving { normal } else { -normal };
+                    let outward = if corner == LeverBody::Moving { normal } else { -normal };
                     Some(Lever::new(corner, flat(contact.point), outward, pivots, facings))
                 })
                 .collect();
             levers.sort_by(|a, b| {
-                let key = |lever: &Lever| (lever.corner != Body::Moving, lever.contact.x);
+                let key = |lever: &Lever| (lever.corner != LeverBody::Moving, lever.contact.x);
                 key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1))
             });
             levers.first().copied()
         });
         let (x0, theta0) = (pose.lateral.x, -error.pitch);
-        let halt = (settings.face == Face::XFace).then(|| {
+        let halt = (settings.face == PlanarFace::XFace).then(|| {
             Faces::new(settings.aspect_ratio, settings.rotation_point).follow(x0, theta0, stepping::STEP)
         });
         let outcome = settings.starts().outcome(x0, theta0);
@@ -216,7 +222,7 @@ fn corner_of(
     rotation: &DMat3,
     position: DVec3,
     contact: &Contact,
-) -> Option<Body> {
+) -> Option<LeverBody> {
     if contact.normal.z <= SAME || contact.normal.y.abs() > SAME {
         return None;
     }
@@ -227,14 +233,14 @@ fn corner_of(
         moving.surfaces.iter().any(|s| has_edge(s, seen, back * -contact.normal)),
     ];
     match edges {
-        [true, false] => Some(Body::Moving),
-        [false, true] => Some(Body::Base),
+        [true, false] => Some(LeverBody::Moving),
+        [false, true] => Some(LeverBody::Base),
         [false, false] => None,
         // Flush: the corner that ends the contact.
         [true, true] => {
             let at = |p: &DVec3| (p.x - seen.x).abs() <= SAME && (p.z - seen.z).abs() <= SAME;
             let ends_here = moving.surfaces.iter().flat_map(|s| &s.vertices).any(at);
-            Some(if ends_here { Body::Moving } else { Body::Base })
+            Some(if ends_here { LeverBody::Moving } else { LeverBody::Base })
         }
     }
 }
@@ -300,7 +306,7 @@ mod tests {
         fn the_geometry_is_that_of_the_text(
             family in family(), h in 0.1f64..3.0, r in 0.0f64..6.0, x in -0.9f64..0.9, pitch in -1.2f64..1.2,
         ) {
-            let start = Start::of(&problem(family, h, r), &pose(x, pitch)).unwrap();
+            let start = LeverPose::of(&problem(family, h, r), &pose(x, pitch)).unwrap();
             let Some(lever) = start.lever else { return Ok(()) };
             let Lever { length: l, distance: d, along: q1, theta_1, theta_2, .. } = lever;
             let apart = lever.corner_pivot - lever.edge_pivot;
@@ -308,14 +314,14 @@ mod tests {
             prop_assert!((lever.lateral().dot(apart) - lateral).abs() < 1e-9);
             prop_assert!((lever.normal.dot(apart) - (d + l * theta_2.cos())).abs() < 1e-9);
             // θ₂ lacks of β_p + α_e what the halves are turned apart.
-            let corner_turns = if lever.corner == Body::Moving { 1.0 } else { -1.0 };
+            let corner_turns = if lever.corner == LeverBody::Moving { 1.0 } else { -1.0 };
             let lacks = wrapped(lever.aligned() - theta_2 - lever.sense * corner_turns * pitch);
             prop_assert!(lacks.abs() < 1e-9, "{lacks}: {lever:?}");
             prop_assert!(lever.aligned() >= 0.0);
             // The verticals are the axes of the bodies.
             let axis = DVec2::new(pitch.sin(), pitch.cos());
             let (base, moving) = (DVec2::Y, -axis);
-            let [own, other] = if lever.corner == Body::Moving { [moving, base] } else { [base, moving] };
+            let [own, other] = if lever.corner == LeverBody::Moving { [moving, base] } else { [base, moving] };
             prop_assert!(lever.corner_vertical().distance(own) < 1e-9);
             prop_assert!(lever.edge_vertical().distance(other) < 1e-9);
         }
@@ -325,7 +331,7 @@ mod tests {
         fn an_x_face_is_stepped_from_the_same_contact(
             h in 0.1f64..3.0, r in 0.0f64..6.0, x in -0.9f64..0.9, pitch in -1.2f64..1.2,
         ) {
-            let start = Start::of(&problem(Family::XFace, h, r), &pose(x, pitch)).unwrap();
+            let start = LeverPose::of(&problem(Family::XFace, h, r), &pose(x, pitch)).unwrap();
             let x0 = x + r / 2.0 * pitch.sin();
             let stepped = Faces::new(h, r).first(x0, -pitch);
             prop_assert_eq!(start.height.is_some(), stepped.is_some());
@@ -342,15 +348,15 @@ mod tests {
     #[test]
     fn aligned_faces_meet_the_alignment_condition() {
         for (x, h, r) in [(0.2, 0.5, 2.0), (-0.3, 1.0, 4.0)] {
-            let start = Start::of(&problem(Family::VFace, h, r), &pose(x, 0.0)).unwrap();
+            let start = LeverPose::of(&problem(Family::VFace, h, r), &pose(x, 0.0)).unwrap();
             let lever = start.lever.unwrap();
-            assert_eq!((lever.corner, start.outcome), (Body::Moving, Outcome::Aligned));
+            assert_eq!((lever.corner, start.outcome), (LeverBody::Moving, Outcome::Aligned));
             assert!((lever.theta_2 - lever.aligned()).abs() < 1e-12);
             assert!(lever.beta_p.abs() < 1e-12 && (lever.alpha_e - f64::atan(2.0 * h)).abs() < 1e-12);
             assert!((lever.length - f64::midpoint(r, h)).abs() < 1e-12);
         }
         // The X-Face's tip on the opposite ramp.
-        let start = Start::of(&problem(Family::XFace, 0.5, 2.0), &pose(0.4, 0.0)).unwrap();
+        let start = LeverPose::of(&problem(Family::XFace, 0.5, 2.0), &pose(0.4, 0.0)).unwrap();
         let aligned = f64::atan(1.0 / 2.5) + f64::atan(0.5);
         assert!((start.lever.unwrap().aligned() - aligned).abs() < 1e-12, "{start:?}");
         assert_eq!(start.halt, Some(Halt::Success));
@@ -359,10 +365,10 @@ mod tests {
     #[test]
     fn what_it_does_not_know_is_refused() {
         let v = problem(Family::VFace, 0.5, 1.0);
-        assert_eq!(Start::of(&v, &PoseError { yaw: 0.1, ..pose(0.0, 0.0) }), Err(Unfit::Pose));
-        let missed = Start::of(&v, &pose(3.0, 0.1)).unwrap();
+        assert_eq!(LeverPose::of(&v, &PoseError { yaw: 0.1, ..pose(0.0, 0.0) }), Err(Unfit::Pose));
+        let missed = LeverPose::of(&v, &pose(3.0, 0.1)).unwrap();
         assert_eq!((missed.height, missed.lever, missed.outcome), (None, None, Outcome::Missed));
-        let wide = Start::of(&problem(Family::XFace, 0.5, 1.0), &pose(0.0, FRAC_PI_2)).unwrap();
+        let wide = LeverPose::of(&problem(Family::XFace, 0.5, 1.0), &pose(0.0, FRAC_PI_2)).unwrap();
         assert!(wide.outcome != Outcome::Aligned);
     }
 }

@@ -36,7 +36,7 @@ pub(super) mod door;
 mod lever;
 pub mod stepping;
 
-pub use lever::{Body, Lever, Start};
+pub use lever::{Lever, LeverBody, LeverPose};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
@@ -53,7 +53,7 @@ use stepping::{Faces, Halt};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Face {
+pub enum PlanarFace {
     /// V notch and tip.
     VFace,
     /// Sawtooth of three edges.
@@ -67,7 +67,7 @@ pub enum Face {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct KinematicSettings {
     /// The planar face.
-    pub face: Face,
+    pub face: PlanarFace,
     /// H/D, H from the lowest to the highest point of the face.
     pub aspect_ratio: f64,
     /// Distance of the rotation point behind mid height, in half-widths.
@@ -128,9 +128,9 @@ impl KinematicSettings {
     pub fn of(design: &Design) -> Result<Self, Unfit> {
         let ConnectorSpec::Family(spec) = &design.connector else { return Err(Unfit::Face) };
         let face = match spec.family() {
-            Family::VFace => Face::VFace,
-            Family::SFace => Face::SFace,
-            Family::XFace => Face::XFace,
+            Family::VFace => PlanarFace::VFace,
+            Family::SFace => PlanarFace::SFace,
+            Family::XFace => PlanarFace::XFace,
             _ => return Err(Unfit::Face),
         };
         let alignment = &design.alignment;
@@ -161,7 +161,8 @@ impl KinematicSettings {
 
     /// What becomes of starts.
     fn starts(&self) -> Starts<'_> {
-        let faces = (self.face == Face::XFace).then(|| Faces::new(self.aspect_ratio, self.rotation_point));
+        let faces =
+            (self.face == PlanarFace::XFace).then(|| Faces::new(self.aspect_ratio, self.rotation_point));
         Starts { settings: self, faces }
     }
 
@@ -203,8 +204,8 @@ impl Starts<'_> {
         let tip = x0 + lever * theta0.sin();
         let (tip, reach, outer_slope) = match face {
             // The base minimum that the tip must find sits D/6 off the axis, and swings with the body.
-            Face::SFace => (tip + (theta0.cos() - 1.0) / 6.0, 1.0 / 3.0, 1.5 * h),
-            Face::VFace | Face::XFace => (tip, 0.5, 2.0 * h),
+            PlanarFace::SFace => (tip + (theta0.cos() - 1.0) / 6.0, 1.0 / 3.0, 1.5 * h),
+            PlanarFace::VFace | PlanarFace::XFace => (tip, 0.5, 2.0 * h),
         };
         if x0.abs() >= rotation_point + h / 2.0 {
             Outcome::Missed
@@ -233,10 +234,10 @@ pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, K
     let outcomes: Vec<Outcome> =
         exec.install(|| (0..grid.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
     let text = match settings.face {
-        Face::VFace | Face::SFace => {
+        PlanarFace::VFace | PlanarFace::SFace => {
             "the kinematic bounds are the best case: outside them a start fails, inside it may"
         }
-        Face::XFace => {
+        PlanarFace::XFace => {
             "the kinematic stepping knows one contact at a time, both halves pivot, and their x is kept"
         }
     };
@@ -251,7 +252,7 @@ mod tests {
 
     #[test]
     fn without_rotation_the_bounds_are_nilssons() {
-        for (face, bound) in [(Face::VFace, 0.5), (Face::SFace, 1.0 / 3.0)] {
+        for (face, bound) in [(PlanarFace::VFace, 0.5), (PlanarFace::SFace, 1.0 / 3.0)] {
             let settings = KinematicSettings { face, aspect_ratio: 0.5, rotation_point: 1.0 };
             for side in [-1.0, 1.0] {
                 assert!(settings.succeeds(side * (bound - 1e-9), 0.0));
@@ -262,18 +263,18 @@ mod tests {
 
     #[test]
     fn the_bound_itself_fails() {
-        let settings = KinematicSettings { face: Face::VFace, aspect_ratio: 0.5, rotation_point: 1.0 };
+        let settings = KinematicSettings { face: PlanarFace::VFace, aspect_ratio: 0.5, rotation_point: 1.0 };
         assert!(!settings.succeeds(0.5, 0.0));
     }
 
     #[test]
     fn a_centred_tip_slides_home_up_to_the_outer_edge() {
-        for (face, slope) in [(Face::VFace, 2.0), (Face::SFace, 1.5)] {
+        for (face, slope) in [(PlanarFace::VFace, 2.0), (PlanarFace::SFace, 1.5)] {
             for h in [0.1, 0.5, 2.0] {
                 let settings = KinematicSettings { face, aspect_ratio: h, rotation_point: 2.0 };
                 let limit = FRAC_PI_2 - f64::atan(slope * h);
                 let centred = |theta: f64| {
-                    let swing = if face == Face::SFace { (theta.cos() - 1.0) / 6.0 } else { 0.0 };
+                    let swing = if face == PlanarFace::SFace { (theta.cos() - 1.0) / 6.0 } else { 0.0 };
                     settings.succeeds(-(2.0 + h) / 2.0 * theta.sin() - swing, theta)
                 };
                 assert!(centred(limit - 1e-9) && !centred(limit + 1e-9));
@@ -293,9 +294,9 @@ mod tests {
             let hits: Vec<f64> = grid.filter(|x| reaches(*x)).collect();
             hits[0] + hits[hits.len() - 1]
         };
-        assert!(edges(Face::VFace).abs() < 1e-3);
+        assert!(edges(PlanarFace::VFace).abs() < 1e-3);
         // Twice (D/6)(1 − cos θ), to the grid's step.
-        assert!((edges(Face::SFace) - (1.0 - theta.cos()) / 3.0).abs() < 3e-4);
+        assert!((edges(PlanarFace::SFace) - (1.0 - theta.cos()) / 3.0).abs() < 3e-4);
     }
 
     fn design(family: Family, cor: f64) -> Design {
@@ -310,7 +311,7 @@ mod tests {
         // is at x − (H/2)·sin(pitch)·(−1): at the face centre plus half the height along the tilted axis.
         let design = design(Family::VFace, -1.0);
         let settings = KinematicSettings::of(&design).unwrap();
-        assert_eq!((settings.face, settings.rotation_point), (Face::VFace, 2.0));
+        assert_eq!((settings.face, settings.rotation_point), (PlanarFace::VFace, 2.0));
         let grid = Grid::over(&design.alignment, |_| 60);
         let found = accept(&design, &grid, &Exec::new()).unwrap();
         for (cell, outcome) in found.outcomes.iter().enumerate() {

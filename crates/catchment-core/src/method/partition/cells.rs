@@ -13,7 +13,7 @@
 
 use super::compose::Compartment;
 use super::space::{Affine, Tile};
-use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION};
+use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION};
 use crate::pose::{Dof, DofSet, ROTATIONS, euler_rates};
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 use std::array;
@@ -35,7 +35,7 @@ pub(super) struct Cell {
     /// Height of first contact.
     pub(super) height: Affine,
     /// `−M⁻¹∇h`, per unit of mobility.
-    pub(super) velocity: Point,
+    pub(super) velocity: PolytopePoint,
     /// How fast the height falls along it: the squared slope in the ρ-metric.
     pub(super) descent: f64,
     /// Where motion leaves.
@@ -78,9 +78,9 @@ pub(super) struct Cells {
     limits: Vec<(usize, [f64; 2])>,
 }
 
-type Boxed = GeomWithData<Rectangle<Point>, usize>;
+type Boxed = GeomWithData<Rectangle<PolytopePoint>, usize>;
 
-fn rectangle(polytope: &Polytope, margin: f64) -> AABB<Point> {
+fn rectangle(polytope: &Polytope, margin: f64) -> AABB<PolytopePoint> {
     let (low, high) = polytope.bounds();
     AABB::from_corners(low.map(|v| v - margin), high.map(|v| v + margin))
 }
@@ -114,7 +114,7 @@ impl Cells {
     }
 
     /// The cells that hold `q`, in order.
-    pub(super) fn holding(&self, q: &Point) -> Vec<usize> {
+    pub(super) fn holding(&self, q: &PolytopePoint) -> Vec<usize> {
         let envelope = AABB::from_corners(q.map(|v| v - TOUCH), q.map(|v| v + TOUCH));
         let mut holding: Vec<usize> = self
             .index
@@ -191,7 +191,7 @@ impl Cells {
     ) -> Vec<(Polytope, Step)> {
         let [from, to] = [from, to].map(|k| self.all[k].height);
         let rises = |polytope: &Polytope| {
-            let rise = |y: &Point| {
+            let rise = |y: &PolytopePoint| {
                 let q = lifted(y, plane, dropped);
                 to.at(&q) - from.at(&q)
             };
@@ -210,7 +210,7 @@ impl Cells {
         if low < -LEVEL && high > LEVEL {
             // The rise is affine over the facet: q_dropped = (offset − Σ n y)/n_dropped.
             let n = plane.normal;
-            let slope: Point = array::from_fn(|k| to.slope[k] - from.slope[k]);
+            let slope: PolytopePoint = array::from_fn(|k| to.slope[k] - from.slope[k]);
             let per_dropped = slope[dropped] / n[dropped];
             let normal = removed(&array::from_fn(|k| slope[k] - per_dropped * n[k]), dropped);
             let level = to.level - from.level + per_dropped * plane.offset;
@@ -268,10 +268,10 @@ impl Cell {
 }
 
 /// `M⁻¹ g` in the ρ-metric, the turn from the rates of the free Euler angles at the pose error `q`.
-fn mobility(q: &Point, free: DofSet, rotation_length: f64, g: &Point) -> Point {
+fn mobility(q: &PolytopePoint, free: DofSet, rotation_length: f64, g: &PolytopePoint) -> PolytopePoint {
     let places: Vec<Dof> = free.iter().collect();
     let place = |dof: Dof| places.iter().position(|free| *free == dof);
-    let of = |values: &Point, dof: Dof| place(dof).map_or(0.0, |k| values[k]);
+    let of = |values: &PolytopePoint, dof: Dof| place(dof).map_or(0.0, |k| values[k]);
     let torque = ROTATIONS.map(|dof| of(g, dof));
     // Singular at the pole of the Euler angles only, where no cell has its centroid.
     let rates = euler_rates(of(q, Dof::Pitch), of(q, Dof::Yaw), free, rotation_length, torque);
@@ -285,7 +285,7 @@ fn mobility(q: &Point, free: DofSet, rotation_length: f64, g: &Point) -> Point {
 }
 
 /// Whether a point is in a polytope, or touches it.
-pub(super) fn touches(polytope: &Polytope, q: &Point) -> bool {
+pub(super) fn touches(polytope: &Polytope, q: &PolytopePoint) -> bool {
     polytope.facets().iter().all(|facet| facet.excess(q) <= TOUCH)
 }
 
@@ -305,14 +305,14 @@ fn steepest_axis(plane: &Halfspace, dimension: usize) -> usize {
 }
 
 /// The point of `plane` whose coordinates but `dropped` are `y`.
-pub(super) fn lifted(y: &Point, plane: &Halfspace, dropped: usize) -> Point {
+pub(super) fn lifted(y: &PolytopePoint, plane: &Halfspace, dropped: usize) -> PolytopePoint {
     let mut q = inserted(y, dropped);
     q[dropped] = (plane.offset - dot(&q, &plane.normal)) / plane.normal[dropped];
     q
 }
 
 /// `y` with a zero put in at `axis`.
-fn inserted(y: &Point, axis: usize) -> Point {
+fn inserted(y: &PolytopePoint, axis: usize) -> PolytopePoint {
     array::from_fn(|k| match k {
         k if k < axis => y[k],
         k if k == axis => 0.0,
@@ -321,7 +321,7 @@ fn inserted(y: &Point, axis: usize) -> Point {
 }
 
 /// `q` without its coordinate `axis`.
-pub(super) fn removed(q: &Point, axis: usize) -> Point {
+pub(super) fn removed(q: &PolytopePoint, axis: usize) -> PolytopePoint {
     array::from_fn(|k| match k {
         k if k < axis => q[k],
         k if k + 1 < MAX_DIMENSION => q[k + 1],
@@ -329,6 +329,6 @@ pub(super) fn removed(q: &Point, axis: usize) -> Point {
     })
 }
 
-pub(super) fn dot(a: &Point, b: &Point) -> f64 {
+pub(super) fn dot(a: &PolytopePoint, b: &PolytopePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

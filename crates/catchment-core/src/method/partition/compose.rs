@@ -19,7 +19,7 @@
 //! slices. Cutting the half into strips first makes L small; see [`super::Settings::strips`].
 
 use super::pieces::Piece;
-use crate::polytope::Point;
+use crate::polytope::PolytopePoint;
 use crate::pose::Dof;
 use std::array;
 
@@ -71,9 +71,9 @@ fn snapped(value: f64) -> f64 {
 
 /// The point reflection of a piece, turned through a compartment: vertex lists over (x, y, z, angles…), or (x, z, angle)
 /// of a planar piece.
-pub(super) fn compose(piece: &Piece, compartment: &Compartment) -> Vec<Vec<Point>> {
+pub(super) fn compose(piece: &Piece, compartment: &Compartment) -> Vec<Vec<PolytopePoint>> {
     let reflected = piece.vertices.iter().map(|v| array::from_fn(|k| -v[k])).collect();
-    let mut composites: Vec<Vec<Point>> = vec![reflected];
+    let mut composites: Vec<Vec<PolytopePoint>> = vec![reflected];
     for (k, (dof, span)) in compartment.spans.iter().enumerate() {
         let axis = piece.dimension + k;
         composites = composites
@@ -101,7 +101,13 @@ pub(super) fn count(piece: &Piece, rotations: usize) -> u64 {
 }
 
 /// The vertices, turned by an angle that becomes their coordinate `axis`.
-fn slice(vertices: &[Point], dimension: usize, dof: Dof, angle: f64, axis: usize) -> Vec<Point> {
+fn slice(
+    vertices: &[PolytopePoint],
+    dimension: usize,
+    dof: Dof,
+    angle: f64,
+    axis: usize,
+) -> Vec<PolytopePoint> {
     let (sine, cosine) = angle.sin_cos();
     // The two coordinates that turn: from the first towards the second.
     let (a, b) = match (dof, dimension) {
@@ -110,7 +116,7 @@ fn slice(vertices: &[Point], dimension: usize, dof: Dof, angle: f64, axis: usize
         (_, 2) => (1, 0),
         _ => (2, 0),
     };
-    let turn = |v: &Point| {
+    let turn = |v: &PolytopePoint| {
         let mut turned = *v;
         turned[a] = snapped(v[a] * cosine - v[b] * sine);
         turned[b] = snapped(v[a] * sine + v[b] * cosine);
@@ -128,7 +134,7 @@ mod tests {
     use crate::pose::PoseError;
     use glam::DVec3;
 
-    fn point(v: &[f64]) -> Point {
+    fn point(v: &[f64]) -> PolytopePoint {
         array::from_fn(|k| v.get(k).copied().unwrap_or(0.0))
     }
 
@@ -166,7 +172,7 @@ mod tests {
             let turned = rotation * -DVec3::from(corner);
             let expected = [turned.x, turned.y, turned.z, pitch, yaw];
             // Rounded twice to the lattice, once per rotation.
-            let near = |v: &Point| (0..5).all(|k| (v[k] - expected[k]).abs() < 4.0 * LATTICE);
+            let near = |v: &PolytopePoint| (0..5).all(|k| (v[k] - expected[k]).abs() < 4.0 * LATTICE);
             assert!(composites.iter().flatten().any(near), "{expected:?}");
         }
     }

@@ -6,8 +6,8 @@ use crate::contact::Pair;
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Resolution};
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, NotApplicable};
-use crate::method::registry::Entry;
+use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable};
+use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<Partitioned>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<Partitioned>(&INFO);
 
 /// Settings of the partition; unset values follow from the number of free rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ impl Partitioned {
     }
 }
 
-impl Decide for Partitioned {
+impl DecisionMethod for Partitioned {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -84,12 +84,12 @@ impl Decide for Partitioned {
         &["partition"]
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let settings = self.of(problem.design());
         let partition = run(problem.pair(), &settings, exec)?;
         let acceptance = partition.acceptance(domain.clone(), exec)?;
         let by_products = ByProducts { partition: Some(partition), ..ByProducts::default() };
-        Ok(Decided { by_products, ..Decided::plain(acceptance, json!(settings)) })
+        Ok(MethodOutput { by_products, ..MethodOutput::plain(acceptance, json!(settings)) })
     }
 }
 

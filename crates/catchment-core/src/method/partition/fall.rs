@@ -7,14 +7,14 @@
 //! ravine's own slope would bend the path). If no lower point exists, the motion has come to rest.
 
 use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, removed, touches};
-use crate::polytope::{MAX_DIMENSION, Point};
+use crate::polytope::{MAX_DIMENSION, PolytopePoint};
 use std::array;
 
 /// Where motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
     /// At rest, in contact.
-    Rest(Point),
+    Rest(PolytopePoint),
     /// Contact lost.
     Lost,
     /// Beyond the last slice of a rotation.
@@ -25,15 +25,15 @@ pub(super) enum Fate {
 const ROUND: usize = 64;
 
 /// Where the point of first contact at `q` ends.
-pub(super) fn fate(cells: &Cells, q: &Point) -> Fate {
+pub(super) fn fate(cells: &Cells, q: &PolytopePoint) -> Fate {
     let top = cells.holding(q).into_iter().map(|k| cells.all[k].height.at(q)).max_by(f64::total_cmp);
     top.map_or(Fate::Lost, |height| fate_from(cells, q, height))
 }
 
 /// Where motion ends that is at `q` at a height: below first contact, beside a wall.
-pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
+pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> Fate {
     let (mut q, mut height) = (*start, height);
-    let at = |k: usize, q: &Point| cells.all[k].height.at(q);
+    let at = |k: usize, q: &PolytopePoint| cells.all[k].height.at(q);
     let mut falling_from = f64::INFINITY;
     for step in 0.. {
         if step % ROUND == 0 {
@@ -74,7 +74,7 @@ pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
 }
 
 /// The cell whose motion leads into it from `q`: the steepest.
-fn leading(cells: &Cells, under: &[usize], q: &Point) -> Option<usize> {
+fn leading(cells: &Cells, under: &[usize], q: &PolytopePoint) -> Option<usize> {
     let inward = |k: &usize| {
         let cell = &cells.all[*k];
         let mut active = cell.region.facets().iter().filter(|facet| facet.excess(q) >= -TOUCH);
@@ -85,7 +85,7 @@ fn leading(cells: &Cells, under: &[usize], q: &Point) -> Option<usize> {
 }
 
 /// Where motion from `q` leaves the cell, and through which facet.
-fn crossed(cells: &Cells, k: usize, q: &Point) -> (Point, usize) {
+fn crossed(cells: &Cells, k: usize, q: &PolytopePoint) -> (PolytopePoint, usize) {
     let cell = &cells.all[k];
     let time = |facet: usize| {
         let plane = &cell.region.facets()[facet];
@@ -100,8 +100,8 @@ fn crossed(cells: &Cells, k: usize, q: &Point) -> (Point, usize) {
 }
 
 /// The lowest point of the steepest ravine or wall that leads down from `q`.
-fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Point> {
-    let mut best: Option<(f64, Point)> = None;
+fn ravine(cells: &Cells, under: &[usize], q: &PolytopePoint, height: f64) -> Option<PolytopePoint> {
+    let mut best: Option<(f64, PolytopePoint)> = None;
     for &k in under {
         let cell = &cells.all[k];
         for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
@@ -121,7 +121,7 @@ fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Poin
 }
 
 /// The lowest point of a gate and its height.
-pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, Point) {
+pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, PolytopePoint) {
     let cell = &cells.all[k];
     let plane = &cell.region.facets()[gate.facet];
     gate.region
@@ -134,7 +134,7 @@ pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, Point) {
 }
 
 /// Where motion rests that reaches a level gate: the aligned pose if the gate holds it, else its middle.
-pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<Point> {
+pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<PolytopePoint> {
     let cell = &cells.all[k];
     let plane = &cell.region.facets()[gate.facet];
     let heights = gate.region.vertices().iter().map(|y| cell.height.at(&lifted(y, plane, gate.dropped)));
@@ -149,7 +149,7 @@ pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<Point> {
 }
 
 /// A point that nothing leads down from: at rest, unless it is where the contact space ends.
-fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
+fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> Fate {
     let mut fate = Fate::Rest(*q);
     for &k in under {
         let cell = &cells.all[k];

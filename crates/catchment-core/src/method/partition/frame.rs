@@ -10,7 +10,7 @@
 //! adjacent.
 
 use super::Partition;
-use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope};
+use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint};
 use crate::pose::{PoseError, face_from_cor};
 
 impl Partition {
@@ -32,7 +32,7 @@ impl Partition {
 
     /// Offset (x, y) of the face centre from the COR as an affine function of the coordinates, interpolated between the
     /// slices around a cell: (value at the origin, slope).
-    pub(super) fn face_from_cor(&self, cell: usize, at: &Point) -> [(f64, Point); 2] {
+    pub(super) fn face_from_cor(&self, cell: usize, at: &PolytopePoint) -> [(f64, PolytopePoint); 2] {
         let compartment = &self.compartments[self.within[cell] as usize];
         let translations = self.alignment.free.len() - self.alignment.free.rotations();
         let spans = &compartment.spans;

@@ -37,7 +37,7 @@ use crate::contact::{Pair, Seat};
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
-use crate::polytope::{MAX_DIMENSION, Point, Polytope};
+use crate::polytope::{MAX_DIMENSION, Polytope, PolytopePoint};
 use crate::pose::{CorPose, Dof, PoseError, face_from_cor};
 use cells::Cells;
 use compose::Compartment;
@@ -46,7 +46,7 @@ pub use outline::Corner;
 use pieces::Pieces;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-pub use solids::{Solid, SolidError, Solids, Subject, shapes};
+pub use solids::{Solid, SolidError, SolidShape, Solids, shapes};
 use watershed::{Parts, Watersheds};
 
 /// Settings that change the result.
@@ -144,7 +144,7 @@ pub enum PartitionError {
 /// Size of a partition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Counts {
+pub struct PartitionCounts {
     /// Number of polytopes of the Minkowski sum.
     pub polytopes: usize,
     /// Number of cells of the contact space.
@@ -165,12 +165,12 @@ pub struct Partition {
     /// The compartment of every cell.
     within: Vec<u32>,
     watersheds: Watersheds,
-    counts: Counts,
+    counts: PartitionCounts,
 }
 
 /// A part of the contact space with one fate.
 #[derive(Debug, Clone)]
-pub struct Part {
+pub struct PartitionPart {
     /// Its pose errors, one coordinate per free error: lateral position of the *COR* (D), and angles (radians).
     pub region: Polytope,
     /// What becomes of them.
@@ -238,7 +238,7 @@ pub fn run(pair: &Pair, settings: &PartitionSettings, exec: &Exec) -> Result<Par
         Parts::Whole(_) => 1,
         Parts::Cut(parts) => parts.len(),
     });
-    let counts = Counts {
+    let counts = PartitionCounts {
         polytopes: (polytopes * count) as usize,
         cells: cells.all.len(),
         parts: parts.sum(),
@@ -272,7 +272,7 @@ fn spaces(
 
 impl Partition {
     /// How much there was of everything.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> PartitionCounts {
         self.counts
     }
 
@@ -282,8 +282,8 @@ impl Partition {
     }
 
     /// All parts.
-    pub fn parts(&self) -> impl Iterator<Item = Part> + '_ {
-        self.labelled().map(|(_, region, outcome)| Part { region, outcome })
+    pub fn parts(&self) -> impl Iterator<Item = PartitionPart> + '_ {
+        self.labelled().map(|(_, region, outcome)| PartitionPart { region, outcome })
     }
 
     /// Cell, region and outcome of all parts.
@@ -362,7 +362,7 @@ impl Partition {
 
 /// Whether a place of rest is docked. Slices move it a little: what is as near the mated pose as they leave it is followed by an exact
 /// motion, everything else must lie in the seat as it is.
-fn docks(pair: &Pair) -> impl Fn(&Point) -> bool + '_ {
+fn docks(pair: &Pair) -> impl Fn(&PolytopePoint) -> bool + '_ {
     /// In D and radians.
     const NEAR: f64 = 0.02;
     let alignment = &pair.alignment;

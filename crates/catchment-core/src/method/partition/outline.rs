@@ -9,7 +9,7 @@
 use super::Partition;
 use super::cells::{facing, lifted};
 use crate::acceptance::Outcome;
-use crate::polytope::{Point, Polytope};
+use crate::polytope::{Polytope, PolytopePoint};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -26,7 +26,7 @@ impl Partition {
             .map(|(cell, region, outcome)| {
                 let middle = region.centroid();
                 let mut corners = region.vertices().to_vec();
-                let angle = |p: &Point| (p[1] - middle[1]).atan2(p[0] - middle[0]);
+                let angle = |p: &PolytopePoint| (p[1] - middle[1]).atan2(p[0] - middle[0]);
                 corners.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
                 let corners = corners.iter().map(|corner| self.of_face(cell, corner)).collect();
                 (corners, outcome)
@@ -77,7 +77,7 @@ impl Partition {
     }
 
     /// Two errors of the face centre from those of the COR.
-    fn of_face(&self, cell: usize, q: &Point) -> Corner {
+    fn of_face(&self, cell: usize, q: &PolytopePoint) -> Corner {
         let shift = self.face_from_cor(cell, q);
         let mut corner = [q[0], q[1]];
         for (value, dof) in

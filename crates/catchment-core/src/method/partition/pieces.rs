@@ -12,7 +12,7 @@
 use super::PartitionError;
 use crate::connector::{Half, Surface};
 use crate::contact::Pair;
-use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope};
+use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint};
 use crate::pose::{Dof, DofSet};
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ pub(super) struct Piece {
     /// 3 over (x, y, z); 2 over (x, z) of a profile.
     pub(super) dimension: usize,
     /// Its corners, in D.
-    pub(super) vertices: Vec<Point>,
+    pub(super) vertices: Vec<PolytopePoint>,
     /// Which convex piece of its half it is, or is a strip of.
     pub(super) number: usize,
     /// The slab in y that the extrusion of a profile fills; [`EVERYWHERE`] for a solid.
@@ -124,7 +124,7 @@ impl Pieces {
 fn profile(polytope: &Polytope) -> Option<(Polytope, [f64; 2])> {
     let (low, high) = polytope.bounds();
     let ends = [low[1], high[1]];
-    let at_an_end = |v: &Point| ends.contains(&v[1]);
+    let at_an_end = |v: &PolytopePoint| ends.contains(&v[1]);
     if !polytope.vertices().iter().all(at_an_end) {
         return None;
     }
@@ -175,7 +175,7 @@ fn convex_pieces(half: &Half) -> Result<Vec<Polytope>, PartitionError> {
 }
 
 fn decompose(surface: &Surface, pieces: &mut Vec<Polytope>) -> Result<(), PartitionError> {
-    let points: Vec<Point> = surface.vertices.iter().map(point).collect();
+    let points: Vec<PolytopePoint> = surface.vertices.iter().map(point).collect();
     let hull = Polytope::hull(3, &points).ok_or(PartitionError::FlatPiece)?;
     let mut cells = vec![hull];
     // Planes of facets that do not bound the hull are those at which the solid is hollow.
@@ -226,7 +226,7 @@ pub(super) fn joined(mut cells: Vec<Polytope>) -> Vec<Polytope> {
 fn union(a: &Polytope, b: &Polytope) -> Option<Polytope> {
     // Volumes of order 1 are sums of as many terms as there are simplices: they round by about 1e-14.
     const ROUNDING: f64 = 1e-12;
-    let corners: Vec<Point> = a.vertices().iter().chain(b.vertices()).copied().collect();
+    let corners: Vec<PolytopePoint> = a.vertices().iter().chain(b.vertices()).copied().collect();
     let hull = Polytope::hull(a.dimension(), &corners)?;
     let (whole, parts) = (hull.volume(), a.volume() + b.volume());
     ((whole - parts).abs() <= ROUNDING.max(1e-9 * parts)).then_some(hull)
@@ -253,6 +253,6 @@ fn is_inside(surface: &Surface, from: DVec3) -> bool {
     angle > std::f64::consts::TAU
 }
 
-fn point(v: &DVec3) -> Point {
+fn point(v: &DVec3) -> PolytopePoint {
     [v.x, v.y, v.z, 0.0, 0.0, 0.0]
 }

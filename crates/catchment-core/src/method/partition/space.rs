@@ -18,7 +18,7 @@
 use super::compose::{Compartment, compose};
 use super::pieces::PiecePair;
 use crate::exec::{Cancelled, Exec};
-use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, minkowski_sum_of};
+use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION, minkowski_sum_of};
 use crate::pose::DofSet;
 use std::array;
 
@@ -26,20 +26,20 @@ use std::array;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Affine {
     /// ∂h/∂q: D per D, or D per radian.
-    pub(super) slope: Point,
+    pub(super) slope: PolytopePoint,
     /// h at q = 0, in D.
     pub(super) level: f64,
 }
 
 impl Affine {
     /// The height over `q`, in D.
-    pub(super) fn at(&self, q: &Point) -> f64 {
+    pub(super) fn at(&self, q: &PolytopePoint) -> f64 {
         self.slope.iter().zip(q).map(|(s, q)| s * q).sum::<f64>() + self.level
     }
 
     /// Where this lies above `other`: a half-space, or everywhere, or nowhere; on equal planes `tie` decides.
     pub(super) fn above(&self, other: &Self, tie: bool) -> Covered {
-        let normal: Point = array::from_fn(|k| other.slope[k] - self.slope[k]);
+        let normal: PolytopePoint = array::from_fn(|k| other.slope[k] - self.slope[k]);
         let rise = self.level - other.level;
         let steepness = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         // Planes whose difference changes by less than the resolution over a unit of q do not cross.
@@ -171,7 +171,7 @@ impl Roof {
 
     /// The height over `q`, if the roof lies there.
     #[cfg(test)]
-    pub(super) fn height(&self, q: &Point) -> Option<f64> {
+    pub(super) fn height(&self, q: &PolytopePoint) -> Option<f64> {
         let lowest = || self.facets.iter().map(|(_, plane)| plane.at(q)).fold(f64::INFINITY, f64::min);
         self.shadow.contains(q).then(lowest)
     }

@@ -46,7 +46,7 @@ fn spaces_of(pair: &Pair, settings: &PartitionSettings) -> Vec<(Vec<Roof>, Vec<T
 }
 
 /// A random point of a compartment with translations within ±1.2 D.
-fn random_point(compartment: &Compartment, translations: usize, stream: Stream, k: u64) -> Point {
+fn random_point(compartment: &Compartment, translations: usize, stream: Stream, k: u64) -> PolytopePoint {
     let mut q = [0.0; MAX_DIMENSION];
     let mut number = (0..).map(|j| stream.uniform(8 * k + j));
     for value in q.iter_mut().take(translations) {
@@ -59,7 +59,7 @@ fn random_point(compartment: &Compartment, translations: usize, stream: Stream, 
 }
 
 /// The highest roof over `q`: the definition of the envelope.
-fn brute_height(roofs: &[Roof], q: &Point) -> Option<f64> {
+fn brute_height(roofs: &[Roof], q: &PolytopePoint) -> Option<f64> {
     roofs.iter().filter_map(|roof| roof.height(q)).max_by(f64::total_cmp)
 }
 

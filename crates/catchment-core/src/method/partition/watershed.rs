@@ -23,7 +23,7 @@ use super::fall::{self, Fate};
 use super::pieces;
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
-use crate::polytope::{Point, Polytope};
+use crate::polytope::{Polytope, PolytopePoint};
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ pub(super) struct Watersheds {
     /// In the order of the cells.
     pub(super) parts: Vec<Parts>,
     /// Places of rest that ravines and circling motion lead to.
-    pub(super) rests: Vec<Point>,
+    pub(super) rests: Vec<PolytopePoint>,
     /// Whether some motion leaves through the last slice of a rotation; it counts as jammed.
     pub(super) cut_off: bool,
 }
@@ -64,14 +64,14 @@ struct Draining<'a, F> {
     /// Per cell and gate: where it leads, unless into a cell.
     labels: Vec<Vec<Option<Outcome>>>,
     parts: Vec<Option<Parts>>,
-    rests: Vec<(Point, Outcome)>,
+    rests: Vec<(PolytopePoint, Outcome)>,
     cut_off: bool,
 }
 
 /// Drains every cell.
 pub(super) fn drain(
     cells: &Cells,
-    is_aligned: impl Fn(&Point) -> bool,
+    is_aligned: impl Fn(&PolytopePoint) -> bool,
     exec: &Exec,
 ) -> Result<Watersheds, Cancelled> {
     let fates: Vec<Vec<Option<Fate>>> = exec.install(|| {
@@ -146,7 +146,7 @@ fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<Fate>> {
         .collect()
 }
 
-impl<F: Fn(&Point) -> bool> Draining<'_, F> {
+impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
     fn label(&mut self, fate: Fate) -> Outcome {
         let place = match fate {
             Fate::Lost => return Outcome::Missed,
@@ -156,7 +156,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
             }
             Fate::Rest(place) => place,
         };
-        let near = |other: &Point| place.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_PLACE);
+        let near = |other: &PolytopePoint| place.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_PLACE);
         if let Some((_, outcome)) = self.rests.iter().find(|(other, _)| near(other)) {
             return *outcome;
         }

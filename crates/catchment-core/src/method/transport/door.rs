@@ -1,13 +1,13 @@
 //! Transport as a method: cells of a grid, with an arrival fraction for each.
 
-use super::{Arrival, TransportError, TransportSettings, bytes, run};
+use super::{ArrivalFractions, TransportError, TransportSettings, bytes, run};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::descent;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Doubts, Info, grid_of};
-use crate::method::registry::{Entry, MOTIONS};
+use crate::method::door::{Cost, DecideError, DecisionMethod, Doubts, Info, MethodOutput, grid_of};
+use crate::method::registry::{MOTIONS, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -19,9 +19,9 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<TransportSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<TransportSettings>(&INFO);
 
-impl Decide for TransportSettings {
+impl DecisionMethod for TransportSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -55,14 +55,17 @@ impl Decide for TransportSettings {
         }
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let arrival = run(problem.pair(), grid_of(&INFO, domain)?, self, exec)?;
         let acceptance = arrival.acceptance(exec)?;
-        Ok(Decided { doubts: Some(Box::new(arrival)), ..Decided::plain(acceptance, self.settings()) })
+        Ok(MethodOutput {
+            doubts: Some(Box::new(arrival)),
+            ..MethodOutput::plain(acceptance, self.settings())
+        })
     }
 }
 
-impl Doubts for Arrival {
+impl Doubts for ArrivalFractions {
     fn fraction(&self, cell: usize) -> f64 {
         Self::fraction(self, cell)
     }

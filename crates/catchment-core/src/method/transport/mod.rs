@@ -94,7 +94,7 @@ pub enum TransportError {
 
 /// Arrival fractions over a grid.
 #[derive(Debug, Clone)]
-pub struct Arrival {
+pub struct ArrivalFractions {
     grid: Grid,
     fold: Fold,
     shares: Vec<Shares>,
@@ -102,7 +102,7 @@ pub struct Arrival {
     cut_off: bool,
 }
 
-impl Arrival {
+impl ArrivalFractions {
     /// Arrivals between these are ambiguous: nearly all errors of the grid lie there.
     pub const AMBIGUOUS: [f64; 2] = [0.02, 0.98];
 
@@ -185,7 +185,7 @@ pub fn run(
     grid: &Grid,
     settings: &TransportSettings,
     exec: &Exec,
-) -> Result<Arrival, TransportError> {
+) -> Result<ArrivalFractions, TransportError> {
     if let Some(dof) = pair.alignment.free.iter().find(|dof| grid.axis(*dof).is_none()) {
         return Err(TransportError::NotSampled { dof });
     }
@@ -208,7 +208,7 @@ pub fn run(
     let shares = solve::solve(&relief, &judge, exec)?;
     let cut_off = judge.cut_off.into_inner();
     let Relief { grid, fold, .. } = relief;
-    Ok(Arrival { grid, fold, shares, cut_off })
+    Ok(ArrivalFractions { grid, fold, shares, cut_off })
 }
 
 /// Number of cells at the surface of a grid.

@@ -16,7 +16,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Do
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-fn arrival(pair: &Pair, cells: usize) -> Arrival {
+fn arrival(pair: &Pair, cells: usize) -> ArrivalFractions {
     let grid = Grid::over(&pair.alignment, |_| cells);
     run(pair, &grid, &TransportSettings::default(), &Exec::new()).unwrap()
 }
@@ -40,7 +40,7 @@ fn fast_and_brute_agree_cell_by_cell() {
         let arrival = run(&pair, &grid, &TransportSettings::default(), &Exec::new()).unwrap();
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let brute = brute::fractions(&pair, &landscape, &TransportSettings::default());
-        let differ = |arrival: &Arrival| {
+        let differ = |arrival: &ArrivalFractions| {
             (0..brute.len()).filter(|c| (arrival.fraction(*c) - brute[*c]).abs() > 0.002).count()
         };
         // Single precision may tip what is lower, here and there.

@@ -35,9 +35,9 @@ pub use cells::clip;
 pub use circle::circle_bounds;
 pub use heights::{HeightFacet, heights, highest};
 pub use nilsson::{Catch, Nilsson};
-pub use profile::Profile;
+pub use profile::HeightProfile;
 pub use sheet::area;
-pub use square::{Square, circle_square};
+pub use square::{AcceptedSquare, circle_square};
 
 use crate::contact::mated::{MatedProblem, sinking};
 use crate::contact::{Pair, Play, Seat, play};

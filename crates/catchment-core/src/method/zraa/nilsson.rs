@@ -31,7 +31,7 @@
 //! docked at its start. Lengths in D.
 
 use super::Zraa;
-use super::profile::Profile;
+use super::profile::HeightProfile;
 use crate::contact::Pair;
 use crate::pose::Dof;
 use glam::DVec2;
@@ -70,11 +70,11 @@ impl Nilsson {
     /// Beside the exact offsets along x, where the halves of a pair meet along one profile.
     pub fn beside(zraa: &Zraa, pair: &Pair) -> Option<Self> {
         matches!(zraa, Zraa::Interval { axis: Dof::X, .. }).then_some(())?;
-        Profile::of(pair).map(|profile| Self::of(&profile))
+        HeightProfile::of(pair).map(|profile| Self::of(&profile))
     }
 
     /// Of a profile.
-    pub fn of(profile: &Profile) -> Self {
+    pub fn of(profile: &HeightProfile) -> Self {
         let behind = reach(&profile.mirrored())
             .map(|found| Catch { minimum: -found.minimum, maximum: -found.maximum });
         Self {
@@ -107,7 +107,7 @@ impl Nilsson {
 }
 
 /// How far offsets to +x are corrected.
-fn reach(profile: &Profile) -> Option<Catch> {
+fn reach(profile: &HeightProfile) -> Option<Catch> {
     let curve = Curve(profile.corners());
     if curve.steepest() <= LEVEL {
         return None;
@@ -193,7 +193,7 @@ mod tests {
     const COLUMNS: u32 = 24;
 
     /// A profile of width 1 around 0: inner corners on columns, heights in eighths of D.
-    fn profile(inner: &[(u32, i32)], ends: [i32; 2]) -> Profile {
+    fn profile(inner: &[(u32, i32)], ends: [i32; 2]) -> HeightProfile {
         let mut inner = inner.to_vec();
         inner.sort_unstable();
         inner.dedup_by_key(|corner| corner.0);
@@ -203,11 +203,11 @@ mod tests {
         let mut corners = vec![corner(0, ends[0])];
         corners.extend(inner.iter().map(|(column, z)| corner(*column, *z)));
         corners.push(corner(COLUMNS, ends[1]));
-        Profile::new(&corners).unwrap()
+        HeightProfile::new(&corners).unwrap()
     }
 
     /// One that a half turn maps onto itself: its left half is drawn, its middle lies at height 0.
-    fn symmetric(left: &[(u32, i32)], end: i32) -> Profile {
+    fn symmetric(left: &[(u32, i32)], end: i32) -> HeightProfile {
         let mut left = left.to_vec();
         left.sort_unstable();
         left.dedup_by_key(|corner| corner.0);
@@ -227,12 +227,12 @@ mod tests {
     }
 
     /// What the solids of a profile and of its counterpart do.
-    fn exact(profile: &Profile) -> Result<Zraa, ZraaError> {
+    fn exact(profile: &HeightProfile) -> Result<Zraa, ZraaError> {
         // The moving half is mounted by a half turn about y: drawn, it is the profile turned in its plane.
         let turned: Vec<DVec2> = profile.corners().iter().rev().map(|p| -*p).collect();
         let own = OwnSpec::new(0.0, columns(profile.corners()), columns(&turned));
         let pair = pair_of(ConnectorSpec::Own(own), true);
-        let found = Profile::of(&pair).unwrap();
+        let found = HeightProfile::of(&pair).unwrap();
         let same = |(a, b): (&DVec2, &DVec2)| a.distance(*b) < 1e-12;
         assert_eq!(found.corners().len(), profile.corners().len());
         assert!(found.corners().iter().zip(profile.corners()).all(same), "{found:?} {profile:?}");
@@ -240,7 +240,7 @@ mod tests {
     }
 
     /// The reaches are those of the solids, which know nothing of extrema.
-    fn agree(profile: &Profile) {
+    fn agree(profile: &HeightProfile) {
         let found = Nilsson::of(profile);
         let [from, to] = found.reaches();
         match exact(profile) {
@@ -264,7 +264,7 @@ mod tests {
     }
 
     /// Level stretches are seats of their own, or ground where nothing slides: the theorem has none.
-    fn has_no_level(profile: &Profile) -> bool {
+    fn has_no_level(profile: &HeightProfile) -> bool {
         profile.corners().windows(2).all(|w| (w[0].y - w[1].y).abs() > LEVEL)
     }
 
@@ -299,7 +299,7 @@ mod tests {
             let profile = profile(&inner, ends);
             let [from, to] = Nilsson::of(&profile).reaches();
             let upside_down: Vec<DVec2> = profile.corners().iter().map(|p| DVec2::new(p.x, -p.y)).collect();
-            for other in [profile.mirrored(), Profile::new(&upside_down).unwrap()] {
+            for other in [profile.mirrored(), HeightProfile::new(&upside_down).unwrap()] {
                 let [other_from, other_to] = Nilsson::of(&other).reaches();
                 prop_assert!((from + other_to).abs() < 1e-12 && (to + other_from).abs() < 1e-12);
             }
@@ -356,7 +356,7 @@ mod tests {
         for (family, ungendered, reach) in [(Family::VFace, false, 0.5), (Family::SFace, true, 1.0 / 3.0)] {
             for base in [None, Some(0.4)] {
                 let pair = pair(FamilySpec::new(family).with_base_thickness(base));
-                let found = Nilsson::of(&Profile::of(&pair).unwrap());
+                let found = Nilsson::of(&HeightProfile::of(&pair).unwrap());
                 assert_eq!(found.ungendered, ungendered);
                 assert!((found.bound() - reach).abs() < 1e-12 && (found.both() - reach).abs() < 1e-12);
                 let [_, to] = found.catches.map(Option::unwrap);
@@ -366,8 +366,8 @@ mod tests {
             }
         }
         // Two layers are no profile; neither are halves with play between them.
-        assert_eq!(Profile::of(&pair(FamilySpec::new(Family::XFace))), None);
-        assert_eq!(Profile::of(&pair(FamilySpec::new(Family::Pyramid))), None);
+        assert_eq!(HeightProfile::of(&pair(FamilySpec::new(Family::XFace))), None);
+        assert_eq!(HeightProfile::of(&pair(FamilySpec::new(Family::Pyramid))), None);
         let flat = [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.0)];
         let ramp = [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.3)];
         let own = OwnSpec::new(0.0, columns(&flat), columns(&ramp));
@@ -379,7 +379,7 @@ mod tests {
             alignment: crate::design::Alignment::default_for(Some(Family::VFace)),
         };
         let apart = crate::contact::Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-        assert_eq!(Profile::of(&apart), None);
+        assert_eq!(HeightProfile::of(&apart), None);
     }
 
     /// Slopes of 12 meet gentle ones: rounding at such a kink is no wall.
@@ -391,7 +391,7 @@ mod tests {
             .chain(left.into_iter().rev().map(|(x, z)| (-x, -z)))
             .map(|(x, z)| DVec2::new(x, z))
             .collect();
-        agree(&Profile::new(&corners).unwrap());
+        agree(&HeightProfile::new(&corners).unwrap());
     }
 
     /// One minimum at m, ends higher: min(m, D − m). One maximum at M of a symmetric one: min(M, D − 2M).

@@ -24,12 +24,12 @@ const SAME: f64 = 1e-6;
 
 /// A continuous curve z = f(x) of straight pieces.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct HeightProfile {
     /// From left to right, x rising, no three in a line.
     corners: Vec<DVec2>,
 }
 
-impl Profile {
+impl HeightProfile {
     /// Of corners from left to right, in D; `None` unless there are two or more and x rises from each to the next.
     pub fn new(corners: &[DVec2]) -> Option<Self> {
         let rising = corners.windows(2).all(|w| w[0].x < w[1].x) && corners.iter().all(|p| p.is_finite());

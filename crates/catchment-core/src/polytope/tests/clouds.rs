@@ -1,13 +1,13 @@
 //! Random points of every awkward kind, and invariants of every polytope.
 
-use super::super::{FLAT, MAX_DIMENSION, Point, Polytope, RESOLUTION, dot};
+use super::super::{FLAT, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION, dot};
 use proptest::prelude::*;
 
 /// Points in a dimension from `dimensions`, at least `extra` more than a simplex has and at most `most` in all.
 pub(super) fn cloud(
     dimensions: std::ops::RangeInclusive<usize>,
     most: usize,
-) -> impl Strategy<Value = (usize, Vec<Point>)> {
+) -> impl Strategy<Value = (usize, Vec<PolytopePoint>)> {
     (dimensions, 0..6usize).prop_flat_map(move |(dimension, kind)| {
         let least = dimension + 1;
         let count = least..=most.max(least);
@@ -42,7 +42,7 @@ pub(super) fn cloud(
 pub(super) fn nearly_flat_cloud(
     dimensions: std::ops::RangeInclusive<usize>,
     most: usize,
-) -> impl Strategy<Value = (usize, Vec<Point>)> {
+) -> impl Strategy<Value = (usize, Vec<PolytopePoint>)> {
     let shift = (-15.0..-5.0f64).prop_map(|exponent| 10f64.powf(exponent));
     (
         cloud(dimensions, most),
@@ -62,7 +62,7 @@ pub(super) fn nearly_flat_cloud(
 }
 
 /// A point of the box from −1 to 1.
-pub(super) fn real(dimension: usize) -> impl Strategy<Value = Point> {
+pub(super) fn real(dimension: usize) -> impl Strategy<Value = PolytopePoint> {
     prop::array::uniform6(-1.0..1.0f64).prop_map(move |mut point| {
         point[dimension..].fill(0.0);
         point
@@ -70,7 +70,7 @@ pub(super) fn real(dimension: usize) -> impl Strategy<Value = Point> {
 }
 
 /// A point with coordinates that are multiples of a half up to `reach` halves.
-fn whole(dimension: usize, reach: i32) -> impl Strategy<Value = Point> {
+fn whole(dimension: usize, reach: i32) -> impl Strategy<Value = PolytopePoint> {
     prop::array::uniform6(-reach..=reach).prop_map(move |point| {
         let mut point = point.map(|c| f64::from(c) / 2.0);
         point[dimension..].fill(0.0);
@@ -78,12 +78,12 @@ fn whole(dimension: usize, reach: i32) -> impl Strategy<Value = Point> {
     })
 }
 
-pub(super) fn sums(a: &[Point], b: &[Point]) -> Vec<Point> {
+pub(super) fn sums(a: &[PolytopePoint], b: &[PolytopePoint]) -> Vec<PolytopePoint> {
     a.iter().flat_map(|a| b.iter().map(|b| std::array::from_fn(|i| a[i] + b[i]))).collect()
 }
 
 /// The hull's support function, from the points themselves.
-pub(super) fn support(points: &[Point], direction: &Point) -> f64 {
+pub(super) fn support(points: &[PolytopePoint], direction: &PolytopePoint) -> f64 {
     points.iter().map(|p| dot(p, direction)).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -104,7 +104,7 @@ proptest! {
         generators in prop::collection::vec(real(6), 4..=6),
     ) {
         let (n, origin) = (generators.len(), [0.0; MAX_DIMENSION]);
-        let generators: Vec<Point> = generators.into_iter().map(|mut g| {
+        let generators: Vec<PolytopePoint> = generators.into_iter().map(|mut g| {
             g[dimension..].fill(0.0);
             g
         }).collect();
@@ -112,7 +112,7 @@ proptest! {
         let factorial: f64 = (1..=dimension).map(|k| k as f64).product();
         let mut cells = Vec::new();
         brute::each_subset(n, dimension, 0, &mut Vec::new(), &mut |chosen| {
-            let simplex: Vec<Point> = chosen.iter().map(|g| generators[*g]).chain([origin]).collect();
+            let simplex: Vec<PolytopePoint> = chosen.iter().map(|g| generators[*g]).chain([origin]).collect();
             cells.push(Polytope::hull(dimension, &simplex).map_or(0.0, |simplex| factorial * simplex.volume()));
         });
         prop_assume!(cells.iter().all(|volume| *volume > 1e-4));
@@ -173,7 +173,7 @@ proptest! {
             let mut inner: Vec<f64> = at.to_vec();
             inner.remove(axis);
             inner.push(0.0);
-            let inner: Point = inner.try_into().unwrap();
+            let inner: PolytopePoint = inner.try_into().unwrap();
             // Near the border the two may differ.
             let depth = body.facets().iter().map(|f| f.excess(&at)).fold(f64::NEG_INFINITY, f64::max);
             prop_assume!(depth.abs() > 1e-6);

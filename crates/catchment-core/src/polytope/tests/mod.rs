@@ -7,7 +7,7 @@ mod sets;
 
 use super::*;
 
-fn point(coordinates: &[f64]) -> Point {
+fn point(coordinates: &[f64]) -> PolytopePoint {
     let mut point = [0.0; MAX_DIMENSION];
     point[..coordinates.len()].copy_from_slice(coordinates);
     point
@@ -45,7 +45,7 @@ fn the_simplex_has_volume_one_over_d_factorial() {
 fn the_hull_of_a_cubes_lattice_points_is_the_cube() {
     for dimension in 1..=5usize {
         let sides: usize = 3;
-        let points: Vec<Point> = (0..sides.pow(dimension as u32))
+        let points: Vec<PolytopePoint> = (0..sides.pow(dimension as u32))
             .map(|index| {
                 let mut p = [0.0; MAX_DIMENSION];
                 for (axis, c) in p.iter_mut().enumerate().take(dimension) {

@@ -11,7 +11,7 @@ const SLIVERS: f64 = 1e-7;
 const BORDER: f64 = 1e-6;
 
 /// How far outside a point is; negative inside.
-fn excess(polytope: &Polytope, point: &Point) -> f64 {
+fn excess(polytope: &Polytope, point: &PolytopePoint) -> f64 {
     polytope.facets().iter().map(|facet| facet.excess(point)).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -24,7 +24,7 @@ fn volume(pieces: &[Polytope]) -> f64 {
 struct Plane {
     kind: usize,
     picks: [usize; 6],
-    normal: Point,
+    normal: PolytopePoint,
     offset: f64,
     shift: f64,
 }
@@ -51,7 +51,7 @@ impl Plane {
             }
             // Through two vertices and more.
             3 | 4 => {
-                let points: Vec<Point> = (0..dimension).map(vertex).collect();
+                let points: Vec<PolytopePoint> = (0..dimension).map(vertex).collect();
                 let mut center = polytope.centroid();
                 center.iter_mut().zip(&self.normal).take(dimension).for_each(|(c, n)| *c += 3.0 * n);
                 let mut simplex = points.clone();
@@ -139,13 +139,13 @@ proptest! {
         share in 0..3usize,
         probes in prop::collection::vec(real(6), 20),
     ) {
-        let mut b: Vec<Point> = b.1;
+        let mut b: Vec<PolytopePoint> = b.1;
         for point in &mut b {
             point[dimension..].fill(0.0);
         }
         // Bodies that share vertices, edges or facets.
         b.extend(a.iter().take(share * dimension / 2));
-        let hull = |points: &[Point]| Polytope::hull(dimension, points);
+        let hull = |points: &[PolytopePoint]| Polytope::hull(dimension, points);
         let (Some(a), Some(b)) = (hull(&a), hull(&b)) else { return Ok(()) };
         let (pieces, shared) = (a.difference(&b), a.intersection(&b));
         for piece in pieces.iter().chain(&shared) {
@@ -215,7 +215,7 @@ proptest! {
         third in prop::collection::vec(real(3), 4),
         probe in real(3),
     ) {
-        let hull = |points: &[Point]| Polytope::hull(3, points);
+        let hull = |points: &[PolytopePoint]| Polytope::hull(3, points);
         let (Some(one), Some(other), Some(third)) = (hull(&one.1), hull(&other.1), hull(&third)) else {
             return Ok(());
         };

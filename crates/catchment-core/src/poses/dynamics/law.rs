@@ -7,7 +7,7 @@ use std::f64::consts::{SQRT_2, TAU};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
-pub enum Law {
+pub enum ScalarDistribution {
     /// Always the same.
     Constant {
         /// The value.
@@ -45,7 +45,7 @@ pub enum Law {
 /// At least half of a law lies in its range: once in 10¹⁹ all of these lie outside.
 const ATTEMPTS: u64 = 64;
 
-impl Law {
+impl ScalarDistribution {
     /// Numbers that are drawn for one value at most: two, as often as it has to be drawn again.
     pub const DRAWN: u64 = 2 * ATTEMPTS;
 
@@ -99,7 +99,7 @@ impl Law {
         }
     }
 
-    /// A value in a range, by numbers uniform in [0, 1) that can be looked up, [`Law::DRAWN`] of them; its mean, put into the range, where none lies there.
+    /// A value in a range, by numbers uniform in [0, 1) that can be looked up, [`ScalarDistribution::DRAWN`] of them; its mean, put into the range, where none lies there.
     pub fn draw(&self, [lo, hi]: [f64; 2], uniform: impl Fn(u64) -> f64) -> f64 {
         let drawn = (0..ATTEMPTS).map(|k| self.value(uniform(2 * k), uniform(2 * k + 1)));
         let mut inside = drawn.filter(|value| (lo..=hi).contains(value));

@@ -22,7 +22,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-pub use law::Law;
+pub use law::ScalarDistribution;
 pub use read::{parse_draw, read_dynamics};
 
 use serde::{Deserialize, Serialize};
@@ -128,18 +128,18 @@ impl Circumstance {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct Dynamics {
-    declared: std::collections::BTreeMap<Circumstance, Law>,
+    declared: std::collections::BTreeMap<Circumstance, ScalarDistribution>,
 }
 
 impl Dynamics {
     /// The law of a circumstance, if it is declared.
-    pub fn law(&self, of: Circumstance) -> Option<&Law> {
+    pub fn law(&self, of: Circumstance) -> Option<&ScalarDistribution> {
         self.declared.get(&of)
     }
 
     /// The same with another law.
     #[must_use]
-    pub fn with(mut self, of: Circumstance, law: Law) -> Self {
+    pub fn with(mut self, of: Circumstance, law: ScalarDistribution) -> Self {
         self.declared.insert(of, law);
         self
     }
@@ -151,7 +151,7 @@ impl Dynamics {
     }
 
     /// What is declared, in the order of [`Circumstance::ALL`].
-    pub fn declared(&self) -> impl Iterator<Item = (Circumstance, &Law)> {
+    pub fn declared(&self) -> impl Iterator<Item = (Circumstance, &ScalarDistribution)> {
         self.declared.iter().map(|(of, law)| (*of, law))
     }
 

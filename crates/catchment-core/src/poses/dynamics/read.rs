@@ -1,7 +1,7 @@
 //! Parser of distributions: from a file, or a line.
 
 use super::super::{Fault, Found, shortened};
-use super::{Circumstance, Dynamics, Law};
+use super::{Circumstance, Dynamics, ScalarDistribution};
 use crate::design::{Design, Findings, Quantity, SourceText, nearest};
 use crate::suggest::{number_help, value_help};
 use std::ops::Range;
@@ -21,7 +21,7 @@ const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { mea
 ///
 /// # Errors
 /// What is wrong with the text, with its bytes.
-pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, Law), Findings> {
+pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Findings> {
     let mut found = Found::default();
     let read = draw(text, design);
     match read {
@@ -34,7 +34,7 @@ pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, Law), Fi
     }
 }
 
-fn draw(text: &str, design: &Design) -> Result<(Circumstance, Law), (Range<usize>, Fault)> {
+fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), (Range<usize>, Fault)> {
     let Some((name, law)) = text.split_once('=') else {
         let message = format!("`{}` is no circumstance and its law", shortened(text));
         return Err((0..text.len(), Fault::new(message, "write \"friction=0.1..0.3\"")));
@@ -114,7 +114,11 @@ impl Reader<'_> {
         }
     }
 
-    fn law(&mut self, value: &Value<'_>, of: Circumstance) -> Result<Law, (Range<usize>, Fault)> {
+    fn law(
+        &mut self,
+        value: &Value<'_>,
+        of: Circumstance,
+    ) -> Result<ScalarDistribution, (Range<usize>, Fault)> {
         if let DeValue::Table(table) = value.get_ref() {
             return self.table(table, value.span(), of);
         }
@@ -126,7 +130,7 @@ impl Reader<'_> {
         table: &DeTable<'_>,
         span: Range<usize>,
         of: Circumstance,
-    ) -> Result<Law, (Range<usize>, Fault)> {
+    ) -> Result<ScalarDistribution, (Range<usize>, Fault)> {
         const KEYS: [&str; 7] = ["mean", "sigma", "from", "to", "median", "factor", "measured"];
         for (name, _) in table {
             if !KEYS.contains(&&**name.get_ref()) {
@@ -149,13 +153,13 @@ impl Reader<'_> {
             Ok(number(first, false)?.zip(number(second, bare)?).filter(|_| table.len() == 2))
         };
         if let Some((mean, sigma)) = of_two("mean", "sigma", false)? {
-            return Ok(Law::Normal { mean, sigma });
+            return Ok(ScalarDistribution::Normal { mean, sigma });
         }
         if let Some((from, to)) = of_two("from", "to", false)? {
-            return Ok(Law::Uniform { from, to });
+            return Ok(ScalarDistribution::Uniform { from, to });
         }
         if let Some((median, factor)) = of_two("median", "factor", true)? {
-            return Ok(Law::Lognormal { median, factor });
+            return Ok(ScalarDistribution::Lognormal { median, factor });
         }
         let list = table.get("measured").filter(|_| table.len() == 1);
         let Some(list) = list else {
@@ -174,7 +178,7 @@ impl Reader<'_> {
             let read = quantity(&written(value)?, of, None, design);
             measured.push(read.map_err(|fault| (value.span(), fault))?);
         }
-        Ok(Law::Measured { measured })
+        Ok(ScalarDistribution::Measured { measured })
     }
 }
 
@@ -203,7 +207,7 @@ fn named(name: &str) -> Result<Circumstance, Fault> {
 }
 
 /// A law on a line.
-fn line(text: &str, of: Circumstance, design: &Design) -> Result<Law, Fault> {
+fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribution, Fault> {
     let two = |separator: &str| {
         let (first, second) = text.split_once(separator)?;
         Some((first.trim(), second.trim()))
@@ -215,16 +219,19 @@ fn line(text: &str, of: Circumstance, design: &Design) -> Result<Law, Fault> {
     };
     if let Some(parts) = two("±").or_else(|| two("+-")) {
         let (mean, sigma) = both(parts)?;
-        return Ok(Law::Normal { mean, sigma });
+        return Ok(ScalarDistribution::Normal { mean, sigma });
     }
     if let Some((median, factor)) = two("*/") {
-        return Ok(Law::Lognormal { median: quantity(median, of, None, design)?, factor: plain(factor)? });
+        return Ok(ScalarDistribution::Lognormal {
+            median: quantity(median, of, None, design)?,
+            factor: plain(factor)?,
+        });
     }
     if let Some(parts) = two("..") {
         let (from, to) = both(parts)?;
-        return Ok(Law::Uniform { from, to });
+        return Ok(ScalarDistribution::Uniform { from, to });
     }
-    Ok(Law::constant(quantity(text, of, None, design)?))
+    Ok(ScalarDistribution::constant(quantity(text, of, None, design)?))
 }
 
 /// What stands behind the number.
@@ -292,16 +299,16 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
 }
 
 /// A law that is one, and lies in the range of what it describes.
-fn sound(law: Law, of: Circumstance) -> Result<Law, Fault> {
+fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, Fault> {
     let name = of.name();
     match &law {
-        Law::Normal { sigma, .. } if *sigma < 0.0 => {
+        ScalarDistribution::Normal { sigma, .. } if *sigma < 0.0 => {
             return Err(Fault::new(format!("{name}: a standard deviation cannot be negative"), FORM));
         }
-        Law::Uniform { from, to } if from > to => {
+        ScalarDistribution::Uniform { from, to } if from > to => {
             return Err(Fault::new(format!("{name}: {from} is above {to}"), "the lower first"));
         }
-        Law::Lognormal { median, factor } if *factor < 1.0 || *median <= 0.0 => {
+        ScalarDistribution::Lognormal { median, factor } if *factor < 1.0 || *median <= 0.0 => {
             let message = format!("{name}: a lognormal law has a median above 0 and a factor of 1 or more");
             return Err(Fault::new(message, "such as \"0.2 */ 1.3\""));
         }

@@ -31,18 +31,21 @@ fn every_law_is_read_in_its_units() {
                 height = \"5 mm\"\n";
     let found = read(&text.replace("1_800 g", "1800 g")).unwrap();
     let law = |of| found.law(of).unwrap().clone();
-    assert_eq!(law(Circumstance::Speed), Law::Normal { mean: 1.0, sigma: 0.2 });
-    let Law::Normal { mean, sigma } = law(Circumstance::DriftX) else { panic!() };
+    assert_eq!(law(Circumstance::Speed), ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 });
+    let ScalarDistribution::Normal { mean, sigma } = law(Circumstance::DriftX) else { panic!() };
     assert!(mean == 0.0 && near(sigma, 0.1));
-    let Law::Uniform { from, to } = law(Circumstance::SpinYaw) else { panic!() };
+    let ScalarDistribution::Uniform { from, to } = law(Circumstance::SpinYaw) else { panic!() };
     assert!(near(from, -1f64.to_radians()) && near(to, 2f64.to_radians()));
-    assert_eq!(law(Circumstance::Mass), Law::Uniform { from: 1.8, to: 2.2 });
-    assert_eq!(law(Circumstance::Friction), Law::Lognormal { median: 0.2, factor: 1.3 });
-    assert_eq!(law(Circumstance::Restitution), Law::Measured { measured: vec![0.05, 0.1, 0.3] });
-    let Law::Constant { value } = law(Circumstance::Height) else { panic!() };
+    assert_eq!(law(Circumstance::Mass), ScalarDistribution::Uniform { from: 1.8, to: 2.2 });
+    assert_eq!(law(Circumstance::Friction), ScalarDistribution::Lognormal { median: 0.2, factor: 1.3 });
+    assert_eq!(
+        law(Circumstance::Restitution),
+        ScalarDistribution::Measured { measured: vec![0.05, 0.1, 0.3] }
+    );
+    let ScalarDistribution::Constant { value } = law(Circumstance::Height) else { panic!() };
     assert!(near(value, 0.1) && found.varies());
     let (of, law) = parse_draw("speed = 40 mm/s +- 10 mm/s", &design()).unwrap();
-    assert_eq!((of, law), (Circumstance::Speed, Law::Normal { mean: 0.8, sigma: 0.2 }));
+    assert_eq!((of, law), (Circumstance::Speed, ScalarDistribution::Normal { mean: 0.8, sigma: 0.2 }));
     let json = serde_json::to_string(&found).unwrap();
     assert_eq!(serde_json::from_str::<Dynamics>(&json).unwrap(), found);
 }
@@ -108,23 +111,35 @@ fn values_have_the_moments_of_their_law() {
     let half = (2.0 / std::f64::consts::PI).sqrt();
     let spread = libm::log(1.3);
     let cases = [
-        (Law::Normal { mean: 1.0, sigma: 0.2 }, [-10.0, 10.0], 1.0, 0.2),
-        (Law::Normal { mean: 0.0, sigma: 0.2 }, [0.0, 10.0], 0.2 * half, 0.2),
-        (Law::Uniform { from: 1.0, to: 3.0 }, [0.0, 10.0], 2.0, 0.58),
-        (Law::Uniform { from: -1.0, to: 3.0 }, [0.0, 10.0], 1.5, 0.87),
-        (Law::Lognormal { median: 0.2, factor: 1.3 }, [0.0, 10.0], 0.2 * (0.5 * spread * spread).exp(), 0.06),
-        (Law::Measured { measured: vec![1.0, 2.0, 6.0] }, [0.0, 10.0], 3.0, 2.2),
-        (Law::constant(0.3), [0.0, 1.0], 0.3, 1e-9),
+        (ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 }, [-10.0, 10.0], 1.0, 0.2),
+        (ScalarDistribution::Normal { mean: 0.0, sigma: 0.2 }, [0.0, 10.0], 0.2 * half, 0.2),
+        (ScalarDistribution::Uniform { from: 1.0, to: 3.0 }, [0.0, 10.0], 2.0, 0.58),
+        (ScalarDistribution::Uniform { from: -1.0, to: 3.0 }, [0.0, 10.0], 1.5, 0.87),
+        (
+            ScalarDistribution::Lognormal { median: 0.2, factor: 1.3 },
+            [0.0, 10.0],
+            0.2 * (0.5 * spread * spread).exp(),
+            0.06,
+        ),
+        (ScalarDistribution::Measured { measured: vec![1.0, 2.0, 6.0] }, [0.0, 10.0], 3.0, 2.2),
+        (ScalarDistribution::constant(0.3), [0.0, 1.0], 0.3, 1e-9),
     ];
     for (law, range, mean, sigma) in cases {
-        let values: Vec<f64> =
-            (0..COUNT).map(|k| law.draw(range, |index| uniform(Law::DRAWN * k + index))).collect();
+        let values: Vec<f64> = (0..COUNT)
+            .map(|k| law.draw(range, |index| uniform(ScalarDistribution::DRAWN * k + index)))
+            .collect();
         assert!(values.iter().all(|value| (range[0]..=range[1]).contains(value)), "{law:?}");
         let found = values.iter().sum::<f64>() / COUNT as f64;
         assert!((found - mean).abs() < 5.0 * sigma / root, "{law:?}: {found} for {mean}");
     }
-    assert!((Law::Normal { mean: 0.0, sigma: 1.0 }.inside([-1.0, 1.0]) - 0.682_689_492).abs() < 1e-8);
     assert!(
-        (Law::Lognormal { median: 0.2, factor: 1.3 }.inside([0.2 / 1.3, 0.26]) - 0.682_689_492).abs() < 1e-8
+        (ScalarDistribution::Normal { mean: 0.0, sigma: 1.0 }.inside([-1.0, 1.0]) - 0.682_689_492).abs()
+            < 1e-8
+    );
+    assert!(
+        (ScalarDistribution::Lognormal { median: 0.2, factor: 1.3 }.inside([0.2 / 1.3, 0.26])
+            - 0.682_689_492)
+            .abs()
+            < 1e-8
     );
 }

@@ -45,7 +45,7 @@ use crate::contact::{FeatureKind, Features};
 use crate::document::Share;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Resolution;
-use crate::method::Decide;
+use crate::method::DecisionMethod;
 use crate::method::descent::{self, FrictionOutOfRange, Immobility, Sticking};
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::poses::{Distribution, Spread};

@@ -224,7 +224,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
     let jam = found.jams.iter().find(|jam| (jam.pose.pitch.abs() - 0.5 * PI).abs() < 1e-3).unwrap();
     let examined = jam.examined.unwrap();
     let held = examined.immobility.unwrap();
-    assert_eq!(held.order, crate::method::descent::Order::First);
+    assert_eq!(held.order, crate::method::descent::ImmobilityOrder::First);
     assert!(held.slope[0] > 0.1);
     let (climb, on_grid) = (examined.way_out.unwrap().climb, jam.depth_on_grid_d.unwrap());
     assert!((on_grid - climb).abs() < 0.02, "{on_grid} {climb}");

@@ -3,7 +3,7 @@
 use super::{Examined, Extent, FeatureContact, Firmness, NamedFeature};
 use crate::design::Design;
 use crate::document::{Document, Units, rounded_down, significant};
-use crate::method::descent::{Immobility, Order, Sticking};
+use crate::method::descent::{Immobility, ImmobilityOrder, Sticking};
 use crate::pose::{Dof, PoseError};
 
 /// Cosine of a pitch at which roll and yaw can no longer be distinguished: 89°.
@@ -31,15 +31,15 @@ impl Immobility {
             format!(", curvature {} per D", significant(curvature).replace('-', "−"))
         });
         match self.order {
-            Order::First => {
+            ImmobilityOrder::First => {
                 format!("first-order immobile: a small shift s raises the COR by {slope} s or more")
             }
-            Order::Second => format!("second-order immobile: {ways} free to first order{bends}"),
-            Order::Neutral if self.free == 0 => {
+            ImmobilityOrder::Second => format!("second-order immobile: {ways} free to first order{bends}"),
+            ImmobilityOrder::Neutral if self.free == 0 => {
                 "first-order immobile, but its smallest slope is almost 0".to_owned()
             }
-            Order::Neutral => format!("neutral: {ways} free to first and second order"),
-            Order::Unstable => format!("unstable: {ways} free to first order{bends}"),
+            ImmobilityOrder::Neutral => format!("neutral: {ways} free to first and second order"),
+            ImmobilityOrder::Unstable => format!("unstable: {ways} free to first order{bends}"),
         }
     }
 }

@@ -36,7 +36,7 @@ use crate::contact::Features;
 use crate::document::Share;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Resolution;
-use crate::method::Decide;
+use crate::method::DecisionMethod;
 use crate::method::descent;
 use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;

@@ -37,7 +37,7 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
         assert_eq!(place.examined.unwrap().firmness, crate::run::jams::Firmness::Sharp);
         assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
         let held = place.examined.unwrap().immobility.unwrap();
-        assert_eq!(held.order, descent::Order::First, "{place:?}");
+        assert_eq!(held.order, descent::ImmobilityOrder::First, "{place:?}");
         assert!(held.slope.iter().all(|slope| (slope - 1.0).abs() < 1e-3), "{place:?}");
     }
     assert_eq!(found.rests.iter().map(|place| place.of_box.count).sum::<usize>(), 600);
@@ -76,7 +76,7 @@ fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
             let found = run(&problem, &settings, &Exec::new()).unwrap();
             let held = found.rests[0].examined.unwrap();
             let immobility = held.immobility.unwrap();
-            assert_eq!(immobility.order, descent::Order::First, "{family} {held:?}");
+            assert_eq!(immobility.order, descent::ImmobilityOrder::First, "{family} {held:?}");
             assert!((immobility.slope[0] - slope).abs() < 2e-4, "{family} {immobility:?}");
             assert_eq!(held.sticks.unwrap().holds_from, Some(0.0));
         }
@@ -229,7 +229,7 @@ fn curvature_is_the_rise_of_a_push() {
     let place = &found.rests[0];
     let examined = place.examined.unwrap();
     let held = examined.immobility.unwrap();
-    assert_eq!(held.order, descent::Order::Second, "{place:?}");
+    assert_eq!(held.order, descent::ImmobilityOrder::Second, "{place:?}");
     let expected = 0.5 * held.curvature.unwrap() * crate::run::jams::PUSH.powi(2);
     let rise = examined.rise_at_most_d.unwrap();
     assert!((rise / expected - 1.0).abs() < 0.05, "{rise} {expected} {place:?}");

@@ -2,8 +2,8 @@
 
 use super::{UnsoundError, hold, not_negative, share};
 use crate::schema::{BasinsReport, RunBody, WindowSection};
-use catchment_core::method::certified::Certificate;
-use catchment_core::method::flood::Reason;
+use catchment_core::method::certified::BoxCertificate;
+use catchment_core::method::flood::ToleranceReason;
 use catchment_core::run::jams::Jams;
 
 impl RunBody {
@@ -57,7 +57,7 @@ impl RunBody {
     }
 }
 
-fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
+fn check_certificate(found: &BoxCertificate) -> Result<(), UnsoundError> {
     let shares =
         [(found.yes, "yes"), (found.no, "no"), (found.undecided, "undecided"), (found.window, "window")];
     for (value, name) in shares {
@@ -112,7 +112,7 @@ fn interval([lo, hi]: [f64; 2], name: &str) -> Result<(), UnsoundError> {
 
 fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError> {
     not_negative(basins.tolerance.depth, "basins.tolerance.depth")?;
-    if let Reason::WidestGap { between: [lo, hi], height_step } = basins.tolerance.reason {
+    if let ToleranceReason::WidestGap { between: [lo, hi], height_step } = basins.tolerance.reason {
         hold(lo <= hi, "basins.tolerance.between", "must be in order")?;
         not_negative(height_step, "basins.tolerance.height_step")?;
     }
@@ -150,7 +150,7 @@ mod tests {
     use crate::Report;
     use crate::schema::{PartitionReport, RunBody, SampleReport, WindowSection, basins};
     use catchment_core::exec::Exec;
-    use catchment_core::method::certified::Certificate;
+    use catchment_core::method::certified::BoxCertificate;
     use catchment_core::method::confluence::Joined;
     use catchment_core::method::correction::Stratum;
     use catchment_core::problem::Problem;
@@ -165,7 +165,8 @@ mod tests {
         let report = Report::new(&design, &found.acceptance, null.clone(), None, &Exec::new()).unwrap();
         let mut body = report.with_basins(&found.acceptance, &found.hierarchy).body;
         body.partition = Some(PartitionReport::default());
-        body.certificate = Some(Certificate { yes: 0.3, no: 0.6, undecided: 0.1, ..Certificate::default() });
+        body.certificate =
+            Some(BoxCertificate { yes: 0.3, no: 0.6, undecided: 0.1, ..BoxCertificate::default() });
         body.joined = Some(Joined { cells: 9, joined: 7, tried: 5, ..Joined::default() });
         let problem = Problem::of(design.clone()).unwrap();
         let asked = jams::JamsSettings { motions: Some(300), ..jams::JamsSettings::default() };

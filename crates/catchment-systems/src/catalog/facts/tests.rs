@@ -5,7 +5,7 @@ use super::*;
 use catchment::design::family::PinHole;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::zraa::{Square, Zraa, ZraaSettings, circle_bounds, circle_square, run};
+use catchment::method::zraa::{AcceptedSquare, Zraa, ZraaSettings, circle_bounds, circle_square, run};
 use catchment::problem::Problem;
 
 fn fact(name: &str) -> Fact {
@@ -17,14 +17,14 @@ fn published(name: &str) -> f64 {
 }
 
 /// The exact area of acceptance of a family, with its square.
-fn computed(spec: FamilySpec) -> (Design, Zraa, Square) {
+fn computed(spec: FamilySpec) -> (Design, Zraa, AcceptedSquare) {
     let mut alignment = Alignment::default_for(Some(spec.family()));
     alignment.free = alignment.free.iter().filter(|dof| !dof.is_rotation()).collect();
     let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     let problem = Problem::of(design.clone()).unwrap();
     let zraa = run(problem.pair(), &ZraaSettings::default(), &Exec::new()).unwrap();
-    let square = Square::of(&zraa, &Exec::new()).unwrap();
+    let square = AcceptedSquare::of(&zraa, &Exec::new()).unwrap();
     (design, zraa, square)
 }
 
@@ -93,9 +93,9 @@ fn closed_forms_are_what_the_program_computes() {
     // The saddle and the pyramid are polygons: exact.
     let (_, zraa, square) = computed(FamilySpec::new(Family::XFace3d));
     assert!((area(&zraa) - Shape::Diamond(1.0).area()).abs() < 1e-9);
-    assert!((square.edge - 1.0).abs() < Square::TOLERANCE);
+    assert!((square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
     let (_, zraa, square) = computed(FamilySpec::new(Family::Pyramid));
-    assert!((area(&zraa) - 1.0).abs() < 1e-9 && (square.edge - 1.0).abs() < Square::TOLERANCE);
+    assert!((area(&zraa) - 1.0).abs() < 1e-9 && (square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
     // The cone has width 1; the one around the unit square is √2 as wide.
     for chord_error in [0.004, 0.001] {
         let (design, zraa, square) = computed(FamilySpec::new(Family::Cone).with_chord_error(chord_error));
@@ -103,7 +103,10 @@ fn closed_forms_are_what_the_program_computes() {
         let [less, more] = circle_square(&design, &zraa, &square).unwrap();
         let (inscribed, around) = (Shape::Disc(0.5), Shape::Disc(AROUND));
         assert!(low <= inscribed.area() && inscribed.area() <= high);
-        assert!(less <= inscribed.onaa() + Square::TOLERANCE && inscribed.onaa() <= more, "{less} {more}");
+        assert!(
+            less <= inscribed.onaa() + AcceptedSquare::TOLERANCE && inscribed.onaa() <= more,
+            "{less} {more}"
+        );
         assert!(2.0 * low <= around.area() && around.onaa() <= SQRT_2 * more);
         assert!(high / low - 1.0 < 5.0 * chord_error);
     }

@@ -7,7 +7,7 @@ use super::cells::{ACCEPTED, View, corners, dashed, dotted, face, filled};
 use super::{DrawError, problem};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
-use catchment::method::zraa::{Square, Zraa, ZraaSettings, run};
+use catchment::method::zraa::{AcceptedSquare, Zraa, ZraaSettings, run};
 use catchment::pose::PoseError;
 use catchment::problem::Problem;
 use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
@@ -41,7 +41,7 @@ pub(super) struct Row {
 }
 
 enum Region {
-    Computed(Zraa, Square),
+    Computed(Zraa, AcceptedSquare),
     Closed(Shape),
     /// The circle of a printed area.
     OfNumber(Shape),
@@ -125,7 +125,7 @@ fn of_family(
     let design = Design { name: name.to_owned(), connector, width: 1.0, unit: None, alignment };
     let problem = Problem::of(design)?;
     let zraa = run(problem.pair(), &ZraaSettings::default(), exec)?;
-    let square = Square::of(&zraa, exec)?;
+    let square = AcceptedSquare::of(&zraa, exec)?;
     let words = match (&zraa, family) {
         (Zraa::Interval { from, to, .. }, _) => {
             vec![format!("{} D long", trimmed(to - from, 4)), words.to_owned()]

@@ -15,9 +15,9 @@ use crate::design::{Alignment, ConnectorSpec, Design};
 use crate::exec::Exec;
 use crate::landscape::{Landscape, Resolution};
 use crate::method::flood::steepest::Metric;
-use crate::method::flood::tolerance::{self, Choice, Reason};
+use crate::method::flood::tolerance::{self, Choice, ToleranceReason};
 use crate::method::flood::tree::explains;
-use crate::method::flood::{self, FloodError, Rule, Watersheds, target, verdict};
+use crate::method::flood::{self, DrainageRule, FloodError, Watersheds, target, verdict};
 use serde::{Deserialize, Serialize};
 
 /// Settings that change the result.
@@ -56,7 +56,7 @@ impl MeyerSettings {
 
 /// The result of flooding.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flooding {
+pub struct MeyerFlooding {
     /// Outcome of every cell.
     pub acceptance: Acceptance,
     /// The tolerance that was used, and why.
@@ -89,7 +89,7 @@ pub fn accept(
     docks: &dyn Fn(usize) -> bool,
     settings: &MeyerSettings,
     exec: &Exec,
-) -> Result<Flooding, FloodError> {
+) -> Result<MeyerFlooding, FloodError> {
     let Landscape { grid, heights } = landscape;
     if let Some(depth) = settings.depth_tolerance
         && !(depth >= 0.0 && depth.is_finite())
@@ -102,7 +102,7 @@ pub fn accept(
     })?;
     let (shape, targets) = (grid.shape(), target::cells(grid, alignment));
     let tolerance = match settings.depth_tolerance {
-        Some(depth) => Choice { depth, reason: Reason::Given },
+        Some(depth) => Choice { depth, reason: ToleranceReason::Given },
         None => widest_gap(landscape, alignment, &targets, exec)?,
     };
     let mut division = divide(&shape, heights, &targets, tolerance.depth, settings.rules, exec)?;
@@ -139,7 +139,7 @@ pub fn accept(
     let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
     let warnings = verdict::warnings(landscape, &outcomes, &targets, border_cells, exec)?;
     let acceptance = Acceptance { method: "meyer", domain: Domain::Grid(grid.clone()), outcomes, warnings };
-    Ok(Flooding { acceptance, tolerance, watersheds })
+    Ok(MeyerFlooding { acceptance, tolerance, watersheds })
 }
 
 /// The basin that gathers at the mated pose.
@@ -166,7 +166,7 @@ fn widest_gap(
     let Landscape { grid, heights } = landscape;
     let shape = grid.shape();
     let metric = Metric { grid, alignment };
-    let (labels, tree) = flood::divide(&shape, heights, targets, Rule::Lowest, &metric, exec)?;
+    let (labels, tree) = flood::divide(&shape, heights, targets, DrainageRule::Lowest, &metric, exec)?;
     let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
     let mated = targets.iter().copied().reduce(lower);
     let staircase = mated.map_or_else(Vec::new, |cell| tree.staircase(labels[cell], heights[cell].into()));

@@ -5,9 +5,9 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
+use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
 use crate::method::flood::{FloodError, docks};
-use crate::method::registry::Entry;
+use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -19,7 +19,7 @@ const INFO: Info = Info {
 };
 
 /// Its line in the registry.
-pub(in crate::method) const ENTRY: Entry = Entry::of::<MeyerSettings>(&INFO);
+pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<MeyerSettings>(&INFO);
 
 impl MeyerSettings {
     /// These settings with the tolerance of the text where none was given.
@@ -29,7 +29,7 @@ impl MeyerSettings {
     }
 }
 
-impl Decide for MeyerSettings {
+impl DecisionMethod for MeyerSettings {
     fn info(&self) -> &'static Info {
         &INFO
     }
@@ -67,7 +67,7 @@ impl Decide for MeyerSettings {
         &["landscape", "watersheds"]
     }
 
-    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let landscape =
             Landscape::compute(problem.pair(), grid_of(&INFO, domain)?, exec).map_err(FloodError::from)?;
         let flooding = accept(
@@ -83,6 +83,6 @@ impl Decide for MeyerSettings {
             watersheds: Some(flooding.watersheds),
             ..ByProducts::default()
         };
-        Ok(Decided { by_products, ..Decided::plain(flooding.acceptance, used.settings()) })
+        Ok(MethodOutput { by_products, ..MethodOutput::plain(flooding.acceptance, used.settings()) })
     }
 }

@@ -38,7 +38,7 @@ use super::drain::LABEL_LIMIT;
 use super::{FloodError, Watersheds};
 use crate::exec::Exec;
 use crate::method::flood;
-pub use accept::{Flooding, MeyerSettings, accept, bytes};
+pub use accept::{MeyerFlooding, MeyerSettings, accept, bytes};
 pub use basins::{Height, Rules};
 use basins::{OUTSIDE, is_basin};
 use merge::Merged;

@@ -28,7 +28,7 @@ use super::{POLYTOPE_BYTES, PartitionError, PartitionSettings};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
-use crate::polytope::{Point, Polytope, minkowski_sum_of};
+use crate::polytope::{Polytope, PolytopePoint, minkowski_sum_of};
 use crate::pose::{Dof, DofSet};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Subject {
+pub enum SolidShape {
     /// Both halves, docked.
     Halves,
     /// The reflected moving half, swept over its angle.
@@ -65,7 +65,7 @@ pub struct Solid {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solids {
     /// What it is.
-    pub subject: Subject,
+    pub subject: SolidShape,
     /// What the three axes of the file show: lengths in D (x, y, z), or an angle in radians by its name.
     pub axes: [&'static str; 3],
     /// 3, or 2 where the bodies are flat.
@@ -121,25 +121,25 @@ impl From<OutOfBudget> for SolidError {
 /// [`SolidError`]; cancel is checked for every body.
 pub fn shapes(
     pair: &Pair,
-    subject: Subject,
+    subject: SolidShape,
     settings: &PartitionSettings,
     exec: &Exec,
 ) -> Result<Solids, SolidError> {
     settings.check()?;
     let free = pair.alignment.free;
-    let width = if subject == Subject::Halves { f64::INFINITY } else { 1.0 / settings.strips as f64 };
+    let width = if subject == SolidShape::Halves { f64::INFINITY } else { 1.0 / settings.strips as f64 };
     let pieces = Pieces::of(pair, width)?;
     let frame = match subject {
-        Subject::Halves => Frame::of_solids(),
-        Subject::Swept if free.rotations() == 0 => return Err(SolidError::NothingTurns),
-        Subject::Swept => Frame::of_swept(&pieces, free)?,
-        Subject::Collision => Frame::of_collision(free)?,
+        SolidShape::Halves => Frame::of_solids(),
+        SolidShape::Swept if free.rotations() == 0 => return Err(SolidError::NothingTurns),
+        SolidShape::Swept => Frame::of_swept(&pieces, free)?,
+        SolidShape::Collision => Frame::of_collision(free)?,
     };
     let mut maker = Maker { frame, exec, solids: Vec::new() };
     match subject {
-        Subject::Halves => maker.halves(&pieces, pair.mated_height())?,
-        Subject::Swept => maker.swept(&pieces, &slices(pair, settings))?,
-        Subject::Collision => maker.collision(&pieces, &slices(pair, settings), free)?,
+        SolidShape::Halves => maker.halves(&pieces, pair.mated_height())?,
+        SolidShape::Swept => maker.swept(&pieces, &slices(pair, settings))?,
+        SolidShape::Collision => maker.collision(&pieces, &slices(pair, settings), free)?,
     }
     let count = |pieces: &[Piece]| pieces.iter().map(|p| p.number + 1).max().unwrap_or(0);
     let dimension = maker.solids.iter().map(|s| if s.faces.len() == 1 { 2 } else { 3 }).max().unwrap_or(3);
@@ -218,7 +218,7 @@ impl Frame {
     /// A polytope as a body; a flat one lies at `layer` in y.
     fn solid(&self, polytope: &Polytope, places: &[usize], layer: f64) -> Solid {
         let in_a_layer = self.axes == LENGTHS && *places == [0, 2];
-        let at = |point: &Point| {
+        let at = |point: &PolytopePoint| {
             let mut place = [0.0; 3];
             if in_a_layer {
                 place[1] = layer;

@@ -33,7 +33,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, free: &[Dof]) -> Pair {
     Pair::new(&connector(family, aspect_ratio, &alignment), &alignment)
 }
 
-fn made(pair: &Pair, subject: Subject, slices: usize) -> Solids {
+fn made(pair: &Pair, subject: SolidShape, slices: usize) -> Solids {
     shapes(pair, subject, &PartitionSettings { slices, strips: 1 }, &Exec::new()).unwrap()
 }
 
@@ -127,10 +127,10 @@ fn every_body_is_closed_and_faces_out() {
         (Family::Pyramid, &[Dof::Y, Dof::Yaw]),
     ] {
         let pair = pair(family, 0.5, 0.2, free);
-        for subject in [Subject::Halves, Subject::Swept, Subject::Collision] {
+        for subject in [SolidShape::Halves, SolidShape::Swept, SolidShape::Collision] {
             let Ok(shape) = shapes(&pair, subject, &PartitionSettings { slices: 3, strips: 1 }, &Exec::new())
             else {
-                assert_eq!(subject, Subject::Swept);
+                assert_eq!(subject, SolidShape::Swept);
                 continue;
             };
             assert!(!shape.solids.is_empty());
@@ -167,7 +167,7 @@ fn halves_have_the_volume_of_their_surfaces() {
         [(Family::VFace, XY), (Family::XFace3d, XY), (Family::Pyramid, XY), (Family::Cone, XY)]
     {
         let pair = pair(family, 0.5, 0.2, free);
-        let shape = made(&pair, Subject::Halves, 3);
+        let shape = made(&pair, SolidShape::Halves, 3);
         for (half, is_fixed) in [(&pair.fixed, true), (&pair.moving, false)] {
             let of_half = shape.solids.iter().filter(|solid| solid.fixed.is_some() == is_fixed);
             let (pieces, whole) = (
@@ -179,7 +179,7 @@ fn halves_have_the_volume_of_their_surfaces() {
     }
     // Flat: notch and tip of H = ½ are both half of their box, as are both layers of both halves of the X.
     for (family, pieces, area) in [(Family::VFace, [2, 1], 0.5), (Family::XFace, [2, 2], 1.0)] {
-        let shape = made(&pair(family, 0.5, 0.0, X_PITCH), Subject::Halves, 3);
+        let shape = made(&pair(family, 0.5, 0.0, X_PITCH), SolidShape::Halves, 3);
         assert_eq!((shape.pieces, shape.dimension), (pieces, 2));
         assert!((shape.solids.iter().map(measure).sum::<f64>() - area).abs() < 1e-9, "{family:?}");
     }
@@ -198,7 +198,7 @@ fn boxes_add_their_sides() {
         brick(b, DVec3::new(0.0, 0.0, 0.0625)),
     );
     let pair = Pair::new(&connector, &alignment(Family::Pyramid, 0.0, XY));
-    let shape = made(&pair, Subject::Collision, 3);
+    let shape = made(&pair, SolidShape::Collision, 3);
     let size = a + b;
     assert_eq!(shape.solids.len(), 1);
     assert!((measure(&shape.solids[0]) - size.x * size.y * size.z).abs() < 1e-12);
@@ -208,7 +208,7 @@ fn boxes_add_their_sides() {
     // One translation: the rectangle of x and z, on the axis of y where that is the free one.
     for (free, side) in [(X, size.x), (&[Dof::Y], size.y)] {
         let shape =
-            made(&Pair::new(&connector, &alignment(Family::Pyramid, 0.0, free)), Subject::Collision, 3);
+            made(&Pair::new(&connector, &alignment(Family::Pyramid, 0.0, free)), SolidShape::Collision, 3);
         let corners = || shape.solids.iter().flat_map(|s| &s.vertices).copied();
         let extent = corners().reduce(DVec3::max).unwrap() - corners().reduce(DVec3::min).unwrap();
         assert_eq!(shape.dimension, 2);
@@ -222,7 +222,7 @@ fn boxes_add_their_sides() {
 #[test]
 fn a_v_over_its_notch_collides_over_three_times_its_height() {
     for (height, cor) in [(0.5, 0.0), (1.0, 0.3), (2.0, -1.0)] {
-        let shape = made(&pair(Family::VFace, height, cor, X), Subject::Collision, 3);
+        let shape = made(&pair(Family::VFace, height, cor, X), SolidShape::Collision, 3);
         assert_eq!((shape.pieces, shape.dimension, shape.axes), ([2, 1], 2, ["x", "y", "z"]));
         assert!(shape.solids.iter().all(|solid| (measure(solid) - 1.75 * height).abs() < 1e-9));
         assert!((union(&shape) - 3.0 * height).abs() < 1e-9, "{}", union(&shape));
@@ -233,7 +233,7 @@ fn a_v_over_its_notch_collides_over_three_times_its_height() {
 #[test]
 fn a_swept_tip_is_made_of_cones() {
     let height = 0.5;
-    let shape = made(&pair(Family::VFace, height, -height / 6.0, X_PITCH), Subject::Swept, 15);
+    let shape = made(&pair(Family::VFace, height, -height / 6.0, X_PITCH), SolidShape::Swept, 15);
     assert_eq!((shape.axes, shape.dimension), (["x", "pitch", "z"], 3));
     // 15 slices of 12° about 0, and a half one at either end: 16 intervals of 2 · 3 bodies.
     assert_eq!(shape.solids.len(), 16 * 6);
@@ -271,7 +271,7 @@ fn the_upper_side_is_first_contact_and_the_lower_side_contact_from_below() {
         let over = |half: &Half| half.mapped(|p| DVec3::new(p.x, -p.y, -p.z));
         let turned = Connector::from_halves(over(&halves.fixed), over(&halves.moving));
         let below = Pair::new(&turned, &Alignment { center_of_rotation: -cor, ..upright.clone() });
-        let shape = made(&pair, Subject::Collision, 3);
+        let shape = made(&pair, SolidShape::Collision, 3);
         let stream = Stream::new(case as u64);
         let mut met = 0;
         for k in 0..150 {
@@ -305,7 +305,7 @@ fn with_a_rotation_the_upper_side_is_first_contact_on_every_slice() {
         [(Family::VFace, 0.0), (Family::XFace, 0.5), (Family::SFace, -0.5)].into_iter().enumerate()
     {
         let pair = pair(family, 1.0, cor, free);
-        let shape = made(&pair, Subject::Collision, 15);
+        let shape = made(&pair, SolidShape::Collision, 15);
         let stream = Stream::new(case as u64);
         let mut met = 0;
         for k in 0..80 {
@@ -334,21 +334,21 @@ fn what_has_no_shape_is_refused() {
         let pair = pair(Family::Pyramid, 0.5, 0.0, free);
         shapes(&pair, subject, &PartitionSettings { slices: 3, strips: 1 }, &Exec::new()).unwrap_err()
     };
-    assert_eq!(ask(XY, Subject::Swept), SolidError::NothingTurns);
-    assert_eq!(ask(&[], Subject::Collision), SolidError::NothingMoves);
+    assert_eq!(ask(XY, SolidShape::Swept), SolidError::NothingTurns);
+    assert_eq!(ask(&[], SolidShape::Collision), SolidError::NothingMoves);
     let of = |error| match error {
         SolidError::Dimensions { dimensions, .. } => dimensions,
         other => panic!("{other:?}"),
     };
-    assert_eq!(of(ask(&[Dof::X, Dof::Yaw], Subject::Swept)), 4);
-    assert_eq!(of(ask(&[Dof::X, Dof::Y, Dof::Yaw], Subject::Collision)), 4);
-    assert_eq!(of(ask(&[Dof::Pitch, Dof::Yaw], Subject::Collision)), 4);
+    assert_eq!(of(ask(&[Dof::X, Dof::Yaw], SolidShape::Swept)), 4);
+    assert_eq!(of(ask(&[Dof::X, Dof::Y, Dof::Yaw], SolidShape::Collision)), 4);
+    assert_eq!(of(ask(&[Dof::Pitch, Dof::Yaw], SolidShape::Collision)), 4);
     let planar = pair(Family::VFace, 1.0, 0.0, X_PITCH);
     let many = PartitionSettings { slices: 1000, strips: 200 };
     let small = Exec::new().with_memory_budget(1 << 20);
-    let refused = shapes(&planar, Subject::Collision, &many, &small).unwrap_err();
+    let refused = shapes(&planar, SolidShape::Collision, &many, &small).unwrap_err();
     assert!(matches!(refused, SolidError::Partition(PartitionError::OutOfBudget(_))), "{refused:?}");
     let none = PartitionSettings { slices: 0, strips: 1 };
-    let refused = shapes(&planar, Subject::Halves, &none, &Exec::new()).unwrap_err();
+    let refused = shapes(&planar, SolidShape::Halves, &none, &Exec::new()).unwrap_err();
     assert!(matches!(refused, SolidError::Partition(PartitionError::Setting { .. })), "{refused:?}");
 }

@@ -39,7 +39,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// The largest axis-parallel square in the accepted offsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Square {
+pub struct AcceptedSquare {
     /// Its edge, in D; 0 where nothing is accepted.
     pub edge: f64,
     /// Its middle, in D.
@@ -48,7 +48,7 @@ pub struct Square {
     pub centered_edge: f64,
 }
 
-impl Square {
+impl AcceptedSquare {
     /// How far the edge may be from that of the tiling, in D; of a region with coarse seams, some tens of those.
     pub const TOLERANCE: f64 = 1e-8;
 
@@ -80,7 +80,7 @@ impl Square {
 ///
 /// The circle lies between the inscribed polygon and the same polygon enlarged by 1/(1 − e/R), and so do their squares: e is the chord
 /// error and R the radius.
-pub fn circle_square(design: &Design, zraa: &Zraa, square: &Square) -> Option<[f64; 2]> {
+pub fn circle_square(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Option<[f64; 2]> {
     let [lower, upper] = circle_bounds(design, zraa)?;
     let enlarged = match zraa {
         Zraa::Interval { .. } => upper / lower,
@@ -229,7 +229,7 @@ impl<'a> Search<'a> {
         self.around(p, p).any(|k| inside(&self.polygons[k]))
     }
 
-    fn run(&self, exec: &Exec) -> Result<Square, Cancelled> {
+    fn run(&self, exec: &Exec) -> Result<AcceptedSquare, Cancelled> {
         let all: Vec<u32> = (0..self.border.len() as u32).collect();
         let mut best = Best { at: DVec2::ZERO, half_edge: 0.0 };
         if self.holds(DVec2::ZERO) {
@@ -245,7 +245,7 @@ impl<'a> Search<'a> {
             exec.check()?;
             open.extend(self.look(&place, &mut best));
         }
-        Ok(Square { edge: 2.0 * best.half_edge, center: best.at, centered_edge })
+        Ok(AcceptedSquare { edge: 2.0 * best.half_edge, center: best.at, centered_edge })
     }
 
     fn distance(&self, near: &[u32], p: DVec2) -> f64 {
@@ -255,7 +255,7 @@ impl<'a> Search<'a> {
     /// Looks at the places of a box; what is left of it are its quarters, the most promising last, or nothing.
     fn look(&self, place: &Place, best: &mut Best) -> Vec<Place> {
         // Half of the edge's tolerance for the half edge, and the rest for seams.
-        const ENOUGH: f64 = Square::TOLERANCE / 4.0;
+        const ENOUGH: f64 = AcceptedSquare::TOLERANCE / 4.0;
         let Place { middle, half, .. } = *place;
         let corners = corners(middle, half);
         let most = |stretch: &Stretch| corners.iter().map(|&c| stretch.distance(c)).fold(0.0, f64::max);

@@ -5,8 +5,8 @@ use crate::method::zraa::sheet::area;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-fn square(polygons: &[Vec<DVec2>]) -> Square {
-    Square::within(polygons, &Exec::new()).unwrap()
+fn square(polygons: &[Vec<DVec2>]) -> AcceptedSquare {
+    AcceptedSquare::within(polygons, &Exec::new()).unwrap()
 }
 
 fn polygon(corners: &[(f64, f64)]) -> Vec<DVec2> {
@@ -113,7 +113,7 @@ fn closed_forms() {
         ("nothing", vec![], 0.0),
     ] {
         let found = square(&region);
-        assert!((found.edge - edge).abs() < Square::TOLERANCE, "{name}: {found:?}");
+        assert!((found.edge - edge).abs() < AcceptedSquare::TOLERANCE, "{name}: {found:?}");
         assert!(
             found.edge == 0.0 || fits(&region, found.center, found.edge / 2.0 - 1e-9),
             "{name}: {found:?}"
@@ -130,7 +130,7 @@ fn the_square_around_zero_is_told_beside_the_largest() {
     let off = square(&[tile(1.0, 1.0, 1.0, 1.0)]);
     assert!((off.edge - 1.0).abs() < 1e-8 && off.centered_edge == 0.0, "{off:?}");
     let zraa = Zraa::Interval { axis: crate::pose::Dof::X, from: -0.25, to: 0.75 };
-    let found = Square::of(&zraa, &Exec::new()).unwrap();
+    let found = AcceptedSquare::of(&zraa, &Exec::new()).unwrap();
     assert_eq!((found.edge, found.center.x, found.centered_edge), (1.0, 0.25, 0.5));
 }
 
@@ -138,7 +138,7 @@ fn the_square_around_zero_is_told_beside_the_largest() {
 fn a_cancelled_search_ends() {
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-    assert_eq!(Square::within(&star(&[1.0; 5], 0.0), &exec), Err(Cancelled));
+    assert_eq!(AcceptedSquare::within(&star(&[1.0; 5], 0.0), &exec), Err(Cancelled));
 }
 
 proptest! {
@@ -173,6 +173,6 @@ proptest! {
         let counted = places.flat_map(|(x, y)| (0..=7).map(move |n| (x, y, n))).filter(|&(x, y, n)| full(x, y, n));
         let counted = counted.map(|(_, _, n)| n).max().unwrap();
         let found = square(&region);
-        prop_assert!((found.edge - counted as f64).abs() < Square::TOLERANCE, "{found:?} {counted}");
+        prop_assert!((found.edge - counted as f64).abs() < AcceptedSquare::TOLERANCE, "{found:?} {counted}");
     }
 }
