@@ -20,7 +20,7 @@
 //! edges.
 
 use super::Pair;
-use super::element::{Element, Features, Meeting};
+use super::element::{Element, Elements, Meeting};
 use super::plan::Plan;
 use super::shape::{INSIDE, Ridge, Shape};
 use crate::tolerance::{self, PARALLEL};
@@ -223,7 +223,7 @@ pub(super) fn facet_corner(
     let facet = candidate.fixed as usize;
     let corner = &moving.corners[candidate.moving as usize];
     moving.supports(corner, seen, slack).then(|| {
-        let features = Features::FacetCorner { facet: candidate.fixed, vertex: corner.vertex };
+        let features = Elements::FacetCorner { facet: candidate.fixed, vertex: corner.vertex };
         let offset = seen.dot(moving.at(corner.vertex)) - fixed.levels[facet];
         let meeting = Meeting { shapes: candidate.shapes, features };
         Element { meeting, normal: fixed.facets[facet].normal, offset }
@@ -241,7 +241,7 @@ pub(super) fn corner_facet(
 ) -> Option<Element> {
     let corner = &fixed.corners[candidate.fixed as usize];
     (-normal.z > lowest && fixed.supports(corner, normal, slack)).then(|| {
-        let features = Features::CornerFacet { vertex: corner.vertex, facet: candidate.moving };
+        let features = Elements::CornerFacet { vertex: corner.vertex, facet: candidate.moving };
         let offset = normal.dot(fixed.at(corner.vertex)) - moving.levels[candidate.moving as usize];
         let meeting = Meeting { shapes: candidate.shapes, features };
         Element { meeting, normal: -normal, offset }
@@ -274,7 +274,7 @@ pub(super) fn edge_edge(
         outside.then_some(())?;
     }
     let offset = normal.dot(*rotation * moving.at(m.ends[0]) - fixed.at(f.ends[0]));
-    let features = Features::EdgeEdge { fixed: f.ends, moving: m.ends };
+    let features = Elements::EdgeEdge { fixed: f.ends, moving: m.ends };
     Some(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset })
 }
 

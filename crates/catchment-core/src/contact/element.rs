@@ -16,7 +16,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Which features meet; indices into the fixed and the moving shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Features {
+pub(super) enum Elements {
     /// Fixed facet under a moving corner.
     FacetCorner { facet: u32, vertex: u32 },
     /// Fixed corner under a moving facet.
@@ -30,7 +30,7 @@ pub(super) enum Features {
 pub struct Meeting {
     /// Index of the fixed and of the moving shape.
     pub(super) shapes: [u32; 2],
-    pub(super) features: Features,
+    pub(super) features: Elements,
 }
 
 impl Meeting {
@@ -45,20 +45,20 @@ impl Meeting {
         c: DVec3,
     ) -> Contact {
         match self.features {
-            Features::FacetCorner { facet, vertex } => {
+            Elements::FacetCorner { facet, vertex } => {
                 let normal = before.normal;
                 let point = c + *rotation * moving.at(vertex);
                 let gap = normal.dot(point) - fixed.levels[facet as usize];
                 Contact { gap, normal, point: point - normal * gap }
             }
-            Features::CornerFacet { vertex, facet } => {
+            Elements::CornerFacet { vertex, facet } => {
                 let facet = facet as usize;
                 let normal = *rotation * -moving.facets[facet].normal;
                 let point = fixed.at(vertex);
                 let gap = normal.dot(c - point) - moving.levels[facet];
                 Contact { gap, normal, point }
             }
-            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+            Elements::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
                 let (a, p) = (fixed.at(a), c + *rotation * moving.at(p));
                 let (u, w) = (fixed.at(b) - a, c + *rotation * moving.at(q) - p);
                 let across = u.cross(w);
@@ -105,18 +105,18 @@ impl Element {
         seam: f64,
     ) -> Option<DVec3> {
         match self.meeting.features {
-            Features::FacetCorner { facet, vertex } => {
+            Elements::FacetCorner { facet, vertex } => {
                 let point = c + *rotation * moving.at(vertex);
                 let foot = point - self.normal * self.gap(c);
                 on_facet(fixed, facet, foot, seam).then_some(foot)
             }
-            Features::CornerFacet { vertex, facet } => {
+            Elements::CornerFacet { vertex, facet } => {
                 let foot = fixed.at(vertex);
                 // Seen from the COR, across the gap.
                 let seen = foot + self.normal * self.gap(c) - c;
                 on_facet(moving, facet, rotation.transpose() * seen, seam).then_some(foot)
             }
-            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+            Elements::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
                 let (a, p) = (fixed.at(a), *rotation * moving.at(p));
                 let (u, w) = (fixed.at(b) - a, *rotation * moving.at(q) - p);
                 let across = u.cross(w);
@@ -137,9 +137,9 @@ impl Element {
     /// moving vertices at the element's rotation.
     pub(super) fn touch(&self, fixed: &Shape, turned: &[DVec3], c: DVec3) -> DVec3 {
         match self.meeting.features {
-            Features::FacetCorner { vertex, .. } => c + turned[vertex as usize],
-            Features::CornerFacet { vertex, .. } => fixed.at(vertex),
-            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+            Elements::FacetCorner { vertex, .. } => c + turned[vertex as usize],
+            Elements::CornerFacet { vertex, .. } => fixed.at(vertex),
+            Elements::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
                 let (a, p) = (fixed.at(a), turned[p as usize]);
                 let (u, w) = (fixed.at(b) - a, turned[q as usize] - p);
                 let across = u.cross(w);
@@ -154,17 +154,17 @@ impl Element {
         out.clear();
         let turned = |k: u32| turned[k as usize];
         match self.meeting.features {
-            Features::FacetCorner { facet, vertex } => {
+            Elements::FacetCorner { facet, vertex } => {
                 let v = turned(vertex);
                 let facet = &fixed.facets[facet as usize];
                 out.extend(facet.corners.iter().map(|&k| (fixed.at(k) - v).truncate()));
             }
-            Features::CornerFacet { vertex, facet } => {
+            Elements::CornerFacet { vertex, facet } => {
                 let v = fixed.at(vertex);
                 let facet = &moving.facets[facet as usize];
                 out.extend(facet.corners.iter().map(|&k| (v - turned(k)).truncate()));
             }
-            Features::EdgeEdge { fixed: f, moving: m } => {
+            Elements::EdgeEdge { fixed: f, moving: m } => {
                 let [a, b] = f.map(|k| fixed.at(k).truncate());
                 let [p, q] = m.map(|k| turned(k).truncate());
                 out.extend([a - p, b - p, b - q, a - q]);

@@ -15,9 +15,9 @@ use std::ops::Range;
 
 /// The pair at one rotation: everything that can carry the moving half from below, for any position of the COR.
 ///
-/// Reusable: [`Envelope::turn`] replaces the rotation without allocating anew.
+/// Reusable: [`HeightEnvelope::turn`] replaces the rotation without allocating anew.
 #[derive(Debug, Clone)]
-pub struct Envelope<'a> {
+pub struct HeightEnvelope<'a> {
     turned: Turned<'a>,
     candidates: Candidates,
     /// Vertices of the moving shapes at the rotation.
@@ -26,7 +26,7 @@ pub struct Envelope<'a> {
     carriers: Vec<Element>,
 }
 
-impl<'a> Envelope<'a> {
+impl<'a> HeightEnvelope<'a> {
     /// The envelope at `rotation`.
     pub(super) fn new(pair: &'a Pair, rotation: &DMat3) -> Self {
         let mut envelope = Self {
@@ -84,10 +84,16 @@ impl<'a> Envelope<'a> {
         });
     }
 
-    /// Heights as by [`Envelope::heights`], and for every cell the number of what carries the moving half there, for
-    /// [`Envelope::carried_by`]; [`Envelope::NOTHING`] where the halves pass each other by. Among equals the first
+    /// Heights as by [`HeightEnvelope::heights`], and for every cell the number of what carries the moving half there, for
+    /// [`HeightEnvelope::carried_by`]; [`HeightEnvelope::NOTHING`] where the halves pass each other by. Among equals the first
     /// counts.
-    pub fn relief(&mut self, x: Lattice, y: Lattice, heights: &mut [f64], carriers: &mut [u32]) {
+    pub fn heights_and_carriers(
+        &mut self,
+        x: Lattice,
+        y: Lattice,
+        heights: &mut [f64],
+        carriers: &mut [u32],
+    ) {
         heights.fill(f64::NEG_INFINITY);
         carriers.fill(Self::NOTHING);
         if self.turned.pair.is_large() {
@@ -108,11 +114,11 @@ impl<'a> Envelope<'a> {
     /// No carrier: the halves pass each other by.
     pub const NOTHING: u32 = u32::MAX;
 
-    /// The contact by which a carrier of [`Envelope::relief`] carries the moving half with the COR at `lateral`, and
+    /// The contact by which a carrier of [`HeightEnvelope::heights_and_carriers`] carries the moving half with the COR at `lateral`, and
     /// the position of the COR. Both are affine in `lateral`, and defined beyond the cells that it carries.
     ///
     /// # Panics
-    /// When no relief at this rotation gave that number.
+    /// When no heights at this rotation gave that number.
     pub fn carried_by(&self, carrier: u32, lateral: DVec2) -> (Contact, DVec3) {
         let elements = if self.turned.pair.is_large() { &self.carriers } else { &self.turned.elements };
         let element = &elements[carrier as usize];

@@ -11,7 +11,7 @@
 //! Both pass continuously through zero at the end of the contact, so the instant of its end follows by
 //! interpolation.
 
-use super::element::{Features, Meeting};
+use super::element::{Elements, Meeting};
 use super::shape::Shape;
 use super::{Contact, Pair};
 use glam::{DMat3, DVec3};
@@ -42,14 +42,14 @@ impl Pair {
         // The same contact as the moving half sees it.
         let seen = back * (contact.point + n * contact.gap - position);
         match meeting.features {
-            Features::FacetCorner { facet, vertex } => Hold {
+            Elements::FacetCorner { facet, vertex } => Hold {
                 foot: inside(fixed, facet, contact.point),
                 support: supported(moving, vertex, back * n),
             },
-            Features::CornerFacet { vertex, facet } => {
+            Elements::CornerFacet { vertex, facet } => {
                 Hold { foot: inside(moving, facet, seen), support: supported(fixed, vertex, -n) }
             }
-            Features::EdgeEdge { fixed: f, moving: m } => {
+            Elements::EdgeEdge { fixed: f, moving: m } => {
                 let foot = between(fixed, f, contact.point).min(between(moving, m, seen));
                 let support = spread(fixed, f, -n).min(spread(moving, m, back * n));
                 Hold { foot, support }

@@ -25,6 +25,7 @@ mod element;
 mod envelope;
 pub mod face;
 mod feature;
+pub mod height_map;
 mod hold;
 mod layers;
 pub mod mated;
@@ -37,7 +38,6 @@ mod overlap;
 mod plan;
 mod play;
 mod raster;
-pub mod relief;
 mod search;
 mod seat;
 pub mod settle;
@@ -52,8 +52,8 @@ pub mod width;
 
 pub(crate) use candidates::FLUSH;
 pub use element::Meeting;
-pub use envelope::Envelope;
-pub use feature::{Feature, Features, Kind as FeatureKind, Lie};
+pub use envelope::HeightEnvelope;
+pub use feature::{FaceOrientation, Feature, FeatureKind, Features};
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 pub(crate) use nearby::chord;
@@ -261,8 +261,8 @@ impl Pair {
     }
 
     /// The pair at one rotation: heights for any lateral position.
-    pub fn at_rotation(&self, rotation: DMat3) -> Envelope<'_> {
-        Envelope::new(self, &rotation)
+    pub fn at_rotation(&self, rotation: DMat3) -> HeightEnvelope<'_> {
+        HeightEnvelope::new(self, &rotation)
     }
 }
 

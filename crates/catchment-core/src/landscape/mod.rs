@@ -15,16 +15,16 @@
 
 mod backend;
 mod fold;
+mod gradient_field;
 mod grid;
 mod heights;
 mod part;
-mod relief;
 mod resolution;
 
 pub use backend::{Backend, Brute, Fast};
 pub use fold::{Fold, Image};
+pub use gradient_field::{DescentDirections, Gradient, GradientField, Patch, Patches};
 pub use grid::{Grid, GridAxis};
 pub use heights::{Landscape, LandscapeError};
-pub use part::{LandscapePart, MergeError, ReliefPart};
-pub use relief::{Falls, Gradient, Patch, Patches, Relief};
+pub use part::{GradientFieldPart, LandscapePart, MergeError};
 pub use resolution::{Resolution, ResolutionError};

@@ -1,6 +1,6 @@
 //! Parts of a landscape, computed separately and assembled: the same bits for any division.
 
-use super::{Fold, Grid, Landscape, Patches, Relief};
+use super::{Fold, GradientField, Grid, Landscape, Patches};
 use std::ops::Range;
 
 /// The heights of some of a grid's rotations.
@@ -14,20 +14,20 @@ pub struct LandscapePart {
     pub heights: Vec<f32>,
 }
 
-/// The relief of some of the rotations that are kept of a grid.
+/// The gradient field of some of the rotations that are kept of a grid.
 #[derive(Debug, Clone)]
-pub struct ReliefPart {
+pub struct GradientFieldPart {
     /// The whole grid.
     pub grid: Grid,
     /// Which cells of the whole grid are kept.
     pub fold: Fold,
     /// Which of the representative rotations.
     pub representatives: Range<usize>,
-    /// Their heights, as in [`Relief::heights`].
+    /// Their heights, as in [`GradientField::heights`].
     pub heights: Vec<f32>,
-    /// Their carriers, as in [`Relief::carriers`].
+    /// Their carriers, as in [`GradientField::carriers`].
     pub carriers: Vec<u16>,
-    /// Their patches, as in [`Relief::patches`].
+    /// Their patches, as in [`GradientField::patches`].
     pub patches: Patches,
 }
 
@@ -82,13 +82,13 @@ impl Landscape {
     }
 }
 
-impl Relief {
+impl GradientField {
     /// The whole that these parts, in any order, are all of.
     ///
     /// # Errors
     /// When rotations are missing or there twice, or the grids or what is kept of them differ.
-    pub fn merge(parts: impl IntoIterator<Item = ReliefPart>) -> Result<Self, MergeError> {
-        let mut parts: Vec<ReliefPart> = parts.into_iter().collect();
+    pub fn merge(parts: impl IntoIterator<Item = GradientFieldPart>) -> Result<Self, MergeError> {
+        let mut parts: Vec<GradientFieldPart> = parts.into_iter().collect();
         parts.sort_by_key(|part| (part.representatives.start, part.representatives.end));
         let first = parts.first().ok_or(MergeError::Nothing)?;
         let (grid, fold) = (first.grid.clone(), first.fold.clone());
@@ -144,15 +144,15 @@ mod tests {
     }
 
     #[test]
-    fn a_relief_in_parts_is_the_whole() {
+    fn a_gradient_field_in_parts_is_the_whole() {
         let (pair, grid) = case();
         let exec = Exec::new();
         let linear = |_: &crate::pose::PoseError| |g: &Gradient| *g;
-        let whole = Relief::compute(&pair, &grid, &exec, linear).unwrap();
+        let whole = GradientField::compute(&pair, &grid, &exec, linear).unwrap();
         assert!(whole.fold.representatives() < whole.fold.rotations(), "folded");
         for parts in [1, 2, 7] {
-            let part = |range| Relief::part(&pair, &grid, range, &exec, linear).unwrap();
-            let merged = Relief::merge(cut(whole.fold.representatives(), parts).map(part)).unwrap();
+            let part = |range| GradientField::part(&pair, &grid, range, &exec, linear).unwrap();
+            let merged = GradientField::merge(cut(whole.fold.representatives(), parts).map(part)).unwrap();
             assert_eq!(merged.heights, whole.heights);
             assert_eq!(merged.carriers, whole.carriers);
             assert_eq!(merged.patches, whole.patches);

@@ -15,8 +15,8 @@
 
 use crate::connector::{Connector, Half, Side};
 use crate::contact::display_unit::{DisplayUnit, number};
+use crate::contact::height_map::{self, HeightMap};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
-use crate::contact::relief::{self, Relief};
 use crate::contact::{Pair, face, settle};
 use crate::design::{ConnectorSpec, Design};
 use glam::{DMat3, DVec2, DVec3};
@@ -80,18 +80,18 @@ fn settles(pair: &Pair, design: &Design, problem: &MatedProblem) -> Option<Strin
 /// Whether something narrow of one part keeps the other from a seat.
 fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let halves = [&connector.fixed, &connector.moving];
-    let cell = relief::NARROW * halves.map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    let cell = height_map::NARROW * halves.map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     // Beside a plate a pin is narrow by itself.
     let wide = halves.map(Half::bounds).map(|(low, high)| (high - low).truncate().max_element());
     let cell = wide.into_iter().map(|wide| wide / MOST_CELLS).fold(cell, f64::max);
-    let top = Relief::centered(halves[0], &DMat3::IDENTITY, 1.0, cell);
-    let bottom = Relief::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
+    let top = HeightMap::centered(halves[0], &DMat3::IDENTITY, 1.0, cell);
+    let bottom = HeightMap::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
     let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();
-    let found = relief::in_the_way(&top, &bottom, moved, cell)?;
-    // The relief of the moving half is of the half where its face centre is the origin.
+    let found = height_map::in_the_way(&top, &bottom, moved, cell)?;
+    // The height map of the moving half is of the half where its face centre is the origin.
     let at = [Side::Fixed, Side::Moving]
         .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
-    Some(relief::in_words(&found, &at, DisplayUnit::of(design)))
+    Some(height_map::in_words(&found, &at, DisplayUnit::of(design)))
 }
 
 /// Where the halves first touch without any error, and how far above where they are drawn.

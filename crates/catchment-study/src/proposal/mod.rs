@@ -46,7 +46,7 @@ use candidate::{candidate, shown_unit};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::DisplayUnit;
-use catchment_core::contact::relief;
+use catchment_core::contact::height_map;
 use catchment_core::design::LengthUnit;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::pose::DofSet;
@@ -451,7 +451,7 @@ fn are_near([fixed, moving]: [&Half; 2]) -> bool {
 fn round_numbers([fixed, moving]: [&Half; 2], lie: PartLayout) -> [DVec2; 2] {
     let turns = lie.turns();
     let middle = |half: &Half, turn: &DMat3| {
-        let (low, high) = relief::plan_box(half, turn);
+        let (low, high) = height_map::plan_box(half, turn);
         low.midpoint(high)
     };
     [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]

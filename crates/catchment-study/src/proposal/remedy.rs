@@ -11,7 +11,7 @@
 use super::{Parts, ProposalSettings, is_seat, rank, search, sunk, ways};
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
-use catchment_core::contact::relief;
+use catchment_core::contact::height_map;
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec3;
 
@@ -59,6 +59,6 @@ fn obstacle(
             let [x, y, z] = (told.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
             format!("({x}, {y}, {z}) {}", told.unit)
         });
-        format!("{} ({lie})", relief::in_words(&found, &at, told))
+        format!("{} ({lie})", height_map::in_words(&found, &at, told))
     }))
 }

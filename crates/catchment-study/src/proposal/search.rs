@@ -11,12 +11,12 @@
 
 use super::way::{AxisDirection, PartLayout};
 use catchment_core::connector::{Half, Side};
-use catchment_core::contact::relief::{self, InTheWay, MOST_RISE, Relief, Reliefs};
+use catchment_core::contact::height_map::{self, HeightMap, HeightMaps, MOST_RISE, Obstruction};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::{DMat3, DVec2};
 
 /// Side of a first cell, and the work that all offsets may take: points of the moving part times offsets.
-const CELL: f64 = relief::NARROW;
+const CELL: f64 = height_map::NARROW;
 const MOST_WORK: f64 = 4e8;
 /// How much wider cells get where the work is more.
 const WIDER: f64 = 1.2;
@@ -59,13 +59,13 @@ pub(super) fn obstacle(
     halves: [&Half; 2],
     facing: [&[AxisDirection]; 2],
     exec: &Exec,
-) -> Result<Option<(PartLayout, InTheWay)>, Cancelled> {
+) -> Result<Option<(PartLayout, Obstruction)>, Cancelled> {
     let cell = cell(halves, facing);
     for side in [Side::Fixed, Side::Moving] {
         for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
-            let [top, bottom] = reliefs(halves, lie, cell);
+            let [top, bottom] = height_maps(halves, lie, cell);
             let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
-            if let Some(found) = relief::in_the_way(&top, &bottom, moved, cell) {
+            if let Some(found) = height_map::in_the_way(&top, &bottom, moved, cell) {
                 return Ok(Some((lie, found)));
             }
         }
@@ -74,9 +74,9 @@ pub(super) fn obstacle(
 }
 
 /// Both halves as they face each other.
-fn reliefs([fixed, moving]: [&Half; 2], lie: PartLayout, cell: f64) -> [Relief; 2] {
+fn height_maps([fixed, moving]: [&Half; 2], lie: PartLayout, cell: f64) -> [HeightMap; 2] {
     let turns = lie.turns();
-    [Relief::centered(fixed, &turns[0], 1.0, cell), Relief::centered(moving, &turns[1], -1.0, cell)]
+    [HeightMap::centered(fixed, &turns[0], 1.0, cell), HeightMap::centered(moving, &turns[1], -1.0, cell)]
 }
 
 /// The most likely places on the first lattice, with what is narrow of one half left out.
@@ -87,25 +87,25 @@ fn scan(
     cell: f64,
     exec: &Exec,
 ) -> Result<Vec<Place>, Cancelled> {
-    let broad = relief::broadest(fixed).min(relief::broadest(moving));
+    let broad = height_map::broadest(fixed).min(height_map::broadest(moving));
     let seen = |half: &Half, side: Side, turn: &DMat3| {
-        let relief = Relief::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
-        if without_narrow == Some(side) { relief.without_narrow() } else { relief }
+        let map = HeightMap::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
+        if without_narrow == Some(side) { map.without_narrow() } else { map }
     };
     let lies: Vec<[AxisDirection; 2]> =
         facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
     let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
         let [f, m] = lies[number];
         let top = seen(fixed, Side::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
-        let (mut found, mut met): (Vec<Place>, Vec<Relief>) = (Vec::new(), Vec::new());
+        let (mut found, mut met): (Vec<Place>, Vec<HeightMap>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
             }
             let lie = PartLayout::Facing { fixed: f, moving: m, turned };
             let bottom = seen(moving, Side::Moving, &lie.turns()[1]);
-            if !met.iter().any(|relief| relief.is_like(&bottom)) {
-                found.extend(relief::with(&top, &bottom, |both| {
+            if !met.iter().any(|map| map.is_like(&bottom)) {
+                found.extend(height_map::with(&top, &bottom, |both| {
                     hollows(lie, [&top, &bottom], both, cell, broad)
                 }));
                 met.push(bottom);
@@ -127,7 +127,7 @@ fn cell(halves: [&Half; 2], facing: [&[AxisDirection]; 2]) -> f64 {
         let sizes = |side: usize| -> Vec<[f64; 2]> {
             let of = |way: &AxisDirection| {
                 let lie = PartLayout::Facing { fixed: *way, moving: *way, turned: 0 };
-                let (low, high) = relief::plan_box(halves[side], &lie.turns()[side]);
+                let (low, high) = height_map::plan_box(halves[side], &lie.turns()[side]);
                 ((high - low) / cell).ceil().to_array()
             };
             facing[side].iter().map(of).collect()
@@ -145,13 +145,13 @@ fn cell(halves: [&Half; 2], facing: [&[AxisDirection]; 2]) -> f64 {
 /// The hollows of the heights over all offsets.
 fn hollows(
     lie: PartLayout,
-    [top, bottom]: [&Relief; 2],
-    both: &Reliefs<'_>,
+    [top, bottom]: [&HeightMap; 2],
+    both: &HeightMaps<'_>,
     cell: f64,
     broad: f64,
 ) -> Vec<Place> {
-    let size: [i32; 2] = std::array::from_fn(|k| relief::signed(top.counts[k] + bottom.counts[k]) - 1);
-    let first: [i32; 2] = bottom.counts.map(|count| 1 - relief::signed(count));
+    let size: [i32; 2] = std::array::from_fn(|k| height_map::signed(top.counts[k] + bottom.counts[k]) - 1);
+    let first: [i32; 2] = bottom.counts.map(|count| 1 - height_map::signed(count));
     let mut heights = Vec::with_capacity((size[0] * size[1]) as usize);
     for j in 0..size[1] {
         heights.extend((0..size[0]).map(|i| both.height([first[0] + i, first[1] + j])));
@@ -164,7 +164,7 @@ fn hollows(
     let mut found: Vec<(f32, [i32; 2])> = Vec::new();
     for (i, j) in (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j))) {
         let Some((height, count)) = at(i, j) else { continue };
-        let (climb, worst) = relief::climb([i, j], height, |[i, j]| Some(at(i, j)?.0));
+        let (climb, worst) = height_map::climb([i, j], height, |[i, j]| Some(at(i, j)?.0));
         let score = climb * (count as f32 * share).min(1.0);
         if score > 0.0 && worst > -0.1 * MOST_RISE {
             found.push((score, [i, j]));
@@ -196,13 +196,13 @@ fn refined([fixed, moving]: [&Half; 2], mut place: Place, cell: f64) -> Place {
         // As far as the lattice before may have been off.
         const REACH: i32 = FINER + 2;
         cell /= f64::from(FINER);
-        let bottom = Relief::centered(moving, &turns[1], -1.0, cell);
+        let bottom = HeightMap::centered(moving, &turns[1], -1.0, cell);
         if bottom.z.len() > MOST_POINTS {
             break;
         }
         let reach = cell * f64::from(REACH);
         let counts = bottom.counts.map(|count| count + 2 * REACH as usize);
-        let top = Relief::of(
+        let top = HeightMap::of(
             fixed,
             &turns[0],
             1.0,
@@ -211,7 +211,7 @@ fn refined([fixed, moving]: [&Half; 2], mut place: Place, cell: f64) -> Place {
             counts,
         );
         let all = (0..=2 * REACH).flat_map(|j| (0..=2 * REACH).map(move |i| [i, j]));
-        let heights: Vec<(f32, DVec2)> = relief::with(&top, &bottom, |both| {
+        let heights: Vec<(f32, DVec2)> = height_map::with(&top, &bottom, |both| {
             let at =
                 |[i, j]: [i32; 2]| Some((both.height([i, j])?.0, DVec2::new(f64::from(i), f64::from(j))));
             all.filter_map(at).collect()

@@ -17,7 +17,7 @@
 //! Not promised: round surfaces meshed with twelve sides or fewer are not recognised; they count as corners
 //! and edges. Lengths in D, angles in radians.
 
-use super::element::Features as Elements;
+use super::element::Elements;
 use super::{Contact, Meeting, Pair};
 use crate::connector::{Half, Side, Surface};
 use crate::disjoint::DisjointSets;
@@ -45,7 +45,7 @@ const LEVEL: f64 = tolerance::SINGLE;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum FeatureKind {
     /// Part of the surface without an edge inside it.
     Face,
     /// Convex intersection of two faces.
@@ -54,7 +54,7 @@ pub enum Kind {
     Corner,
 }
 
-impl Kind {
+impl FeatureKind {
     /// The lower-case name used in reports.
     pub const fn name(self) -> &'static str {
         match self {
@@ -67,7 +67,7 @@ impl Kind {
 
 /// How a face lies, seen on its own half that faces up.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lie {
+pub struct FaceOrientation {
     /// Least angle between an outward normal and the way the half faces, in [0, π].
     pub least: f64,
     /// Greatest.
@@ -80,14 +80,14 @@ pub struct Lie {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Feature {
     /// What it is.
-    pub kind: Kind,
+    pub kind: FeatureKind,
     /// The number of its surface in the half.
     pub surface: usize,
     /// How the faces lie that it is, or that meet in it.
-    pub faces: Vec<Lie>,
+    pub faces: Vec<FaceOrientation>,
 }
 
-impl Lie {
+impl FaceOrientation {
     /// `top`, `flat`, `wall`, `slope of 45°`, `rounded surface`.
     pub fn name(&self) -> String {
         if self.most <= EVEN / 2.0 {
@@ -111,17 +111,19 @@ impl Feature {
         let mut faces = self.faces.clone();
         faces.sort_by(|a, b| a.least.total_cmp(&b.least).then(a.most.total_cmp(&b.most)));
         let mut names: Vec<String> = Vec::new();
-        for name in faces.iter().map(Lie::name) {
+        for name in faces.iter().map(FaceOrientation::name) {
             if !names.contains(&name) {
                 names.push(name);
             }
         }
         match (self.kind, names.as_slice()) {
-            (Kind::Face, [name, ..]) => name.clone(),
-            (Kind::Edge, [one]) => format!("edge between two {}", plural(one)),
-            (Kind::Edge, [one, other, ..]) => format!("edge between {one} and {other}"),
-            (Kind::Corner, [one]) => format!("corner of {}", plural(one)),
-            (Kind::Corner, [others @ .., last]) => format!("corner of {} and {last}", others.join(", ")),
+            (FeatureKind::Face, [name, ..]) => name.clone(),
+            (FeatureKind::Edge, [one]) => format!("edge between two {}", plural(one)),
+            (FeatureKind::Edge, [one, other, ..]) => format!("edge between {one} and {other}"),
+            (FeatureKind::Corner, [one]) => format!("corner of {}", plural(one)),
+            (FeatureKind::Corner, [others @ .., last]) => {
+                format!("corner of {} and {last}", others.join(", "))
+            }
             (kind, []) => kind.name().to_owned(),
         }
     }
@@ -312,8 +314,8 @@ impl Lookup {
         for (facet, normal) in (0u32..).zip(&self.normals) {
             let set = sets.find(facet);
             let feature = *numbers.entry(set).or_insert_with(|| {
-                let none = Lie { least: f64::INFINITY, most: 0.0, is_top: true };
-                features.push(Feature { kind: Kind::Face, surface: number, faces: vec![none] });
+                let none = FaceOrientation { least: f64::INFINITY, most: 0.0, is_top: true };
+                features.push(Feature { kind: FeatureKind::Face, surface: number, faces: vec![none] });
                 features.len() as u32 - 1
             });
             let lie = &mut features[feature as usize].faces[0];
@@ -348,7 +350,7 @@ impl Lookup {
             for (k, edge) in (0u32..).zip(&edges) {
                 let feature = *numbers.entry(sets.find(k)).or_insert_with(|| {
                     let lies = faces.map(|face| features[face as usize].faces[0]).to_vec();
-                    features.push(Feature { kind: Kind::Edge, surface: number, faces: lies });
+                    features.push(Feature { kind: FeatureKind::Edge, surface: number, faces: lies });
                     features.len() as u32 - 1
                 });
                 let [a, b] = surface.edges[*edge].ends;
@@ -372,7 +374,7 @@ impl Lookup {
             if edges.len() > 1 || is_point() {
                 let faces: BTreeSet<u32> = around.iter().map(|facet| self.faces[*facet as usize]).collect();
                 let lies = faces.iter().map(|face| features[*face as usize].faces[0]).collect();
-                features.push(Feature { kind: Kind::Corner, surface: number, faces: lies });
+                features.push(Feature { kind: FeatureKind::Corner, surface: number, faces: lies });
                 self.corners.insert(v, features.len() as u32 - 1);
             }
         }

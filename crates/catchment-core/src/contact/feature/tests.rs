@@ -11,14 +11,15 @@ fn features(family: Family) -> Features {
     Features::of(&Pair::new(&connector, &alignment))
 }
 
-fn count(features: &Features, side: Side, kind: Kind) -> usize {
+fn count(features: &Features, side: Side, kind: FeatureKind) -> usize {
     features.halves[index(side)].features.iter().filter(|feature| feature.kind == kind).count()
 }
 
 #[test]
 fn a_pyramid_has_five_faces_eight_edges_five_corners() {
     let found = features(Family::Pyramid);
-    let counts = [Kind::Face, Kind::Edge, Kind::Corner].map(|kind| count(&found, Side::Moving, kind));
+    let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
+        .map(|kind| count(&found, Side::Moving, kind));
     assert_eq!(counts, [5, 8, 5]);
     // By its symmetries: base and flank; base edge and flank edge; apex and base corner.
     let classes: BTreeSet<u32> = found.halves[1].classes.iter().copied().collect();
@@ -31,7 +32,8 @@ fn a_cone_is_round_and_pointed() {
     let alignment = Alignment::new(DofSet::ALL, Mount::X);
     let connector = Connector::of_family(&FamilySpec::new(Family::Cone), Mount::X).unwrap();
     let found = Features::of(&Pair::new(&connector, &alignment));
-    let counts = [Kind::Face, Kind::Edge, Kind::Corner].map(|kind| count(&found, Side::Moving, kind));
+    let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
+        .map(|kind| count(&found, Side::Moving, kind));
     assert_eq!(counts, [2, 1, 1], "{:?}", found.halves[1].features);
     let names: Vec<String> = found.halves[1].features.iter().map(Feature::name).collect();
     assert!(names.iter().any(|name| name.starts_with("edge between ")), "{names:?}");
@@ -39,13 +41,17 @@ fn a_cone_is_round_and_pointed() {
 
 #[test]
 fn names_say_how_faces_lie() {
-    let lie =
-        |least: f64, most: f64| Lie { least: least.to_radians(), most: most.to_radians(), is_top: false };
-    let edge = |faces: Vec<Lie>| Feature { kind: Kind::Edge, surface: 0, faces }.name();
+    let lie = |least: f64, most: f64| FaceOrientation {
+        least: least.to_radians(),
+        most: most.to_radians(),
+        is_top: false,
+    };
+    let edge = |faces: Vec<FaceOrientation>| Feature { kind: FeatureKind::Edge, surface: 0, faces }.name();
     assert_eq!(edge(vec![lie(0.0, 0.0), lie(90.0, 90.0)]), "edge between flat and wall");
     assert_eq!(edge(vec![lie(45.0, 45.0), lie(45.0, 45.0)]), "edge between two slopes of 45°");
     assert_eq!(lie(0.0, 80.0).name(), "rounded surface");
     assert_eq!(lie(180.0, 180.0).name(), "underside");
-    let corner = Feature { kind: Kind::Corner, surface: 0, faces: vec![lie(90.0, 90.0), lie(0.0, 0.0)] };
+    let corner =
+        Feature { kind: FeatureKind::Corner, surface: 0, faces: vec![lie(90.0, 90.0), lie(0.0, 0.0)] };
     assert_eq!(corner.name(), "corner of flat and wall");
 }

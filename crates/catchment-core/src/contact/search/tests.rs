@@ -4,7 +4,7 @@ use super::*;
 use crate::connector::{Connector, Half, Source, convex_hull};
 use crate::contact::candidates::{Candidates, FLUSH, Sieve};
 use crate::contact::turned::Turned;
-use crate::contact::{Contact, Envelope, Lattice, Meeting, brute, meshes};
+use crate::contact::{Contact, HeightEnvelope, Lattice, Meeting, brute, meshes};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{CorPose, DofSet, Mount, rotation};
 use proptest::prelude::*;
@@ -229,21 +229,21 @@ fn a_searched_lattice_is_the_listed_one() {
     let lattice = |first: f64| Lattice { first, step: 0.11, count: 14 };
     let (x, y) = (lattice(-0.7), lattice(-0.65));
     let cells = x.count * y.count;
-    let mut relief = |lists: bool| {
+    let mut solve = |lists: bool| {
         pair.lists = lists;
         let (mut single, mut heights, mut carriers) = (vec![0.0; cells], vec![0.0; cells], vec![0; cells]);
         let mut envelope = pair.at_rotation(turn);
         envelope.heights(x, y, &mut single);
-        envelope.relief(x, y, &mut heights, &mut carriers);
+        envelope.heights_and_carriers(x, y, &mut heights, &mut carriers);
         assert_eq!(single, heights);
         let at = |k: usize| DVec2::new(x.at(k % x.count), y.at(k / x.count));
         let carried = |(k, carrier): (usize, &u32)| {
-            (*carrier != Envelope::NOTHING).then(|| envelope.carried_by(*carrier, at(k)))
+            (*carrier != HeightEnvelope::NOTHING).then(|| envelope.carried_by(*carrier, at(k)))
         };
         (heights, carriers.iter().enumerate().map(carried).collect::<Vec<_>>())
     };
-    let (listed, by_list) = relief(true);
-    let (searched, by_search) = relief(false);
+    let (listed, by_list) = solve(true);
+    let (searched, by_search) = solve(false);
     assert!(listed.iter().filter(|h| h.is_finite()).count() > cells / 4);
     for k in 0..cells {
         // Rounding of a plane along a row.

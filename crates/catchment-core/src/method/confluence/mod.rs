@@ -43,7 +43,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
-use crate::landscape::{Falls, Fold, Gradient, Grid, Landscape, LandscapeError, Resolution};
+use crate::landscape::{DescentDirections, Fold, Gradient, Grid, Landscape, LandscapeError, Resolution};
 use crate::pose::PoseError;
 use label::Label;
 use rayon::prelude::*;
@@ -162,13 +162,13 @@ pub fn run(
     }
     let started = Stopwatch::start();
     let part = |from, to| exec.part([from, to], STAGE);
-    let falls = Falls::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
+    let falls = DescentDirections::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
     let river = River { pair, falls: &falls, settings, started };
     let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
-    let Falls { grid, fold, .. } = falls;
+    let DescentDirections { grid, fold, .. } = falls;
     Ok(GridLabels { grid, fold, kept, joined })
 }
 
@@ -207,7 +207,7 @@ fn ensure_in_time(pair: &Pair, grid: &Grid, budget_s: f64, exec: &Exec) -> Resul
 pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let kept = Fold::new(grid, pair.mirrors()).map_or(cells, |fold| fold.kept_cells() as u64);
-    let per_kept = Falls::BYTES_PER_CELL + (size_of::<u32>() + size_of::<Label>()) as u64;
+    let per_kept = DescentDirections::BYTES_PER_CELL + (size_of::<u32>() + size_of::<Label>()) as u64;
     kept.saturating_mul(per_kept).saturating_add(cells)
 }
 

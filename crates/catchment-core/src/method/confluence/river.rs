@@ -12,7 +12,7 @@ use super::{ConfluenceSettings, Joined, STAGE};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, Stopwatch};
-use crate::landscape::Falls;
+use crate::landscape::DescentDirections;
 use crate::method::affordable;
 use crate::method::correction::wilson95;
 use crate::method::descent::Follower;
@@ -22,7 +22,7 @@ use rayon::prelude::*;
 pub(super) struct River<'a> {
     pub(super) pair: &'a Pair,
     /// Its gradients are velocities.
-    pub(super) falls: &'a Falls,
+    pub(super) falls: &'a DescentDirections,
     pub(super) settings: &'a ConfluenceSettings,
     /// When it began: what a budget of time counts from.
     pub(super) started: Stopwatch,
@@ -45,8 +45,8 @@ const SEED: u64 = 0xc0f1;
 impl River<'_> {
     /// Labels all kept cells.
     pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, Joined), Cancelled> {
-        let Falls { grid, fold, heights, below } = self.falls;
-        let touches = |cell: &u32| below[*cell as usize] != Falls::NOTHING;
+        let DescentDirections { grid, fold, heights, below } = self.falls;
+        let touches = |cell: &u32| below[*cell as usize] != DescentDirections::NOTHING;
         let mut order: Vec<u32> = (0..below.len() as u32).filter(touches).collect();
         exec.install(|| {
             order.par_sort_unstable_by(|a, b| {
@@ -191,7 +191,7 @@ impl River<'_> {
 
     /// The kept cells on both sides of one, along every axis.
     fn sides(&self, cell: u32) -> impl Iterator<Item = [Option<u32>; 2]> {
-        let Falls { grid, fold, .. } = self.falls;
+        let DescentDirections { grid, fold, .. } = self.falls;
         let whole = self.whole(cell);
         let mut stride = 1;
         grid.axes.iter().map(move |axis| {
@@ -205,7 +205,7 @@ impl River<'_> {
 
     /// The kept cells that touch one, were it by a corner, and itself.
     fn near(&self, cell: u32) -> Vec<u32> {
-        let Falls { grid, fold, .. } = self.falls;
+        let DescentDirections { grid, fold, .. } = self.falls;
         let mut near = vec![self.whole(cell)];
         let mut stride = 1;
         for axis in &grid.axes {
@@ -222,7 +222,7 @@ impl River<'_> {
 
     /// Follows some of the cells that joined others to their end: drawn at random, or all where they are few.
     fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
-        let Falls { grid, fold, .. } = self.falls;
+        let DescentDirections { grid, fold, .. } = self.falls;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
         let stream = Stream::new(SEED);
         let draw = |k| fold.kept_cell((stream.uniform(k) * grid.len() as f64) as usize) as u32;

@@ -16,7 +16,7 @@
 //! that the grid can resolve: it is an *end*, decided by exact motion.
 
 use crate::contact::Mirror;
-use crate::landscape::{Grid, Patch, Relief};
+use crate::landscape::{GradientField, Grid, Patch};
 
 /// How often a corner across a valley is replaced by where it leads.
 pub(super) const CROSSINGS: usize = 2;
@@ -57,9 +57,9 @@ struct Place {
     rotation: u32,
 }
 
-/// The links of a relief whose patches hold velocities in cells.
+/// The links of a gradient field whose patches hold velocities in cells.
 pub(super) struct Links<'a> {
-    relief: &'a Relief,
+    field: &'a GradientField,
     /// Number of axes.
     axes: usize,
     /// How many of them, the first ones, are lateral.
@@ -89,8 +89,8 @@ pub(super) struct Scratch {
 }
 
 impl<'a> Links<'a> {
-    pub(super) fn new(relief: &'a Relief) -> Self {
-        let grid: &Grid = &relief.grid;
+    pub(super) fn new(field: &'a GradientField) -> Self {
+        let grid: &Grid = &field.grid;
         let axes = grid.axes.len();
         let lateral = grid.axes.iter().filter(|a| !a.dof.is_rotation()).count();
         let number = |dof| grid.axes.iter().position(|a| a.dof == dof).unwrap_or(axes);
@@ -105,14 +105,14 @@ impl<'a> Links<'a> {
             }
         }
         let (x, y) = (number(crate::pose::Dof::X), number(crate::pose::Dof::Y));
-        Self { relief, axes, lateral, x, y, cells, strides }
+        Self { field, axes, lateral, x, y, cells, strides }
     }
 
     /// Writes the links of a kept cell behind those in `out`, and says where motion goes.
     pub(super) fn of(&self, cell: u32, scratch: &mut Scratch, out: &mut Vec<Link>) -> Way {
         let start = out.len();
         let place = self.place(cell);
-        let height = self.relief.heights[cell as usize];
+        let height = self.field.heights[cell as usize];
         let Scratch { front, next } = scratch;
         front.clear();
         front.push(Corner { place, mirror: Mirror { x: false, y: false }, weight: 1.0 });
@@ -125,7 +125,7 @@ impl<'a> Links<'a> {
                 }
                 let leaves = self.corners(from, |corner| {
                     let to = corner.place.cell;
-                    let h = self.relief.heights[to as usize];
+                    let h = self.field.heights[to as usize];
                     if to == cell && self.is_its_own_image(&corner) {
                         // Back where it came from.
                     } else if h == f32::NEG_INFINITY {
@@ -209,13 +209,13 @@ impl<'a> Links<'a> {
 
     /// Whether a corner is the cell that is kept in its place, not a mirror image of it.
     fn is_its_own_image(&self, corner: &Corner) -> bool {
-        let axes = self.relief.grid.axes.iter().zip(&corner.place.at).zip(&self.cells);
+        let axes = self.field.grid.axes.iter().zip(&corner.place.at).zip(&self.cells);
         axes.filter(|((axis, _), _)| corner.mirror.flips(axis.dof)).all(|((_, k), n)| 2 * k + 1 == *n)
     }
 
     /// The place where a cell of the grid is kept, and the reflection that leads there.
     fn folded(&self, mut at: [u32; 5], rotation: u32) -> (Place, Mirror) {
-        let fold = &self.relief.fold;
+        let fold = &self.field.fold;
         let image = fold.image(rotation as usize);
         let mut lateral = 0;
         let mut stride = 1;
@@ -238,7 +238,7 @@ impl<'a> Links<'a> {
     }
 
     fn place(&self, cell: u32) -> Place {
-        let fold = &self.relief.fold;
+        let fold = &self.field.fold;
         let slab = fold.slab() as u32;
         let mut lateral = cell % slab;
         let mut at = [0; 5];
@@ -261,12 +261,12 @@ impl<'a> Links<'a> {
 
     /// Velocity at a place, in cells; 0 without contact.
     fn velocity(&self, place: &Place) -> [f32; 5] {
-        let carrier = self.relief.carriers[place.cell as usize];
-        if carrier == Relief::NOTHING {
+        let carrier = self.field.carriers[place.cell as usize];
+        if carrier == GradientField::NOTHING {
             return [0.0; 5];
         }
-        let representative = place.cell as usize / self.relief.fold.slab();
-        let patch: &Patch = &self.relief.patches[representative][usize::from(carrier)];
+        let representative = place.cell as usize / self.field.fold.slab();
+        let patch: &Patch = &self.field.patches[representative][usize::from(carrier)];
         let number = |axis: usize| if axis == self.axes { 0 } else { place.at[axis] as usize };
         patch.at(number(self.x), number(self.y))
     }

@@ -40,7 +40,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
-use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
+use crate::landscape::{Fold, Gradient, GradientField, Grid, LandscapeError, Resolution};
 use crate::method::metric::Metric;
 use crate::pose::{Dof, PoseError};
 use rayon::prelude::*;
@@ -165,7 +165,8 @@ impl ArrivalFractions {
 }
 
 /// Bytes per cell at the peak, where no symmetry helps: heights, patches' numbers, arrivals; and the outcomes after them.
-const BYTES_PER_CELL: u64 = Relief::BYTES_PER_CELL + size_of::<Shares>() as u64 + size_of::<Outcome>() as u64;
+const BYTES_PER_CELL: u64 =
+    GradientField::BYTES_PER_CELL + size_of::<Shares>() as u64 + size_of::<Outcome>() as u64;
 
 /// Bytes that transport over a grid needs at most, for a pair.
 pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
@@ -199,15 +200,15 @@ pub fn run(
         let largest = Resolution::largest_that_fits(budget, per_cell, grid.axes.len());
         vec![Advice::AtMostResolution(largest)]
     })?;
-    let relief = Relief::compute(pair, grid, exec, |error: &PoseError| {
+    let field = GradientField::compute(pair, grid, exec, |error: &PoseError| {
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
     let follow_out = surface(grid) <= settings.followed_out;
-    let judge = Judge { pair, relief: &relief, settings, follow_out, cut_off: AtomicBool::new(false) };
-    let shares = solve::solve(&relief, &judge, exec)?;
+    let judge = Judge { pair, field: &field, settings, follow_out, cut_off: AtomicBool::new(false) };
+    let shares = solve::solve(&field, &judge, exec)?;
     let cut_off = judge.cut_off.into_inner();
-    let Relief { grid, fold, .. } = relief;
+    let GradientField { grid, fold, .. } = field;
     Ok(ArrivalFractions { grid, fold, shares, cut_off })
 }
 
@@ -219,7 +220,7 @@ fn surface(grid: &Grid) -> usize {
 /// Decides ends by exact descent.
 struct Judge<'a> {
     pair: &'a Pair,
-    relief: &'a Relief,
+    field: &'a GradientField,
     settings: &'a TransportSettings,
     /// Whether motion that leaves the box is followed.
     follow_out: bool,
@@ -242,7 +243,7 @@ struct Ends<'a> {
 impl Ends<'_> {
     /// What becomes of an end; `leaves` is the number of the axis along which its motion leaves the box, if it does.
     fn decide(&mut self, kept: u32, leaves: Option<usize>) -> Shares {
-        let Relief { grid, fold, .. } = self.judge.relief;
+        let GradientField { grid, fold, .. } = self.judge.field;
         if let (Some(axis), false) = (leaves, self.judge.follow_out) {
             self.judge.cut_off.store(true, Relaxed);
             let jams = grid.axes[axis].dof.is_rotation();

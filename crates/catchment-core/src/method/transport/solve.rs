@@ -12,7 +12,7 @@
 use super::Judge;
 use super::links::{Link, Links, Scratch, Way};
 use crate::exec::{Cancelled, Exec};
-use crate::landscape::Relief;
+use crate::landscape::GradientField;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 
@@ -51,18 +51,20 @@ struct Waiting {
 }
 
 /// Solves all kept cells.
-pub(super) fn solve(relief: &Relief, judge: &Judge, exec: &Exec) -> Result<Vec<Shares>, Cancelled> {
-    let shares: Vec<AtomicU32> = relief
+pub(super) fn solve(field: &GradientField, judge: &Judge, exec: &Exec) -> Result<Vec<Shares>, Cancelled> {
+    let shares: Vec<AtomicU32> = field
         .carriers
         .iter()
         .map(|c| {
-            AtomicU32::new(if *c == Relief::NOTHING { Shares::new(0.0, 0.0) } else { Shares::UNKNOWN }.0)
+            AtomicU32::new(
+                if *c == GradientField::NOTHING { Shares::new(0.0, 0.0) } else { Shares::UNKNOWN }.0,
+            )
         })
         .collect();
-    let links = Links::new(relief);
+    let links = Links::new(field);
     let done = AtomicUsize::new(0);
-    let slab = relief.fold.slab();
-    let slabs = relief.fold.representatives();
+    let slab = field.fold.slab();
+    let slabs = field.fold.representatives();
     exec.install(|| {
         (0..slabs).into_par_iter().try_for_each_init(
             || Solver {

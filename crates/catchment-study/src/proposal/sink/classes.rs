@@ -6,7 +6,7 @@
 //!   same axis, elsewhere      another place                                 anything else                another way
 //! ```
 
-use super::height::HeightMap;
+use super::height::PartHeights;
 use super::{Grain, Sunk, Triangles};
 use crate::proposal::way::PartLayout;
 use glam::DMat3;
@@ -24,7 +24,7 @@ const ONE_PLACE: f64 = 4.0;
 
 /// The classes of places, the steepest first. `sunk` is sorted.
 pub(in crate::proposal) fn classes(moving: &Triangles, sunk: &[Sunk], grain: Grain) -> Vec<Class> {
-    let (low, high) = HeightMap::bounds(moving, &DMat3::IDENTITY);
+    let (low, high) = PartHeights::bounds(moving, &DMat3::IDENTITY);
     let middle = low.midpoint(high);
     let at = |sunk: &Sunk| (sunk.lie.turns()[1] * middle).truncate() + sunk.offset;
     let sides = |sunk: &Sunk| match sunk.lie {

@@ -6,7 +6,7 @@
 //!                   └──▶ the lowest offset near, how far it climbs from there: holds, or flat
 //! ```
 
-use super::height::{HeightMap, NOTHING};
+use super::height::{NOTHING, PartHeights};
 use super::refine::Window;
 use super::{Grain, Sunk, Triangles};
 use crate::proposal::way::{AxisDirection, PartLayout};
@@ -113,7 +113,7 @@ const NEAR: f64 = 1.2;
 pub(in crate::proposal) fn together(parts: [&Triangles; 2], grain: Grain) -> Together {
     const COLUMNS: f64 = 100.0;
     let all = parts.map(volume).into_iter().fold(f64::INFINITY, f64::min);
-    let boxes = parts.map(|part| HeightMap::bounds(part, &DMat3::IDENTITY));
+    let boxes = parts.map(|part| PartHeights::bounds(part, &DMat3::IDENTITY));
     let [a, b] = boxes.map(|(low, high)| (high - low).element_product());
     let common_box = (boxes[0].1.min(boxes[1].1) - boxes[0].0.max(boxes[1].0)).max(DVec3::ZERO);
     let inside = common_box.element_product() / a.min(b);
@@ -121,7 +121,7 @@ pub(in crate::proposal) fn together(parts: [&Triangles; 2], grain: Grain) -> Tog
     for axis in 0..3 {
         let turn =
             DMat3::from_cols(DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3], DVec3::AXES[(axis + 2) % 3]);
-        let bounds = parts.map(|part| HeightMap::bounds(part, &turn));
+        let bounds = parts.map(|part| PartHeights::bounds(part, &turn));
         let slack = DVec3::splat(NEAR * grain.small);
         let (low, high) = (bounds[0].0.max(bounds[1].0) - slack, bounds[0].1.min(bounds[1].1) + slack);
         if high.cmple(low).any() {

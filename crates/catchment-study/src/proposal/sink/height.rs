@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Highest z over a lattice; −∞ where there is nothing.
-pub(super) struct HeightMap {
+pub(super) struct PartHeights {
     /// The first point of the lattice, and how far the next one is.
     pub(super) first: DVec2,
     pub(super) cell: f64,
@@ -15,7 +15,7 @@ pub(super) struct HeightMap {
 
 pub(super) const NOTHING: f32 = f32::NEG_INFINITY;
 
-impl HeightMap {
+impl PartHeights {
     /// The box of triangles as they are turned.
     pub(super) fn bounds(triangles: &[[DVec3; 3]], turn: &DMat3) -> (DVec3, DVec3) {
         let points = triangles.iter().flatten().map(|p| *turn * *p);
@@ -188,7 +188,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of(map: &HeightMap) -> Self {
+    pub(super) fn of(map: &PartHeights) -> Self {
         let counts = map.counts.map(|count| count / SUB);
         let phase = |p: usize| {
             let (a, b) = (p % SUB, p / SUB);
@@ -210,7 +210,7 @@ pub(super) struct Offsets {
 }
 
 /// Whether the part seen from below, `shift` points beside the fixed one and `height` above it, would overlap it: by all points of both.
-pub(super) fn overlaps(fixed: &HeightMap, below: &HeightMap, shift: [isize; 2], height: f32) -> bool {
+pub(super) fn overlaps(fixed: &PartHeights, below: &PartHeights, shift: [isize; 2], height: f32) -> bool {
     /// Rows far from each other come first: most of what overlaps does so along a side.
     const STRIDE: usize = 16;
     // Of the moving one along an axis, and where the first of them is over the fixed one.
@@ -267,7 +267,7 @@ enum Block {
 
 /// The block with these columns and rows; of one with a step, to `points` the highest point, and those that reach farthest to the four sides of the highest
 /// level.
-fn block(map: &HeightMap, [is, js]: [Range<usize>; 2], step: f32, points: &mut Vec<Point>) -> Block {
+fn block(map: &PartHeights, [is, js]: [Range<usize>; 2], step: f32, points: &mut Vec<Point>) -> Block {
     let [wide, deep] = map.counts;
     // A step may lie between two blocks, or at the border of the map.
     let inside = is.start > 0 && js.start > 0 && is.end < wide && js.end < deep;
@@ -321,7 +321,7 @@ fn blocks([wide, deep]: [usize; 2], side: usize) -> impl Iterator<Item = [Range<
 }
 
 /// The points of a height map that decide first contact: a few of every block of this side.
-pub(super) fn deciding(map: &HeightMap, side: usize, step: f32) -> Vec<Point> {
+pub(super) fn deciding(map: &PartHeights, side: usize, step: f32) -> Vec<Point> {
     let mut points = Vec::new();
     for ranges in blocks(map.counts, side) {
         if let Block::Level(point) = block(map, ranges, step, &mut points) {
@@ -333,7 +333,7 @@ pub(super) fn deciding(map: &HeightMap, side: usize, step: f32) -> Vec<Point> {
 
 /// The same by the side of the block that a point stands for: level blocks are large, and a point at the middle of one meets the highest of what is under all of
 /// it, lest a rim that is narrower falls between two points. Those that stand for themselves have the side 1.
-pub(super) fn deciding_blocks(map: &HeightMap, [small, large]: [usize; 2], step: f32) -> Groups {
+pub(super) fn deciding_blocks(map: &PartHeights, [small, large]: [usize; 2], step: f32) -> Groups {
     let (mut points, mut aside) = (Vec::new(), Vec::new());
     let middle = |[is, js]: &[Range<usize>; 2], z: f32| {
         ([is.start.midpoint(is.end) as u32, js.start.midpoint(js.end) as u32], z)

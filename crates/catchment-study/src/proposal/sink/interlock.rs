@@ -15,7 +15,7 @@
 //! longer than four times [`RAISED`]; survival of walls that yield by w.
 
 use super::drawn::{columns, common};
-use super::height::HeightMap;
+use super::height::PartHeights;
 use super::refine::Window;
 use super::{Grain, Triangles};
 use crate::proposal::way::{AxisDirection, PartLayout};
@@ -51,9 +51,9 @@ const FITS: f64 = 0.2;
 pub(in crate::proposal) fn lead(parts: [&Triangles; 2], way: AxisDirection, grain: Grain) -> Option<f64> {
     let [fixed, moving] = parts;
     let turn = PartLayout::as_drawn(way).turns()[0];
-    let (low, high) = HeightMap::bounds(moving, &turn);
+    let (low, high) = PartHeights::bounds(moving, &turn);
     let middle = low.midpoint(high).truncate();
-    let of_fixed = HeightMap::bounds(fixed, &turn);
+    let of_fixed = PartHeights::bounds(fixed, &turn);
     // The moving part about its middle, so that it stays there when it is turned.
     let reach = 0.5 * (high - low).truncate().length();
     let low = of_fixed.0.truncate().max(middle - reach);

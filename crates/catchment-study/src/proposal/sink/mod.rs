@@ -34,7 +34,7 @@ use catchment_core::connector::Half;
 use catchment_core::exec::{Cancelled, Exec};
 use flood::{Basin, basins};
 use glam::{DMat3, DVec2, DVec3};
-use height::{Groups, HeightMap, Offsets, Phases, SUB, deciding, deciding_blocks, heights, overlaps};
+use height::{Groups, Offsets, PartHeights, Phases, SUB, deciding, deciding_blocks, heights, overlaps};
 use std::collections::BTreeMap;
 
 /// A part as triangles.
@@ -115,7 +115,7 @@ pub(super) fn sinks(
     exec: &Exec,
 ) -> Result<Vec<Sunk>, Cancelled> {
     let extent = |part: &Triangles| {
-        let (low, high) = HeightMap::bounds(part, &DMat3::IDENTITY);
+        let (low, high) = PartHeights::bounds(part, &DMat3::IDENTITY);
         (high - low).max_element()
     };
     let cell = ((extent(fixed) + extent(moving)) / CELLS).min(MOST_CELL * grain.small);
@@ -173,7 +173,7 @@ pub(super) fn diagonals(part: &Triangles) -> Vec<AxisDirection> {
 struct View {
     way: AxisDirection,
     turned: u8,
-    bottom: HeightMap,
+    bottom: PartHeights,
     points: Groups,
 }
 
@@ -184,7 +184,7 @@ fn views(moving: &Triangles, ways: &[AxisDirection], cell: f64, exec: &Exec) -> 
     let maps = exec.each(all.len(), usize::MAX, "views", |k, _| {
         let (way, turned) = all[k];
         let turn = PartLayout::Facing { fixed: way, moving: way, turned }.turns()[1];
-        HeightMap::whole(moving, &(UPSIDE_DOWN * turn), cell / SUB as f64, SUB)
+        PartHeights::whole(moving, &(UPSIDE_DOWN * turn), cell / SUB as f64, SUB)
     });
     exec.check()?;
     let level = (0.5 * cell) as f32;
@@ -200,7 +200,7 @@ fn views(moving: &Triangles, ways: &[AxisDirection], cell: f64, exec: &Exec) -> 
 }
 
 /// The points that are looked at: some of every block of a cell, or of larger ones where these are too many.
-fn looked_at(bottom: &HeightMap, level: f32) -> Groups {
+fn looked_at(bottom: &PartHeights, level: f32) -> Groups {
     /// How many times as large level blocks are.
     const LARGE: usize = 4;
     let all = deciding(bottom, SUB, level);
@@ -221,7 +221,7 @@ fn looked_at(bottom: &HeightMap, level: f32) -> Groups {
 struct Tops {
     first: DVec2,
     /// Worn, no narrow hole is missed; thickened, no thin wall.
-    maps: [HeightMap; 2],
+    maps: [PartHeights; 2],
     phases: [Phases; 2],
     /// As high as the highest point of a block of this side.
     dilated: BTreeMap<usize, [Phases; 2]>,
@@ -229,7 +229,7 @@ struct Tops {
 
 impl Tops {
     fn of(fixed: &Triangles, turn: &DMat3, cell: f64) -> Self {
-        let top = HeightMap::whole(fixed, turn, cell / SUB as f64, SUB);
+        let top = PartHeights::whole(fixed, turn, cell / SUB as f64, SUB);
         let first = top.first;
         let maps = [top.eroded(SUB / 2), top.thickened(fixed, turn)];
         let phases = maps.each_ref().map(Phases::of);
@@ -239,7 +239,7 @@ impl Tops {
     /// h over all offsets, of both maps. What stands for a block meets the highest point under all of it.
     fn heights(&mut self, view: &View) -> [Offsets; 2] {
         for side in view.points.keys().filter(|side| **side > 1) {
-            let dilated = |map: &HeightMap| Phases::of(&map.dilated(side / 2));
+            let dilated = |map: &PartHeights| Phases::of(&map.dilated(side / 2));
             self.dilated.entry(*side).or_insert_with(|| self.maps.each_ref().map(dilated));
         }
         [0, 1].map(|k| {

@@ -1,7 +1,7 @@
 //! Heights of first contact near a given offset, on a fine lattice: the floor of a basin, its middle, its
 //! play.
 
-use super::height::{HeightMap, NOTHING, deciding};
+use super::height::{NOTHING, PartHeights, deciding};
 use super::{Grain, Sunk, Triangles, UPSIDE_DOWN};
 use glam::{DMat3, DVec2};
 
@@ -47,11 +47,11 @@ impl Window {
         let most = Self::cell_of(moving, &turns[1]);
         let cell = (CELL * grain.small).max(most);
         let steps = (REACH * grain.small / cell).round().max(4.0) as usize;
-        let bottom = HeightMap::whole(moving, &(UPSIDE_DOWN * turns[1]), cell, 1);
+        let bottom = PartHeights::whole(moving, &(UPSIDE_DOWN * turns[1]), cell, 1);
         let room = steps + worn;
         let counts = bottom.counts.map(|count| count + 2 * room);
         let corner = bottom.first + offset - DVec2::splat(room as f64 * cell);
-        let top = HeightMap::window(fixed, &turns[0], cell, corner, counts);
+        let top = PartHeights::window(fixed, &turns[0], cell, corner, counts);
         let (top, bottom) = if worn > 0 {
             (top.eroded(worn), bottom)
         } else {
@@ -82,7 +82,7 @@ impl Window {
     /// The least cell with which a part has not too many points.
     fn cell_of(moving: &Triangles, turn: &DMat3) -> f64 {
         const MOST: f64 = 1200.0;
-        let (low, high) = HeightMap::bounds(moving, turn);
+        let (low, high) = PartHeights::bounds(moving, turn);
         (high - low).truncate().max_element() / MOST
     }
 
@@ -166,7 +166,7 @@ const BESIDE: f64 = 0.15;
 fn over(parts: [&Triangles; 2], sunk: &Sunk) -> f64 {
     let turns = sunk.lie.turns();
     let [fixed, moving] = [0, 1].map(|k| {
-        let (low, high) = HeightMap::bounds(parts[k], &turns[k]);
+        let (low, high) = PartHeights::bounds(parts[k], &turns[k]);
         (low.truncate(), high.truncate())
     });
     let common = fixed.1.min(moving.1 + sunk.offset) - fixed.0.max(moving.0 + sunk.offset);

@@ -27,7 +27,7 @@ const LOOKS: f64 = tolerance::SINGLE;
 const SHARED: f64 = 0.3;
 
 /// Heights over a lattice; −∞ where there is nothing.
-pub struct Relief {
+pub struct HeightMap {
     /// The first point, in plan view.
     pub first: DVec2,
     /// Points along x and y.
@@ -38,7 +38,7 @@ pub struct Relief {
     pub(crate) filled: usize,
 }
 
-impl Relief {
+impl HeightMap {
     /// Of a half that a turn brings upright, seen from above (`up` 1) or below (−1, heights negated), over the points
     /// `first + cell·(i, j)`.
     pub fn of(half: &Half, turn: &DMat3, up: f64, cell: f64, first: DVec2, counts: [usize; 2]) -> Self {
@@ -149,7 +149,7 @@ pub fn broadest(half: &Half) -> f64 {
 
 /// Something narrow of one half, which alone keeps the other from sinking into a seat.
 #[derive(Debug, Clone, Copy)]
-pub struct InTheWay {
+pub struct Obstruction {
     /// Whose it is.
     pub(crate) side: Side,
     /// Where it is touched, in the frame of the fixed half as it was turned, and the same place of the moving half in its own.
@@ -169,7 +169,7 @@ const DEEPER: f32 = 1.0;
 const CLIMBS: f32 = 0.02;
 
 /// Looks whether something narrow keeps the moving half, moved by whole cells, from a seat.
-pub fn in_the_way(top: &Relief, bottom: &Relief, moved: [i32; 2], cell: f64) -> Option<InTheWay> {
+pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f64) -> Option<Obstruction> {
     let (height, _) = with(top, bottom, |both| both.height(moved))?;
     [Side::Fixed, Side::Moving].into_iter().find_map(|side| {
         let opened = match side {
@@ -192,17 +192,17 @@ pub fn in_the_way(top: &Relief, bottom: &Relief, moved: [i32; 2], cell: f64) -> 
         let [wide, deep] = bottom.counts.map(signed);
         let found = (0..deep).flat_map(|j| (0..wide).map(move |i| [i, j])).filter_map(narrow);
         let (_, [i, j], a, b) = found.max_by(|one, other| one.0.total_cmp(&other.0))?;
-        let place = |relief: &Relief, [i, j]: [i32; 2], z: f32| {
-            (relief.first + cell * DVec2::new(f64::from(i), f64::from(j))).extend(f64::from(z))
+        let place = |map: &HeightMap, [i, j]: [i32; 2], z: f32| {
+            (map.first + cell * DVec2::new(f64::from(i), f64::from(j))).extend(f64::from(z))
         };
         let at = [place(top, [i + moved[0], j + moved[1]], a), place(bottom, [i, j], -b)];
-        Some(InTheWay { side, at, deeper: f64::from(deeper) })
+        Some(Obstruction { side, at, deeper: f64::from(deeper) })
     })
 }
 
 /// The same in words, with both places as they are told.
-pub fn in_words(found: &InTheWay, at: &[String; 2], told: DisplayUnit) -> String {
-    let InTheWay { side, deeper, .. } = found;
+pub fn in_words(found: &Obstruction, at: &[String; 2], told: DisplayUnit) -> String {
+    let Obstruction { side, deeper, .. } = found;
     let (whose, [fixed, moving]) = (if *side == Side::Fixed { "fixed" } else { "moving" }, at);
     format!(
         "something narrow of the {whose} part is in the way, touched at {fixed} of the fixed and {moving} of the moving part as drawn: without it \
@@ -211,22 +211,22 @@ pub fn in_words(found: &InTheWay, at: &[String; 2], told: DisplayUnit) -> String
     )
 }
 
-/// Two reliefs of one cell.
-pub struct Reliefs<'a> {
-    fixed: [&'a Relief; 2],
+/// Two height maps of one cell size.
+pub struct HeightMaps<'a> {
+    fixed: [&'a HeightMap; 2],
     /// As it is, beside the worn fixed one; worn.
     moving: [Vec<([i32; 2], f32)>; 2],
     fewest: usize,
 }
 
-/// Calls `with` with the reliefs of two halves, and of both as they are worn.
-pub fn with<T>(fixed: &Relief, moving: &Relief, with: impl FnOnce(&Reliefs<'_>) -> T) -> T {
+/// Calls `with` with the height maps of two halves, and of both as they are worn.
+pub fn with<T>(fixed: &HeightMap, moving: &HeightMap, with: impl FnOnce(&HeightMaps<'_>) -> T) -> T {
     let fewest = (SHARED * fixed.filled.min(moving.filled) as f64).ceil().max(1.0) as usize;
     let worn = fixed.worn();
-    with(&Reliefs { fixed: [&worn, fixed], moving: [moving.points(), moving.worn().points()], fewest })
+    with(&HeightMaps { fixed: [&worn, fixed], moving: [moving.points(), moving.worn().points()], fewest })
 }
 
-impl Reliefs<'_> {
+impl HeightMaps<'_> {
     /// The height of first contact with the moving lattice moved by whole cells, and how many points both have; `None` where they
     /// share too few.
     pub fn height(&self, [dx, dy]: [i32; 2]) -> Option<(f32, usize)> {

@@ -14,9 +14,9 @@
 
 use super::backend::{lateral, lateral_lattices};
 use super::heights::{usable, within};
-use super::{Fold, Grid, LandscapeError, ReliefPart, Resolution};
+use super::{Fold, GradientFieldPart, Grid, LandscapeError, Resolution};
 use crate::advice::Advice;
-use crate::contact::{Envelope, Pair};
+use crate::contact::{HeightEnvelope, Pair};
 use crate::exec::Exec;
 use crate::pose;
 use glam::DVec2;
@@ -59,27 +59,27 @@ pub type Patches = Vec<Box<[Patch]>>;
 
 /// Heights and gradients over the kept half, or quarter, of an error grid.
 #[derive(Debug, Clone)]
-pub struct Relief {
+pub struct GradientField {
     /// The whole grid.
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
     /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
     pub heights: Vec<f32>,
-    /// Per kept cell: number of its patch within its rotation; [`Relief::NOTHING`] without contact.
+    /// Per kept cell: number of its patch within its rotation; [`GradientField::NOTHING`] without contact.
     pub carriers: Vec<u16>,
     /// Per representative rotation: its patches.
     pub patches: Patches,
 }
 
-impl Relief {
+impl GradientField {
     /// No patch: the halves pass each other by.
     pub const NOTHING: u16 = u16::MAX;
 
     /// Bytes per kept cell, beside the patches.
     pub const BYTES_PER_CELL: u64 = (size_of::<f32>() + size_of::<u16>()) as u64;
 
-    /// The relief of `pair` over `grid`, one rotation at a time, in parallel. `linear(rotation)` gives, for the pose at
+    /// The gradient field of `pair` over `grid`, one rotation at a time, in parallel. `linear(rotation)` gives, for the pose at
     /// the first cell of a rotation, a linear map that is applied to its gradients before they are kept; a method
     /// uses it to keep what it needs of them.
     ///
@@ -97,29 +97,29 @@ impl Relief {
     {
         let fold = folded(pair, grid)?;
         let all = 0..fold.representatives();
-        let ReliefPart { grid, fold, heights, carriers, patches, .. } =
-            reliefs(pair, grid, fold, all, exec, linear)?;
+        let GradientFieldPart { grid, fold, heights, carriers, patches, .. } =
+            part_of(pair, grid, fold, all, exec, linear)?;
         Ok(Self { grid, fold, heights, carriers, patches })
     }
 
-    /// The relief of some of the representative rotations, numbered as in the [`Fold`] of the grid: that of the whole, bit
-    /// for bit. [`Relief::merge`] puts parts together.
+    /// The gradient field of some of the representative rotations, numbered as in the [`Fold`] of the grid: that of the whole, bit
+    /// for bit. [`GradientField::merge`] puts parts together.
     ///
     /// # Errors
-    /// As [`Relief::compute`], and when there are no such rotations.
+    /// As [`GradientField::compute`], and when there are no such rotations.
     pub fn part<L>(
         pair: &Pair,
         grid: &Grid,
         representatives: Range<usize>,
         exec: &Exec,
         linear: impl Fn(&pose::PoseError) -> L + Sync,
-    ) -> Result<ReliefPart, LandscapeError>
+    ) -> Result<GradientFieldPart, LandscapeError>
     where
         L: Fn(&Gradient) -> Gradient,
     {
         let fold = folded(pair, grid)?;
         within(&representatives, fold.representatives())?;
-        reliefs(pair, grid, fold, representatives, exec, linear)
+        part_of(pair, grid, fold, representatives, exec, linear)
     }
 }
 
@@ -129,15 +129,15 @@ fn folded(pair: &Pair, grid: &Grid) -> Result<Fold, LandscapeError> {
     Fold::new(grid, pair.mirrors()).ok_or_else(|| LandscapeError::Unusable { shape: grid.shape() })
 }
 
-/// The relief of a range of representative rotations.
-fn reliefs<L>(
+/// The gradient field of a range of representative rotations.
+fn part_of<L>(
     pair: &Pair,
     grid: &Grid,
     fold: Fold,
     representatives: Range<usize>,
     exec: &Exec,
     linear: impl Fn(&pose::PoseError) -> L + Sync,
-) -> Result<ReliefPart, LandscapeError>
+) -> Result<GradientFieldPart, LandscapeError>
 where
     L: Fn(&Gradient) -> Gradient,
 {
@@ -146,31 +146,31 @@ where
         patches.into_boxed_slice()
     };
     let (heights, carriers, patches) =
-        slabs(pair, grid, &fold, representatives.clone(), Relief::BYTES_PER_CELL, exec, linear, keep)?;
-    Ok(ReliefPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
+        slabs(pair, grid, &fold, representatives.clone(), GradientField::BYTES_PER_CELL, exec, linear, keep)?;
+    Ok(GradientFieldPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
 }
 
 /// Heights over the kept cells of an error grid, and to which side of every cell its gradient points: a byte in the place of patches.
 #[derive(Debug, Clone)]
-pub struct Falls {
+pub struct DescentDirections {
     /// The whole grid.
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
     /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
     pub heights: Vec<f32>,
-    /// Per kept cell: bit k where entry k of its gradient is negative; [`Falls::NOTHING`] without contact.
+    /// Per kept cell: bit k where entry k of its gradient is negative; [`DescentDirections::NOTHING`] without contact.
     pub below: Vec<u8>,
 }
 
-impl Falls {
+impl DescentDirections {
     /// The halves pass each other by.
     pub const NOTHING: u8 = u8::MAX;
 
     /// Bytes per kept cell.
     pub const BYTES_PER_CELL: u64 = (size_of::<f32>() + size_of::<u8>()) as u64;
 
-    /// As [`Relief::compute`].
+    /// As [`GradientField::compute`].
     ///
     /// # Errors
     /// As there.
@@ -188,7 +188,7 @@ impl Falls {
         let keep = |slab: &[u16], patches: Vec<Patch>, below: &mut [u8]| {
             for (cell, (carrier, below)) in slab.iter().zip(below).enumerate() {
                 *below = match carrier {
-                    &Relief::NOTHING => Self::NOTHING,
+                    &GradientField::NOTHING => Self::NOTHING,
                     carrier => {
                         let gradient = patches[usize::from(*carrier)].at(cell % width, cell / width);
                         let bit = |(k, entry): (usize, &f32)| u8::from(*entry < 0.0) << k;
@@ -255,7 +255,7 @@ where
 /// What one thread needs to fill slabs.
 struct Slab<'a> {
     pair: &'a Pair,
-    envelope: Envelope<'a>,
+    envelope: HeightEnvelope<'a>,
     heights: Vec<f64>,
     carriers: Vec<u32>,
     /// Per carrier of the envelope: its patch in this slab.
@@ -279,21 +279,23 @@ impl<'a> Slab<'a> {
         let rotation = error.rotation();
         let lattices @ [x, y] = lateral_lattices(self.pair, grid, &rotation);
         self.envelope.turn(&rotation);
-        self.envelope.relief(x, y, &mut self.heights, &mut self.carriers);
+        self.envelope.heights_and_carriers(x, y, &mut self.heights, &mut self.carriers);
         self.numbers.clear();
         let mut patches = Vec::new();
         for (k, carrier) in self.carriers.iter().enumerate() {
             heights[k] = self.heights[k] as f32;
-            carriers[k] = if *carrier == Envelope::NOTHING {
-                Relief::NOTHING
+            carriers[k] = if *carrier == HeightEnvelope::NOTHING {
+                GradientField::NOTHING
             } else {
                 let slot = *carrier as usize;
                 if slot >= self.numbers.len() {
-                    self.numbers.resize(slot + 1, Relief::NOTHING);
+                    self.numbers.resize(slot + 1, GradientField::NOTHING);
                 }
-                if self.numbers[slot] == Relief::NOTHING {
-                    if patches.len() >= usize::from(Relief::NOTHING) {
-                        return Err(LandscapeError::TooManyPatches { most: usize::from(Relief::NOTHING) });
+                if self.numbers[slot] == GradientField::NOTHING {
+                    if patches.len() >= usize::from(GradientField::NOTHING) {
+                        return Err(LandscapeError::TooManyPatches {
+                            most: usize::from(GradientField::NOTHING),
+                        });
                     }
                     self.numbers[slot] = patches.len() as u16;
                     // One step of the lattice apart, or one D where it has no step: the patch is then constant.
@@ -335,17 +337,17 @@ mod tests {
             let pair = pair(family);
             let cells = if pair.alignment.free.len() == 2 { 12 } else { 4 };
             let grid = Grid::over(&pair.alignment, |_| cells);
-            let relief = Relief::compute(&pair, &grid, &Exec::new(), |_| |g: &Gradient| *g).unwrap();
+            let field = GradientField::compute(&pair, &grid, &Exec::new(), |_| |g: &Gradient| *g).unwrap();
             let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
             let mut contacts: Vec<Contact> = Vec::new();
             let mut carried = 0;
             for cell in 0..grid.len() {
-                let kept = relief.fold.kept_cell(cell);
-                let (a, b) = (relief.heights[kept], landscape.heights[cell]);
+                let kept = field.fold.kept_cell(cell);
+                let (a, b) = (field.heights[kept], landscape.heights[cell]);
                 assert!(a == b || (a - b).abs() < 1e-6, "{family:?} {cell}: {a} {b}");
-                let slab = relief.fold.slab();
+                let slab = field.fold.slab();
                 let representative = kept / slab;
-                if relief.fold.rotation(representative) * slab + kept % slab != cell || !a.is_finite() {
+                if field.fold.rotation(representative) * slab + kept % slab != cell || !a.is_finite() {
                     continue;
                 }
                 carried += 1;
@@ -356,7 +358,7 @@ mod tests {
                 let cor = pose.lateral.extend(envelope.height(pose.lateral).unwrap());
                 envelope.contacts(cor, 1e-9, &mut contacts);
                 let nx = grid.axis(Dof::X).map_or(1, |a| a.cells);
-                let patch = relief.patches[representative][usize::from(relief.carriers[kept])];
+                let patch = field.patches[representative][usize::from(field.carriers[kept])];
                 let found = patch.at(kept % slab % nx, kept % slab / nx);
                 let near = contacts.iter().any(|c| {
                     let ([gx, gy], turn) = c.gradient(cor);
@@ -379,18 +381,18 @@ mod tests {
             let cells = if pair.alignment.free.len() == 2 { 12 } else { 4 };
             let grid = Grid::over(&pair.alignment, |_| cells);
             let linear = |_: &pose::PoseError| |g: &Gradient| *g;
-            let relief = Relief::compute(&pair, &grid, &Exec::new(), linear).unwrap();
-            let falls = Falls::compute(&pair, &grid, &Exec::new(), linear).unwrap();
-            assert_eq!(relief.heights, falls.heights);
-            let (slab, nx) = (relief.fold.slab(), grid.axis(Dof::X).map_or(1, |a| a.cells));
+            let field = GradientField::compute(&pair, &grid, &Exec::new(), linear).unwrap();
+            let falls = DescentDirections::compute(&pair, &grid, &Exec::new(), linear).unwrap();
+            assert_eq!(field.heights, falls.heights);
+            let (slab, nx) = (field.fold.slab(), grid.axis(Dof::X).map_or(1, |a| a.cells));
             for (kept, below) in falls.below.iter().enumerate() {
-                let carrier = relief.carriers[kept];
-                if carrier == Relief::NOTHING {
-                    assert_eq!(*below, Falls::NOTHING);
+                let carrier = field.carriers[kept];
+                if carrier == GradientField::NOTHING {
+                    assert_eq!(*below, DescentDirections::NOTHING);
                     continue;
                 }
                 let gradient =
-                    relief.patches[kept / slab][usize::from(carrier)].at(kept % slab % nx, kept % slab / nx);
+                    field.patches[kept / slab][usize::from(carrier)].at(kept % slab % nx, kept % slab / nx);
                 for (k, entry) in gradient.iter().enumerate() {
                     assert_eq!(below >> k & 1 == 1, *entry < 0.0, "{family:?} {kept} {gradient:?}");
                 }
@@ -404,7 +406,7 @@ mod tests {
         let grid = Grid::over(&pair.alignment, |_| 4);
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
-            Relief::compute(&pair, &grid, &exec, |_| |g: &Gradient| *g).unwrap()
+            GradientField::compute(&pair, &grid, &exec, |_| |g: &Gradient| *g).unwrap()
         };
         let (one, three) = (with(1), with(3));
         assert_eq!(one.heights, three.heights);
