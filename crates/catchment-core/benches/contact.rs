@@ -5,7 +5,7 @@ mod meshes;
 mod rates;
 
 use catchment_core::acceptance::{Domain, Outcome};
-use catchment_core::connector::{Connector, Source};
+use catchment_core::connector::{Connector, HalfSource};
 use catchment_core::contact::{Lattice, Pair, brute, mated};
 use catchment_core::design::Alignment;
 use catchment_core::method::descent;
@@ -49,7 +49,7 @@ const MOTIONS: usize = 10;
 /// triangles, which the tests of the room hold.
 fn lathed(rates: &mut Rates, name: &str, halves: impl Fn() -> [meshes::Triangles; 2]) {
     let build = || {
-        let [fixed, moving] = halves().map(Source::Triangles);
+        let [fixed, moving] = halves().map(HalfSource::Triangles);
         let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).expect("sound meshes");
         let alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
         let pair = Pair::new(&connector, &alignment);

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
     let alignment = Alignment::new(free, Mount::X);
-    let problem = Problem::new(Source::Triangles(socket), Source::Triangles(plug), alignment)?;
+    let problem = Problem::new(HalfSource::Triangles(socket), HalfSource::Triangles(plug), alignment)?;
     let answer = Run::default().on(&problem, &Exec::new())?;
     println!("Sum {:.2} {}", answer.sum(), answer.unit());
     let poses = [0.1, 0.3, 0.9].map(|x| PoseError { x, yaw: 0.2, ..PoseError::default() });

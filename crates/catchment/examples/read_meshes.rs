@@ -7,7 +7,7 @@
 //!
 //! With `SIMPLIFY=0.001` in the environment, simplified to that part of its width; with `REPAIR=0`, taken as they are.
 
-use catchment::connector::{Connector, FileBytes, MeshProblem, Problem, Source};
+use catchment::connector::{Connector, FileBytes, GeometryDefect, HalfSource, MeshProblem};
 use catchment::design::{FileSpec, Treatment};
 use catchment::pose::Mount;
 use std::env;
@@ -19,20 +19,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let simplify = env::var("SIMPLIFY").ok().map(|text| text.parse()).transpose()?;
     let treatment =
         Treatment { repair: env::var("REPAIR").as_deref() != Ok("0"), simplify, ..Treatment::DEFAULT };
-    let other = Source::Family(catchment::design::FamilySpec::new(catchment::design::Family::Pyramid));
+    let other = HalfSource::Family(catchment::design::FamilySpec::new(catchment::design::Family::Pyramid));
     let mut out = io::stdout().lock();
     for path in env::args().skip(1) {
         let file = FileBytes::whole(std::fs::read(&path)?);
         let start = Instant::now();
         let read = |scale| {
             let spec = FileSpec { treatment, ..FileSpec::new(&path, scale) };
-            let mesh = Source::Mesh { spec, file: file.clone() };
+            let mesh = HalfSource::Mesh { spec, file: file.clone() };
             Connector::from_sources(&mesh, &other, 0.0, Mount::X)
         };
         let mut result = read(1.0);
         let width = result.as_ref().err().and_then(|problems| {
             problems.iter().find_map(|problem| match problem {
-                Problem::Mesh { error: MeshProblem::Unit { width }, .. } => Some(*width),
+                GeometryDefect::Mesh { error: MeshProblem::Unit { width }, .. } => Some(*width),
                 _ => None,
             })
         });

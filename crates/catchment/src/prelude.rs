@@ -5,7 +5,7 @@
 //! ```
 
 pub use crate::acceptance::{Acceptance, Outcome, Warning};
-pub use crate::connector::Source;
+pub use crate::connector::HalfSource;
 pub use crate::design::{Alignment, Design, Family, FamilySpec};
 pub use crate::exec::Exec;
 pub use crate::landscape::{Grid, Resolution};

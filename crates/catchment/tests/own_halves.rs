@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::connector::{Connector, Half, Problem, Side, stl};
+use catchment::connector::{Connector, GeometryDefect, Half, HalfRole, stl};
 use catchment::contact::{Pair, mated};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, FileSpec, HalfSpec, OwnSpec};
 use catchment::pose::{CorPose, DofSet, Mount, PoseError};
@@ -27,14 +27,14 @@ fn pair(design: &Design) -> Pair {
     Pair::new(&connector, &design.alignment)
 }
 
-fn write(half: &Half, format: stl::Format, folder: &Path, name: &str, size: f64) -> PathBuf {
+fn write(half: &Half, format: stl::StlEncoding, folder: &Path, name: &str, size: f64) -> PathBuf {
     let path = folder.join(name);
     stl::write(&half.mapped(|p| p * size), format, &mut File::create(&path).unwrap()).unwrap();
     path
 }
 
 /// Both halves as STL files in units of which D has `size`.
-fn meshes(format: stl::Format, folder: &Path, size: f64) -> Design {
+fn meshes(format: stl::StlEncoding, folder: &Path, size: f64) -> Design {
     let connector = Connector::build(&family()).unwrap();
     let drawn = connector.moving.mapped(|p| Mount::X.apply(p));
     let mesh =
@@ -92,7 +92,7 @@ fn pieces_have_the_familys_heights() {
 
 #[test]
 fn stl_files_have_the_familys_heights() {
-    for format in [stl::Format::Ascii, stl::Format::Binary] {
+    for format in [stl::StlEncoding::Ascii, stl::StlEncoding::Binary] {
         for size in [1.0, 50.0] {
             let folder = tempfile::tempdir().unwrap();
             let mesh = pair(&meshes(format, folder.path(), size));
@@ -113,18 +113,18 @@ fn all_problems_of_both_halves_come_at_once() {
     let places: Vec<_> = problems
         .iter()
         .map(|p| match p {
-            Problem::Piece { side, piece, .. } => (*side, Some(*piece)),
-            Problem::Mesh { side, .. } => (*side, None),
+            GeometryDefect::Piece { side, piece, .. } => (*side, Some(*piece)),
+            GeometryDefect::Mesh { side, .. } => (*side, None),
             other => panic!("{other}"),
         })
         .collect();
-    assert_eq!(places, [(Side::Fixed, Some(0)), (Side::Fixed, Some(1)), (Side::Moving, None)]);
+    assert_eq!(places, [(HalfRole::Fixed, Some(0)), (HalfRole::Fixed, Some(1)), (HalfRole::Moving, None)]);
 }
 
 #[test]
 fn a_mesh_in_the_wrong_unit_is_told_what_to_check() {
     let folder = tempfile::tempdir().unwrap();
-    let mut design = meshes(stl::Format::Binary, folder.path(), 50.0);
+    let mut design = meshes(stl::StlEncoding::Binary, folder.path(), 50.0);
     // 50 mm read as if D were 50 m.
     if let ConnectorSpec::Own(own) = &mut design.connector {
         for half in [&mut own.fixed, &mut own.moving] {

@@ -151,7 +151,7 @@ fn primitives_are_what_pieces_of_their_corners_are() {
 
 fn stl_of(half: &Half) -> Vec<u8> {
     let mut bytes = Vec::new();
-    stl::write(half, stl::Format::Ascii, &mut bytes).unwrap();
+    stl::write(half, stl::StlEncoding::Ascii, &mut bytes).unwrap();
     bytes
 }
 

@@ -11,7 +11,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
 use catchment::acceptance::{Domain, Outcome};
-use catchment::connector::{Connector, Half, Source, Surface, convex_hull};
+use catchment::connector::{Connector, Half, HalfSource, Surface, convex_hull};
 use catchment::contact::{Pair, brute};
 use catchment::design::{self, Alignment};
 use catchment::exec::Exec;
@@ -90,7 +90,7 @@ fn designs_fare_as_their_triangles() {
             let of = |surface: &Surface| -> Vec<[DVec3; 3]> {
                 surface.triangles().iter().map(|t| t.map(|k| surface.vertices[k as usize])).collect()
             };
-            Source::Triangles(half.surfaces.iter().flat_map(of).collect())
+            HalfSource::Triangles(half.surfaces.iter().flat_map(of).collect())
         };
         let drawn = connector.moving.mapped(|p| alignment.mount.apply(p));
         let again =

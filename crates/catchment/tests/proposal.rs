@@ -49,7 +49,7 @@ fn write(folder: &Path, name: &str, half: &Half, frame: &DAffine3) -> PartFile {
     };
     let scaled = Half::of(half.surfaces.iter().map(scaled).collect());
     let mut bytes = Vec::new();
-    stl::write(&scaled.mapped(|p| frame.transform_point3(p)), stl::Format::Ascii, &mut bytes).unwrap();
+    stl::write(&scaled.mapped(|p| frame.transform_point3(p)), stl::StlEncoding::Ascii, &mut bytes).unwrap();
     fs::write(folder.join(name), bytes).unwrap();
     PartFile { path: folder.join(name), written: name.to_owned(), body: None }
 }

@@ -33,10 +33,10 @@ pub use mesh::MeshProblem;
 pub use mesh::union::UnionProblem;
 pub use outline::OutlineProblem;
 pub use packed::PackedError;
-pub use part::PartError;
+pub use part::PartGeometryError;
 pub use place::turn_between;
-pub use problem::{Problem, Side};
-pub use source::{FileBytes, Read, Source, UnitProblem};
+pub use problem::{GeometryDefect, HalfRole};
+pub use source::{FileBytes, FileReader, HalfSource, UnitProblem};
 pub use step::StepProblem;
 #[doc(hidden)]
 pub use step::bodies_of_answer;
@@ -124,8 +124,8 @@ impl Half {
 }
 
 /// The half that a design says, files read from disk, as their scales make it: of any size.
-pub fn of_half(spec: &HalfSpec, side: Side, exec: &Exec) -> Result<Half, Vec<Problem>> {
-    Ok(Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)?.half)
+pub fn of_half(spec: &HalfSpec, side: HalfRole, exec: &Exec) -> Result<Half, Vec<GeometryDefect>> {
+    Ok(HalfSource::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)?.half)
 }
 
 /// How large a half may be.
@@ -138,7 +138,7 @@ enum Size {
 }
 
 /// A half and what its files held, or everything that is wrong with it.
-type Sourced = Result<source::Built, Vec<Problem>>;
+type Sourced = Result<source::Built, Vec<GeometryDefect>>;
 
 /// The two halves, in the frames the contact room works in.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,10 +172,10 @@ impl Origin {
         Self { fixed: DAffine3::IDENTITY, moving: DAffine3::IDENTITY, apart: None, settled: None };
 
     /// A point of a half, given in its frame, in the coordinates in which the half was drawn; those in D, whatever the unit of its file.
-    pub fn drawn(&self, side: Side, point: DVec3) -> DVec3 {
+    pub fn drawn(&self, side: HalfRole, point: DVec3) -> DVec3 {
         let from_file = match side {
-            Side::Fixed => self.fixed,
-            Side::Moving => self.moving,
+            HalfRole::Fixed => self.fixed,
+            HalfRole::Moving => self.moving,
         };
         from_file.inverse().transform_point3(point) * from_file.matrix3.determinant().abs().cbrt()
     }
@@ -192,7 +192,7 @@ impl Connector {
     ///
     /// # Errors
     /// Everything that is wrong with the geometry, each with its place.
-    pub fn build(design: &Design) -> Result<Self, Vec<Problem>> {
+    pub fn build(design: &Design) -> Result<Self, Vec<GeometryDefect>> {
         Self::build_with(design, &source::disk::read)
     }
 
@@ -201,7 +201,7 @@ impl Connector {
         design: &Design,
         files: &FilesInMemory,
         exec: &Exec,
-    ) -> Result<Self, Vec<Problem>> {
+    ) -> Result<Self, Vec<GeometryDefect>> {
         Self::build_within(design, &source::beside(files), exec)
     }
 
@@ -209,7 +209,7 @@ impl Connector {
     ///
     /// # Errors
     /// Everything that is wrong with the geometry, each with its place.
-    pub fn build_with(design: &Design, read: Read<'_>) -> Result<Self, Vec<Problem>> {
+    pub fn build_with(design: &Design, read: FileReader<'_>) -> Result<Self, Vec<GeometryDefect>> {
         Self::build_within(design, read, &Exec::new())
     }
 
@@ -217,18 +217,26 @@ impl Connector {
     ///
     /// # Errors
     /// Everything that is wrong with the geometry, each with its place.
-    pub fn build_within(design: &Design, read: Read<'_>, exec: &Exec) -> Result<Self, Vec<Problem>> {
+    pub fn build_within(
+        design: &Design,
+        read: FileReader<'_>,
+        exec: &Exec,
+    ) -> Result<Self, Vec<GeometryDefect>> {
         let mount = design.alignment.mount;
         match &design.connector {
             ConnectorSpec::Family(spec) => Self::of_family(spec, mount),
             ConnectorSpec::Own(own) => {
                 // Parts are drawn in the unit of the design.
                 let half = |spec: &HalfSpec, side| -> Sourced {
-                    let built = Source::of(spec, side, read)?.build(side, Size::Plausible, exec)?;
+                    let built = HalfSource::of(spec, side, read)?.build(side, Size::Plausible, exec)?;
                     let scale = matches!(spec, HalfSpec::Parts(_)).then_some(1.0 / design.width);
                     Ok(source::Built { scale: built.scale.or(scale), ..built })
                 };
-                Self::of_own([half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)], own, mount)
+                Self::of_own(
+                    [half(&own.fixed, HalfRole::Fixed), half(&own.moving, HalfRole::Moving)],
+                    own,
+                    mount,
+                )
             }
         }
     }
@@ -239,11 +247,11 @@ impl Connector {
         mount: Mount,
         files: &FilesInMemory,
         exec: &Exec,
-    ) -> Result<(Self, f64), Vec<Problem>> {
+    ) -> Result<(Self, f64), Vec<GeometryDefect>> {
         let half = |spec: &HalfSpec, side| -> Sourced {
-            Source::of(spec, side, &source::beside(files))?.build(side, Size::Any, exec)
+            HalfSource::of(spec, side, &source::beside(files))?.build(side, Size::Any, exec)
         };
-        let halves = [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)];
+        let halves = [half(&own.fixed, HalfRole::Fixed), half(&own.moving, HalfRole::Moving)];
         let wide = |built: &source::Built| {
             let (low, high) = built.half.bounds();
             (high - low).truncate().max_element()
@@ -256,7 +264,7 @@ impl Connector {
     ///
     /// # Errors
     /// Every parameter that makes no solid.
-    pub fn of_family(spec: &FamilySpec, mount: Mount) -> Result<Self, Vec<Problem>> {
+    pub fn of_family(spec: &FamilySpec, mount: Mount) -> Result<Self, Vec<GeometryDefect>> {
         Ok(Self::placed(&family::draw(spec)?, mount))
     }
 
@@ -265,20 +273,24 @@ impl Connector {
     /// # Errors
     /// Everything that is wrong with either.
     pub fn from_sources(
-        fixed: &Source,
-        moving: &Source,
+        fixed: &HalfSource,
+        moving: &HalfSource,
         face_height: f64,
         mount: Mount,
-    ) -> Result<Self, Vec<Problem>> {
+    ) -> Result<Self, Vec<GeometryDefect>> {
         let exec = Exec::new();
         let nothing = || HalfSpec::Pieces(Vec::new());
         let own = OwnSpec::new(face_height, nothing(), nothing());
-        let build = |source: &Source, side| source.build(side, Size::Plausible, &exec);
-        Self::of_own([build(fixed, Side::Fixed), build(moving, Side::Moving)], &own, mount)
+        let build = |source: &HalfSource, side| source.build(side, Size::Plausible, &exec);
+        Self::of_own([build(fixed, HalfRole::Fixed), build(moving, HalfRole::Moving)], &own, mount)
     }
 
     /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.
-    fn of_own([fixed, moving]: [Sourced; 2], own: &OwnSpec, mount: Mount) -> Result<Self, Vec<Problem>> {
+    fn of_own(
+        [fixed, moving]: [Sourced; 2],
+        own: &OwnSpec,
+        mount: Mount,
+    ) -> Result<Self, Vec<GeometryDefect>> {
         match (fixed, moving) {
             (Ok(fixed), Ok(moving)) => {
                 let frames = place::frames(own, mount);

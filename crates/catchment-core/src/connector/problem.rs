@@ -1,21 +1,21 @@
 //! Defects of a geometry, with their places and advice.
 
 use super::mesh::MeshProblem;
-use super::{HullError, PartError, SurfaceError, UnionProblem};
+use super::{HullError, PartGeometryError, SurfaceError, UnionProblem};
 use crate::terminal::shown;
 use std::fmt;
 use std::path::PathBuf;
 
 /// Which half a problem lies in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum HalfRole {
     /// The fixed half.
     Fixed,
     /// The moving half.
     Moving,
 }
 
-impl fmt::Display for Side {
+impl fmt::Display for HalfRole {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Fixed => "fixed half",
@@ -26,7 +26,7 @@ impl fmt::Display for Side {
 
 /// One reason why a design's geometry cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Problem {
+pub enum GeometryDefect {
     /// A family's parameter makes no solid.
     #[error("{family}: {parameter} = {value}: {advice}")]
     Parameter {
@@ -43,7 +43,7 @@ pub enum Problem {
     #[error("{side}, surface {surface}: {error}")]
     Surface {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// Which of its surfaces, from 0.
         surface: usize,
         /// Why not.
@@ -53,7 +53,7 @@ pub enum Problem {
     #[error("{side}: {count} convex pieces; give between 1 and {most}, or an STL mesh")]
     PieceCount {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// How many there are.
         count: usize,
         /// How many there may be.
@@ -63,7 +63,7 @@ pub enum Problem {
     #[error("{side}, piece {piece}: {error}")]
     Piece {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// Which piece, from 0.
         piece: usize,
         /// Why not.
@@ -73,7 +73,7 @@ pub enum Problem {
     #[error("{side}, {}: {error}", shown(path))]
     Mesh {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// The file.
         path: PathBuf,
         /// Why not.
@@ -83,17 +83,17 @@ pub enum Problem {
     #[error("{side}, part {part}: {error}")]
     Part {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// Which part, from 0.
         part: usize,
         /// Why not.
-        error: PartError,
+        error: PartGeometryError,
     },
     /// Solids that have no union.
     #[error("{side}: {error}")]
     Union {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// Why not.
         error: UnionProblem,
     },
@@ -101,7 +101,7 @@ pub enum Problem {
     #[error("{side}: {error}")]
     Triangles {
         /// Which half.
-        side: Side,
+        side: HalfRole,
         /// Why not.
         error: MeshProblem,
     },
@@ -109,6 +109,6 @@ pub enum Problem {
     #[error("{side}: it was given in memory, so the design does not hold it: give it again")]
     NotInDesign {
         /// Which half.
-        side: Side,
+        side: HalfRole,
     },
 }

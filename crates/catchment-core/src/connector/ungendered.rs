@@ -96,7 +96,7 @@ mod tests {
     fn a_mesh_in_single_precision_is_the_same_solid() {
         let mut pair = connector(&FamilySpec::new(Family::XFace3d), Mount::X);
         let mut file = Vec::new();
-        stl::write(&pair.fixed, stl::Format::Binary, &mut file).unwrap();
+        stl::write(&pair.fixed, stl::StlEncoding::Binary, &mut file).unwrap();
         pair.fixed = stl::from_bytes(&file, file.len() as u64, 1.0).unwrap();
         assert!(pair.ungendered(Mount::X));
         // A wall moved by a hundredth of D is seen.

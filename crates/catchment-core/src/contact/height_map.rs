@@ -17,7 +17,7 @@
 use super::Lattice;
 use super::display_unit::DisplayUnit;
 use super::raster::fill_convex;
-use crate::connector::{Half, Side};
+use crate::connector::{Half, HalfRole};
 use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
@@ -151,7 +151,7 @@ pub fn broadest(half: &Half) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub struct Obstruction {
     /// Whose it is.
-    pub(crate) side: Side,
+    pub(crate) side: HalfRole,
     /// Where it is touched, in the frame of the fixed half as it was turned, and the same place of the moving half in its own.
     pub at: [DVec3; 2],
     /// How much deeper the half would sink without it.
@@ -171,10 +171,10 @@ const CLIMBS: f32 = 0.02;
 /// Looks whether something narrow keeps the moving half, moved by whole cells, from a seat.
 pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f64) -> Option<Obstruction> {
     let (height, _) = with(top, bottom, |both| both.height(moved))?;
-    [Side::Fixed, Side::Moving].into_iter().find_map(|side| {
+    [HalfRole::Fixed, HalfRole::Moving].into_iter().find_map(|side| {
         let opened = match side {
-            Side::Fixed => [Some(top.without_narrow()), None],
-            Side::Moving => [None, Some(bottom.without_narrow())],
+            HalfRole::Fixed => [Some(top.without_narrow()), None],
+            HalfRole::Moving => [None, Some(bottom.without_narrow())],
         };
         let [f, m] = [opened[0].as_ref().unwrap_or(top), opened[1].as_ref().unwrap_or(bottom)];
         let (without, (climb, worst)) = with(f, m, |both| Some((both.height(moved)?.0, both.climb(moved)?)))?;
@@ -203,7 +203,7 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
 /// The same in words, with both places as they are told.
 pub fn in_words(found: &Obstruction, at: &[String; 2], told: DisplayUnit) -> String {
     let Obstruction { side, deeper, .. } = found;
-    let (whose, [fixed, moving]) = (if *side == Side::Fixed { "fixed" } else { "moving" }, at);
+    let (whose, [fixed, moving]) = (if *side == HalfRole::Fixed { "fixed" } else { "moving" }, at);
     format!(
         "something narrow of the {whose} part is in the way, touched at {fixed} of the fixed and {moving} of the moving part as drawn: without it \
          they would sink about {} deeper, into a seat",

@@ -192,7 +192,7 @@ impl Draft {
     }
 
     /// What is wrong with the geometry, in its places.
-    pub(super) fn unbuilt(self, problems: &[crate::connector::Problem]) -> Findings {
+    pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Findings {
         let list = places::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
             .map(|(place, message, help)| self.finding(&place, message, help))

@@ -1,7 +1,7 @@
 //! A problem from values in memory: no file, no path.
 
 use super::{Draft, Problem, ProblemError, places};
-use crate::connector::{Connector, Half, Source};
+use crate::connector::{Connector, Half, HalfSource};
 use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ impl Problem {
     ///
     /// # Errors
     /// Everything that is wrong with the geometry or the mated pose.
-    pub fn new(fixed: Source, moving: Source, alignment: Alignment) -> Result<Self, ProblemError> {
+    pub fn new(fixed: HalfSource, moving: HalfSource, alignment: Alignment) -> Result<Self, ProblemError> {
         const FACE_HEIGHT: f64 = 0.0;
         let connector = Connector::from_sources(&fixed, &moving, FACE_HEIGHT, alignment.mount)
             .map_err(|problems| places::findings(&problems))?;
@@ -36,15 +36,15 @@ impl Problem {
 }
 
 /// What a design says of a half that came from a source.
-fn spec(source: Source, contents: &[MeshContent], built: &Half) -> HalfSpec {
+fn spec(source: HalfSource, contents: &[MeshContent], built: &Half) -> HalfSpec {
     match source {
-        Source::Pieces(pieces) => {
+        HalfSource::Pieces(pieces) => {
             HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(DVec3::to_array).collect()).collect())
         }
-        Source::Mesh { spec, .. } => HalfSpec::Mesh(spec),
-        Source::Parts(parts) => HalfSpec::Parts(parts.into_iter().map(|(part, _)| part).collect()),
+        HalfSource::Mesh { spec, .. } => HalfSpec::Mesh(spec),
+        HalfSource::Parts(parts) => HalfSpec::Parts(parts.into_iter().map(|(part, _)| part).collect()),
         // A half of a family is one that a design of two halves of one's own cannot name.
-        Source::Triangles(_) | Source::Surface(_) | Source::Family(_) => {
+        HalfSource::Triangles(_) | HalfSource::Surface(_) | HalfSource::Family(_) => {
             HalfSpec::Memory { content: contents.first().cloned().unwrap_or_else(|| content_of(built)) }
         }
     }

@@ -13,7 +13,7 @@
 //! Not promised: that this place is the only obstacle, or that halves which fit mirrored were meant to be
 //! mirrored.
 
-use crate::connector::{Connector, Half, Side};
+use crate::connector::{Connector, Half, HalfRole};
 use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::height_map::{self, HeightMap};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
@@ -89,7 +89,7 @@ fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();
     let found = height_map::in_the_way(&top, &bottom, moved, cell)?;
     // The height map of the moving half is of the half where its face centre is the origin.
-    let at = [Side::Fixed, Side::Moving]
+    let at = [HalfRole::Fixed, HalfRole::Moving]
         .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
     Some(height_map::in_words(&found, &at, DisplayUnit::of(design)))
 }
@@ -104,7 +104,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
     let (contact, _) = contacts.first()?;
     // Of the moving half from its face centre, which hangs below the centre of rotation or above it.
     let from_face = contact.point - DVec3::new(0.0, 0.0, height + pair.alignment.center_of_rotation);
-    let [fixed, moving] = [(Side::Fixed, contact.point), (Side::Moving, from_face)]
+    let [fixed, moving] = [(HalfRole::Fixed, contact.point), (HalfRole::Moving, from_face)]
         .map(|(side, point)| place(design, connector.origin.drawn(side, point)));
     let told = DisplayUnit::of(design);
     let off = above.map_or_else(String::new, |above| {

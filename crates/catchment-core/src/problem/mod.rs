@@ -29,7 +29,7 @@ mod tests;
 pub use draft::Draft;
 pub use places::findings;
 
-use crate::connector::{Connector, Side};
+use crate::connector::{Connector, HalfRole};
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
 use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
@@ -152,11 +152,11 @@ impl Problem {
 
     /// A point of a half, given in its frame (of the moving half from its face centre, mounted), in the half's own coordinates, in D: those in
     /// which it was drawn, or, for a family, from the face centre of a half that faces up.
-    pub fn drawn(&self, side: Side, point: DVec3) -> DVec3 {
+    pub fn drawn(&self, side: HalfRole, point: DVec3) -> DVec3 {
         match (&self.design().connector, side) {
             (ConnectorSpec::Own(_), _) => self.connector().origin.drawn(side, point),
-            (ConnectorSpec::Family(_), Side::Fixed) => point,
-            (ConnectorSpec::Family(_), Side::Moving) => self.alignment().mount.apply(point),
+            (ConnectorSpec::Family(_), HalfRole::Fixed) => point,
+            (ConnectorSpec::Family(_), HalfRole::Moving) => self.alignment().mount.apply(point),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The key of a design file to which an error of a later module belongs.
 
-use crate::connector::{MeshProblem, PartError, Problem, Side};
+use crate::connector::{GeometryDefect, HalfRole, MeshProblem, PartGeometryError};
 use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::mated::MatedProblem;
 use crate::design::{Complaint, Finding, Findings, keys};
@@ -31,7 +31,10 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
 }
 
 /// Key, message and advice of geometric problems; those that say the same of one mesh are one, with the others as advice.
-pub(super) fn of_geometry(problems: &[Problem], told: DisplayUnit) -> Vec<(String, String, Option<String>)> {
+pub(super) fn of_geometry(
+    problems: &[GeometryDefect],
+    told: DisplayUnit,
+) -> Vec<(String, String, Option<String>)> {
     problems
         .chunk_by(same_kind)
         .map(|kind| (key_of(&kind[0]), message(&kind[0], told), likewise(&kind[1..])))
@@ -39,11 +42,11 @@ pub(super) fn of_geometry(problems: &[Problem], told: DisplayUnit) -> Vec<(Strin
 }
 
 /// A problem as a sentence: a size that makes no sense in the unit of the design as well.
-fn message(problem: &Problem, told: DisplayUnit) -> String {
+fn message(problem: &GeometryDefect, told: DisplayUnit) -> String {
     let text = problem.to_string();
-    let (Problem::Mesh { error, .. }
-    | Problem::Part { error: PartError::Mesh { error, .. }, .. }
-    | Problem::Triangles { error, .. }) = problem
+    let (GeometryDefect::Mesh { error, .. }
+    | GeometryDefect::Part { error: PartGeometryError::Mesh { error, .. }, .. }
+    | GeometryDefect::Triangles { error, .. }) = problem
     else {
         return text;
     };
@@ -61,23 +64,23 @@ fn message(problem: &Problem, told: DisplayUnit) -> String {
 }
 
 /// Geometric problems of halves that no file describes.
-pub fn findings(problems: &[Problem]) -> Findings {
+pub fn findings(problems: &[GeometryDefect]) -> Findings {
     let finding = |(_, message, help)| Finding::new(message, help);
     let list = of_geometry(problems, DisplayUnit::IN_D).into_iter().map(finding).collect();
     Findings { source: None, list, omitted: 0 }
 }
 
 /// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
-fn same_kind(a: &Problem, b: &Problem) -> bool {
+fn same_kind(a: &GeometryDefect, b: &GeometryDefect) -> bool {
     match (a, b) {
-        (Problem::Mesh { side: a, error: first, .. }, Problem::Mesh { side: b, error, .. }) => {
+        (GeometryDefect::Mesh { side: a, error: first, .. }, GeometryDefect::Mesh { side: b, error, .. }) => {
             a == b
                 && (discriminant(first) == discriminant(error)
                     || matches!(error, MeshProblem::More { .. } | MeshProblem::NotLookedAt { .. }))
         }
         (
-            Problem::Part { side: a, part: p, error: PartError::Mesh { error: first, .. } },
-            Problem::Part { side: b, part: q, error: PartError::Mesh { error, .. } },
+            GeometryDefect::Part { side: a, part: p, error: PartGeometryError::Mesh { error: first, .. } },
+            GeometryDefect::Part { side: b, part: q, error: PartGeometryError::Mesh { error, .. } },
         ) => {
             (a, p) == (b, q)
                 && (discriminant(first) == discriminant(error)
@@ -88,43 +91,44 @@ fn same_kind(a: &Problem, b: &Problem) -> bool {
 }
 
 /// The other places of one kind of problem.
-fn likewise(rest: &[Problem]) -> Option<String> {
+fn likewise(rest: &[GeometryDefect]) -> Option<String> {
     let places: Vec<String> = rest
         .iter()
         .map(|problem| match problem {
-            Problem::Mesh { error, .. } | Problem::Part { error: PartError::Mesh { error, .. }, .. } => {
-                error.to_string()
-            }
+            GeometryDefect::Mesh { error, .. }
+            | GeometryDefect::Part { error: PartGeometryError::Mesh { error, .. }, .. } => error.to_string(),
             other => other.to_string(),
         })
         .collect();
     (!places.is_empty()).then(|| format!("likewise: {}", places.join("; ")))
 }
 
-fn key_of(problem: &Problem) -> String {
+fn key_of(problem: &GeometryDefect) -> String {
     match problem {
-        Problem::Parameter { parameter, .. } => format!("connector.{parameter}"),
-        Problem::Surface { side, .. } => format!("connector.{}", half(*side)),
-        Problem::PieceCount { side, .. } => format!("connector.{}.pieces", half(*side)),
-        Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", half(*side)),
-        Problem::Mesh { side, .. } => format!("connector.{}.mesh", half(*side)),
-        Problem::Part { side, part, error } => {
+        GeometryDefect::Parameter { parameter, .. } => format!("connector.{parameter}"),
+        GeometryDefect::Surface { side, .. } => format!("connector.{}", half(*side)),
+        GeometryDefect::PieceCount { side, .. } => format!("connector.{}.pieces", half(*side)),
+        GeometryDefect::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", half(*side)),
+        GeometryDefect::Mesh { side, .. } => format!("connector.{}.mesh", half(*side)),
+        GeometryDefect::Part { side, part, error } => {
             let key = match error {
-                PartError::Mesh { .. } => ".mesh",
-                PartError::Outline { .. } => ".profile",
+                PartGeometryError::Mesh { .. } => ".mesh",
+                PartGeometryError::Outline { .. } => ".profile",
                 _ => "",
             };
             format!("connector.{}.parts[{part}]{key}", half(*side))
         }
-        Problem::Triangles { side, .. } | Problem::Union { side, .. } | Problem::NotInDesign { side } => {
+        GeometryDefect::Triangles { side, .. }
+        | GeometryDefect::Union { side, .. }
+        | GeometryDefect::NotInDesign { side } => {
             format!("connector.{}", half(*side))
         }
     }
 }
 
-const fn half(side: Side) -> &'static str {
+const fn half(side: HalfRole) -> &'static str {
     match side {
-        Side::Fixed => "fixed",
-        Side::Moving => "moving",
+        HalfRole::Fixed => "fixed",
+        HalfRole::Moving => "moving",
     }
 }

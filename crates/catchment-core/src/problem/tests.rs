@@ -1,7 +1,7 @@
 //! Problems from texts, designs and values in memory.
 
 use super::*;
-use crate::connector::Source;
+use crate::connector::HalfSource;
 use crate::design::{ConnectorSpec, Family, FamilySpec, FileSpec, HalfSpec, WidthFrom};
 use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec3;
@@ -134,7 +134,7 @@ fn soup(family: Family, moving: bool) -> Vec<[DVec3; 3]> {
 fn triangles_in_memory_are_the_same_problem_as_their_family() {
     let free = DofSet::ALL.without(Dof::Y).without(Dof::Roll);
     let alignment = Alignment { center_of_rotation: 0.5, ..Alignment::new(free, Mount::X) };
-    let [fixed, moving] = [false, true].map(|moving| Source::Triangles(soup(Family::Pyramid, moving)));
+    let [fixed, moving] = [false, true].map(|moving| HalfSource::Triangles(soup(Family::Pyramid, moving)));
     let problem = Problem::new(fixed, moving, alignment.clone()).unwrap();
     let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid));
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
@@ -156,8 +156,8 @@ fn what_is_wrong_in_memory_is_said_without_a_file() {
     let alignment = Alignment::new(DofSet::EMPTY.with(Dof::X), Mount::X);
     let mut open = soup(Family::Pyramid, true);
     open.pop();
-    let fixed = Source::Triangles(soup(Family::Pyramid, false));
-    let found = findings(Problem::new(fixed, Source::Triangles(open), alignment).unwrap_err());
+    let fixed = HalfSource::Triangles(soup(Family::Pyramid, false));
+    let found = findings(Problem::new(fixed, HalfSource::Triangles(open), alignment).unwrap_err());
     assert!(found.source.is_none() && !found.list.is_empty());
     assert!(found.to_string().contains("moving half"), "{found}");
 }

@@ -12,7 +12,7 @@
 //! ([`Follow::give`](crate::method::Follow::give)): they are raised by that overlap before contacts are
 //! listed.
 
-use crate::connector::Side;
+use crate::connector::HalfRole;
 use crate::contact::{Contact, Features, Meeting, Nearby};
 use crate::method::Method;
 use crate::method::descent::End;
@@ -89,7 +89,7 @@ impl<'a> EndContacts<'a> {
             let pair = self.features.meeting(contact, meeting, &pose.rotation);
             if !pairs.contains(&pair) {
                 pairs.push(pair);
-                let [fixed, moving] = [(Side::Fixed, pair[0]), (Side::Moving, pair[1])]
+                let [fixed, moving] = [(HalfRole::Fixed, pair[0]), (HalfRole::Moving, pair[1])]
                     .map(|(side, number)| self.features.get(side, number).name());
                 contacts.push(EndContact { fixed, moving, point_d: contact.point.to_array() });
             }

@@ -3,7 +3,7 @@
 
 use super::style::{Declaration, Sheet};
 use super::svg::{HOLDERS, INTO_PATHS, LARGEST, NAMESPACE, NOT_DRAWN, Refusal, SHAPES};
-use super::{Attribute, Tag};
+use super::{Tag, XmlAttribute};
 use kurbo::{Affine, Vec2};
 use std::ops::Range;
 use std::str::FromStr;
@@ -139,7 +139,7 @@ impl Style<'_, '_> {
         if let Some(own) = self.declared.iter().rev().find(|own| own.name == name) {
             return Some((own.value.clone(), own.span.clone()));
         }
-        let Attribute { value, span } = self.tag.attribute(name)?;
+        let XmlAttribute { value, span } = self.tag.attribute(name)?;
         Some((value.trim().to_ascii_lowercase(), span))
     }
 
@@ -206,7 +206,7 @@ impl Style<'_, '_> {
 
     /// Its transform about its origin, and where it is written.
     fn transform(&self) -> Result<Option<(Affine, Range<usize>)>, Refusal> {
-        let Some(Attribute { value, span }) = self.tag.attribute("transform") else { return Ok(None) };
+        let Some(XmlAttribute { value, span }) = self.tag.attribute("transform") else { return Ok(None) };
         let t = Transform::from_str(&value).map_err(|error| Refusal {
             at: span.clone(),
             message: format!("its transform cannot be read: {error}"),

@@ -25,7 +25,7 @@ use std::ops::Range;
 
 /// What a document may have.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub struct XmlLimits {
     /// Elements.
     pub elements: Limit,
     /// Elements within each other.
@@ -80,7 +80,7 @@ pub struct Tag<'b> {
 
 /// The value of an attribute.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Attribute<'t> {
+pub struct XmlAttribute<'t> {
     /// With its entities replaced.
     pub value: Cow<'t, str>,
     /// Where it stands in the document, without its quotes.
@@ -134,17 +134,17 @@ impl<'b> Tag<'b> {
     }
 
     /// The attribute whose whole name this is.
-    pub fn attribute(&self, name: &str) -> Option<Attribute<'_>> {
+    pub fn attribute(&self, name: &str) -> Option<XmlAttribute<'_>> {
         self.find(|key| key == name.as_bytes())
     }
 
     /// The first attribute with this name behind any prefix.
-    pub fn local_attribute(&self, name: &str) -> Option<Attribute<'_>> {
+    pub fn local_attribute(&self, name: &str) -> Option<XmlAttribute<'_>> {
         let local = |key: &[u8]| key.iter().position(|byte| *byte == b':').map_or(0, |colon| colon + 1);
         self.find(|key| &key[local(key)..] == name.as_bytes())
     }
 
-    fn find(&self, is_meant: impl Fn(&[u8]) -> bool) -> Option<Attribute<'_>> {
+    fn find(&self, is_meant: impl Fn(&[u8]) -> bool) -> Option<XmlAttribute<'_>> {
         // All of them were read when the tag was.
         let own =
             self.start.attributes().with_checks(false).flatten().find(|own| is_meant(own.key.as_ref()))?;
@@ -159,7 +159,7 @@ impl<'b> Tag<'b> {
             Ok(Cow::Owned(plain)) => Cow::Owned(plain),
             _ => written,
         };
-        Some(Attribute { value, span })
+        Some(XmlAttribute { value, span })
     }
 }
 
@@ -197,12 +197,12 @@ pub struct Walk<R> {
     /// Names of the elements that are open.
     open: Vec<Vec<u8>>,
     elements: Budget,
-    limits: Limits,
+    limits: XmlLimits,
 }
 
 impl<R: Read> Walk<R> {
     /// From its beginning.
-    pub fn new(document: R, limits: Limits) -> Self {
+    pub fn new(document: R, limits: XmlLimits) -> Self {
         let metered = Metered { inner: BufReader::new(document), piece: 0, most: limits.piece };
         let mut reader = Reader::from_reader(metered);
         reader.config_mut().expand_empty_elements = true;

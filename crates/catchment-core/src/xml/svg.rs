@@ -15,7 +15,7 @@
 
 use super::look::{Entered, Open, Prefixes, entered};
 use super::style::Sheet;
-use super::{Attribute, Limits, Piece, Tag, Walk, XmlError};
+use super::{Piece, Tag, Walk, XmlAttribute, XmlError, XmlLimits};
 use crate::budget::{Limit, Overspent};
 use kurbo::Affine;
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ pub(super) const NOT_DRAWN: [&str; 15] = [
     "font",
 ];
 /// What a picture may have.
-const LIMITS: Limits = Limits {
+const LIMITS: XmlLimits = XmlLimits {
     elements: Limit { most: 100_000, of: "elements", remedy: "delete what is no outline" },
     depth: Limit { most: 256, of: "elements within each other", remedy: "ungroup them" },
     attributes: Limit { most: 200, of: "attributes of an element", remedy: "save it as plain SVG" },
@@ -59,7 +59,7 @@ pub(super) const INTO_PATHS: &str = "turn everything into paths in the drawing p
 
 /// A shape that is drawn.
 #[derive(Debug)]
-pub struct Shape<'s> {
+pub struct SvgShape<'s> {
     /// Its element: a path, rect, circle, ellipse, polygon, polyline or line.
     pub tag: &'s Tag<'s>,
     /// From its coordinates to those of the picture, y down.
@@ -109,7 +109,7 @@ pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>
         match walk.next().map_err(|error| Refusal::broken(&error))? {
             Some(Piece::Start(tag)) => {
                 let own = |name| {
-                    let Attribute { value, span } = tag.attribute(name)?;
+                    let XmlAttribute { value, span } = tag.attribute(name)?;
                     Some((name, (value.into_owned(), span)))
                 };
                 return Ok(READ.into_iter().filter_map(own).collect());
@@ -122,7 +122,7 @@ pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>
 
 /// Gives every shape that is drawn, and every reason why something is not read, in the order of the picture, until `each` breaks; how many elements with
 /// all that is in them are hidden.
-pub fn shapes(text: &str, mut each: impl FnMut(Result<Shape<'_>, Refusal>) -> ControlFlow<()>) -> usize {
+pub fn shapes(text: &str, mut each: impl FnMut(Result<SvgShape<'_>, Refusal>) -> ControlFlow<()>) -> usize {
     let mut sheet = match sheets(text) {
         Ok(sheet) => sheet,
         Err(refusal) => {
@@ -167,7 +167,7 @@ pub fn shapes(text: &str, mut each: impl FnMut(Result<Shape<'_>, Refusal>) -> Co
                     }
                     Ok(Entered::Open(inner)) => {
                         let flow = if SHAPES.contains(&tag.name()) {
-                            each(Ok(Shape { tag: &tag, frame: inner.frame, moved: inner.moved.clone() }))
+                            each(Ok(SvgShape { tag: &tag, frame: inner.frame, moved: inner.moved.clone() }))
                         } else {
                             ControlFlow::Continue(())
                         };

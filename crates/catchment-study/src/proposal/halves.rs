@@ -2,7 +2,7 @@
 
 use super::candidate::shown_unit;
 use super::{Beside, PartFile, ProposalError, ProposalSettings, file};
-use catchment_core::connector::{Half, Side, of_half};
+use catchment_core::connector::{Half, HalfRole, of_half};
 use catchment_core::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
 use catchment_core::exec::Exec;
 use catchment_core::problem::{Draft, findings};
@@ -18,7 +18,7 @@ pub(super) fn read(
     exec: &Exec,
 ) -> Result<[Half; 2], ProposalError> {
     let [fixed, moving] = specs(parts, settings, place)?;
-    let halves = match (of_half(&fixed, Side::Fixed, exec), of_half(&moving, Side::Moving, exec)) {
+    let halves = match (of_half(&fixed, HalfRole::Fixed, exec), of_half(&moving, HalfRole::Moving, exec)) {
         (Ok(fixed), Ok(moving)) => [fixed, moving],
         (fixed, moving) => {
             let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
@@ -33,7 +33,7 @@ pub(super) fn read(
             });
             let mut files = std::iter::once(part).chain(more);
             if let Some(file) = files.find(|file| !says_its_unit(&file.path)) {
-                let alone = of_half(&mesh(file, settings), Side::Fixed, exec);
+                let alone = of_half(&mesh(file, settings), HalfRole::Fixed, exec);
                 return Err(no_unit(file, &alone.unwrap_or_default()));
             }
         }
@@ -46,7 +46,7 @@ pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettin
     let [one, other] = parts;
     let third = PartFile { body: Some(3), ..one.clone() };
     let is_one_file = one.written == other.written && one.body.is_some();
-    is_one_file && of_half(&mesh(&third, settings), Side::Fixed, exec).is_ok()
+    is_one_file && of_half(&mesh(&third, settings), HalfRole::Fixed, exec).is_ok()
 }
 
 /// What is wrong with both files alike is said of the first alone.

@@ -10,7 +10,7 @@
 //! twentieth of that, and rotations other than quarter turns, are not found.
 
 use super::way::{AxisDirection, PartLayout};
-use catchment_core::connector::{Half, Side};
+use catchment_core::connector::{Half, HalfRole};
 use catchment_core::contact::height_map::{self, HeightMap, HeightMaps, MOST_RISE, Obstruction};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::{DMat3, DVec2};
@@ -61,7 +61,7 @@ pub(super) fn obstacle(
     exec: &Exec,
 ) -> Result<Option<(PartLayout, Obstruction)>, Cancelled> {
     let cell = cell(halves, facing);
-    for side in [Side::Fixed, Side::Moving] {
+    for side in [HalfRole::Fixed, HalfRole::Moving] {
         for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
             let [top, bottom] = height_maps(halves, lie, cell);
             let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
@@ -83,27 +83,28 @@ fn height_maps([fixed, moving]: [&Half; 2], lie: PartLayout, cell: f64) -> [Heig
 fn scan(
     [fixed, moving]: [&Half; 2],
     facing: [&[AxisDirection]; 2],
-    without_narrow: Option<Side>,
+    without_narrow: Option<HalfRole>,
     cell: f64,
     exec: &Exec,
 ) -> Result<Vec<Place>, Cancelled> {
     let broad = height_map::broadest(fixed).min(height_map::broadest(moving));
-    let seen = |half: &Half, side: Side, turn: &DMat3| {
-        let map = HeightMap::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
+    let seen = |half: &Half, side: HalfRole, turn: &DMat3| {
+        let map = HeightMap::centered(half, turn, if side == HalfRole::Fixed { 1.0 } else { -1.0 }, cell);
         if without_narrow == Some(side) { map.without_narrow() } else { map }
     };
     let lies: Vec<[AxisDirection; 2]> =
         facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
     let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
         let [f, m] = lies[number];
-        let top = seen(fixed, Side::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
+        let top =
+            seen(fixed, HalfRole::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
         let (mut found, mut met): (Vec<Place>, Vec<HeightMap>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
             }
             let lie = PartLayout::Facing { fixed: f, moving: m, turned };
-            let bottom = seen(moving, Side::Moving, &lie.turns()[1]);
+            let bottom = seen(moving, HalfRole::Moving, &lie.turns()[1]);
             if !met.iter().any(|map| map.is_like(&bottom)) {
                 found.extend(height_map::with(&top, &bottom, |both| {
                     hollows(lie, [&top, &bottom], both, cell, broad)

@@ -20,7 +20,7 @@
 //! - **Dams**: in the plane a dam cell goes to the neighbouring basin whose labelled cell is lowest, but never to one
 //!   that reaches below the docking height; in space dam cells count for no basin. (The text: steepest descent.)
 
-use catchment::connector::{Connector, Problem};
+use catchment::connector::{Connector, GeometryDefect};
 use catchment::contact::{Lattice, Pair};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::{Cancelled, Exec};
@@ -113,7 +113,7 @@ pub enum DissertationError {
         /// Its aspect ratio.
         aspect_ratio: f64,
         /// What is wrong with it.
-        problems: Vec<Problem>,
+        problems: Vec<GeometryDefect>,
     },
     /// The samples cannot be flooded.
     #[error(transparent)]
@@ -123,7 +123,7 @@ pub enum DissertationError {
     Cancelled(#[from] Cancelled),
 }
 
-fn list(problems: &[Problem]) -> String {
+fn list(problems: &[GeometryDefect]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 

@@ -278,7 +278,7 @@ fn pair(
     free: DofSet,
 ) -> Result<Pair, RecipeError> {
     let design = design(family, aspect_ratio, base_thickness, cor, free);
-    let reason = |problems: Vec<catchment::connector::Problem>| RecipeError::Exact {
+    let reason = |problems: Vec<catchment::connector::GeometryDefect>| RecipeError::Exact {
         reason: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
     };
     Ok(Pair::new(&Connector::build(&design).map_err(reason)?, &design.alignment))

@@ -21,7 +21,7 @@ fn problem(
 ) -> Problem {
     let mut alignment = Alignment::new(free.iter().copied().collect(), Mount::X);
     change(&mut alignment);
-    let [fixed, moving] = [fixed, moving].map(|pieces| Source::Pieces(scaled(pieces, width)));
+    let [fixed, moving] = [fixed, moving].map(|pieces| HalfSource::Pieces(scaled(pieces, width)));
     Problem::new(fixed, moving, alignment).unwrap_or_else(|error| panic!("{error:#?}"))
 }
 

@@ -3,7 +3,7 @@
 
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
-use catchment::connector::{Connector, FileBytes, Source, bodies_of_answer, stl};
+use catchment::connector::{Connector, FileBytes, HalfSource, bodies_of_answer, stl};
 use catchment::design::{
     Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, SourceText, Treatment,
 };
@@ -88,7 +88,7 @@ pub(crate) fn step_answer(bytes: &[u8]) {
     match bodies_of_answer(bytes) {
         Ok(bodies) => {
             let triangles: Vec<_> = bodies.into_iter().flatten().collect();
-            let half = || Source::Triangles(triangles.clone());
+            let half = || HalfSource::Triangles(triangles.clone());
             match Connector::from_sources(&half(), &half(), 0.0, Mount::X) {
                 Ok(connector) => {
                     for surface in &connector.fixed.surfaces {
@@ -112,7 +112,7 @@ pub(crate) fn drawing(bytes: &[u8]) {
         let outline = OutlineSpec::File(FileSpec::new(name, 0.1));
         let shape = ShapeSpec::Profile { outline, height: 0.5, chord_error: 1e-3 };
         let part = PartSpec::new(shape, [0.0; 3]);
-        let half = || Source::Parts(vec![(part.clone(), Some(FileBytes::whole(bytes.to_vec())))]);
+        let half = || HalfSource::Parts(vec![(part.clone(), Some(FileBytes::whole(bytes.to_vec())))]);
         match Connector::from_sources(&half(), &half(), 0.0, Mount::X) {
             Ok(connector) => {
                 assert!(connector.fixed.surfaces.iter().all(|surface| surface.volume() > 0.0));
@@ -135,7 +135,7 @@ fn mesh_file(name: &str, bytes: &[u8]) {
 /// Whether a mesh file is accepted.
 fn mesh_treated(name: &str, bytes: &[u8], treatment: Treatment) -> bool {
     let spec = FileSpec { treatment, ..FileSpec::new(name, 1.0) };
-    let mesh = || Source::Mesh { spec: spec.clone(), file: FileBytes::whole(bytes.to_vec()) };
+    let mesh = || HalfSource::Mesh { spec: spec.clone(), file: FileBytes::whole(bytes.to_vec()) };
     match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
         Ok(connector) => {
             for surface in connector.fixed.surfaces.iter().chain(&connector.moving.surfaces) {

@@ -48,7 +48,7 @@ impl Chamfered {
     }
 
     /// As convex pieces.
-    pub(crate) fn pieces(&self) -> [Source; 2] {
+    pub(crate) fn pieces(&self) -> [HalfSource; 2] {
         let outer = self.ring(OUTER, 0.0);
         let mut fixed = vec![[self.ring(OUTER, -BELOW), self.ring(OUTER, -DEEP)].concat()];
         for level in self.hole().windows(2) {
@@ -61,18 +61,18 @@ impl Chamfered {
                 fixed.push(level.iter().flat_map(ends).collect());
             }
         }
-        [Source::Pieces(fixed), Source::Pieces(vec![self.peg().concat()])]
+        [HalfSource::Pieces(fixed), HalfSource::Pieces(vec![self.peg().concat()])]
     }
 
     /// As an STL file would hold it: triangles in single precision.
-    pub(crate) fn triangles(&self) -> [Source; 2] {
+    pub(crate) fn triangles(&self) -> [HalfSource; 2] {
         let [mouth, rim, floor] = self.hole();
         let plate = [self.ring(OUTER, -BELOW), self.ring(OUTER, 0.0), mouth, rim, floor];
-        [through(&plate), through(&self.peg())].map(Source::Triangles)
+        [through(&plate), through(&self.peg())].map(HalfSource::Triangles)
     }
 
     /// The problem of two translations.
-    pub(crate) fn problem(&self, [fixed, moving]: [Source; 2]) -> Problem {
+    pub(crate) fn problem(&self, [fixed, moving]: [HalfSource; 2]) -> Problem {
         let mut alignment = Alignment::new([Dof::X, Dof::Y].into_iter().collect(), Mount::X);
         alignment.half_ranges = [0.12, 0.12, 1.0, 1.0, 1.0];
         Problem::new(fixed, moving, alignment).unwrap_or_else(|e| panic!("{self:?}: {e}"))

@@ -131,7 +131,7 @@ fn a_hole_beside_the_mated_one_is_not_the_seat() {
     let fixed = fixed.into_iter().chain([block([-0.5, 0.9], [-0.5, -0.4])]).collect();
     let moving = vec![block([-0.1, 0.1], [-0.2, 0.4])];
     let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
-    let problem = Problem::new(Source::Pieces(fixed), Source::Pieces(moving), alignment).unwrap();
+    let problem = Problem::new(HalfSource::Pieces(fixed), HalfSource::Pieces(moving), alignment).unwrap();
     assert_eq!(problem.follow(&at(0.005, 0.0)).outcome, Outcome::Aligned);
     assert_eq!(problem.follow(&at(0.31, 0.0)).outcome, Outcome::Jammed);
     assert_eq!(problem.follow(&at(0.15, 0.0)).outcome, Outcome::Jammed);
@@ -164,7 +164,7 @@ fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
     let slab = || {
         let corner =
             |k: u8| DVec3::new(f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, -0.2 * f64::from(k >> 2));
-        Source::Pieces(vec![(0..8).map(corner).collect()])
+        HalfSource::Pieces(vec![(0..8).map(corner).collect()])
     };
     let flat =
         |free: &[Dof]| Problem::new(slab(), slab(), Alignment::new(free.iter().copied().collect(), Mount::X));
@@ -352,7 +352,8 @@ fn a_mated_pose_that_runs_off_is_said_to() {
     alignment.center_of_rotation = 0.01;
     alignment.half_ranges = [0.3, 0.3, 0.35, 0.35, 0.35];
     let problem =
-        Problem::new(Source::Pieces(fixed), Source::Pieces(vec![lifted(bar, -0.01)]), alignment).unwrap();
+        Problem::new(HalfSource::Pieces(fixed), HalfSource::Pieces(vec![lifted(bar, -0.01)]), alignment)
+            .unwrap();
     let run = Run { over: Over::Grid("20".parse().unwrap()), ..Run::default() };
     let answer = run.on(&problem, &Exec::new()).unwrap();
     let tilt = (0.4 / (0.42 * 2f64.sqrt())).acos() - TAU / 8.0;

@@ -97,6 +97,6 @@ impl Peg {
         let mut alignment = Alignment::new(free.iter().copied().collect(), Mount::X);
         alignment.half_ranges = [range, range, 0.6, 0.6, 0.6];
         change(&mut alignment);
-        Problem::new(Source::Pieces(self.fixed()), Source::Pieces(self.moving()), alignment)
+        Problem::new(HalfSource::Pieces(self.fixed()), HalfSource::Pieces(self.moving()), alignment)
     }
 }

@@ -19,7 +19,7 @@ mod planar;
 
 pub(super) use fan::{MAX_CORNERS, circle, corners_of_circle};
 
-use super::{Half, Problem, Side, Surface, SurfaceError};
+use super::{GeometryDefect, Half, HalfRole, Surface, SurfaceError};
 use crate::design::FamilySpec;
 
 /// Default backing of a socket half, in D.
@@ -65,7 +65,7 @@ fn drawing(spec: &FamilySpec) -> &dyn Draw {
 }
 
 /// Draws a family.
-pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
+pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<GeometryDefect>> {
     let family = spec.family();
     let mut check = Check { family: family.name(), problems: Vec::new() };
     let height = spec.aspect_ratio();
@@ -93,12 +93,12 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
         for (surface, result) in surfaces.into_iter().enumerate() {
             match result {
                 Ok(s) => half.surfaces.push(s),
-                Err(error) => problems.push(Problem::Surface { side, surface, error }),
+                Err(error) => problems.push(GeometryDefect::Surface { side, surface, error }),
             }
         }
         half
     };
-    let (fixed, moving) = (half(Side::Fixed, fixed), half(Side::Moving, moving));
+    let (fixed, moving) = (half(HalfRole::Fixed, fixed), half(HalfRole::Moving, moving));
     let face_height = drawing.face_height().unwrap_or(height / 2.0);
     if problems.is_empty() { Ok(Drawn { fixed, moving, face_height }) } else { Err(problems) }
 }
@@ -109,18 +109,18 @@ type Halves = [Vec<Result<Surface, SurfaceError>>; 2];
 /// Collects what is wrong with a family's parameters.
 struct Check {
     family: &'static str,
-    problems: Vec<Problem>,
+    problems: Vec<GeometryDefect>,
 }
 
 impl Check {
     fn require(&mut self, parameter: &'static str, value: f64, holds: bool, advice: impl Into<String>) {
         if !holds || !value.is_finite() {
             let family = self.family;
-            self.problems.push(Problem::Parameter { family, parameter, value, advice: advice.into() });
+            self.problems.push(GeometryDefect::Parameter { family, parameter, value, advice: advice.into() });
         }
     }
 
-    fn done(self) -> Result<(), Vec<Problem>> {
+    fn done(self) -> Result<(), Vec<GeometryDefect>> {
         if self.problems.is_empty() { Ok(()) } else { Err(self.problems) }
     }
 }
@@ -252,7 +252,7 @@ mod tests {
             .unwrap_err()
             .into_iter()
             .map(|p| match p {
-                Problem::Parameter { parameter, .. } => parameter,
+                GeometryDefect::Parameter { parameter, .. } => parameter,
                 other => panic!("{other}"),
             })
             .collect();

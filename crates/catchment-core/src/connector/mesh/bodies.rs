@@ -82,13 +82,13 @@ fn apart(triangles: Vec<Triangle>) -> Result<Vec<Vec<Triangle>>, Vec<MeshProblem
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::connector::mesh::{Place, Start};
+    use crate::connector::mesh::{FileOffset, TriangleLocation};
 
     /// A tetrahedron of this size at a place.
     fn tetrahedron(size: f64, at: [f64; 3]) -> Vec<Triangle> {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| size * p + DVec3::from_array(at));
         let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-        let place = Place { triangle: 0, start: Start::Memory };
+        let place = TriangleLocation { triangle: 0, start: FileOffset::Memory };
         faces.map(|face| Triangle { corners: face.map(|k: usize| corners[k]), place }).to_vec()
     }
 

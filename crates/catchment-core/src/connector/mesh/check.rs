@@ -5,7 +5,7 @@ use super::indexed::Indexed;
 use super::polygons;
 use super::shells::{self, Shell};
 use super::sides::Sides;
-use super::{MAX_REPORTED, MeshProblem, Point, Reported};
+use super::{MAX_REPORTED, MeshPoint, MeshProblem, Reported};
 use crate::connector::Surface;
 
 /// Area of a triangle, relative to the square of its longest side, below which it has none: the rounding of
@@ -57,7 +57,7 @@ fn zero_areas(mesh: &Indexed) -> impl Iterator<Item = MeshProblem> {
 }
 
 /// Both ends of an edge.
-fn ends(mesh: &Indexed, edge: [u32; 2]) -> [Point; 2] {
+fn ends(mesh: &Indexed, edge: [u32; 2]) -> [MeshPoint; 2] {
     edge.map(|k| mesh.at(k).into())
 }
 

@@ -6,7 +6,7 @@
 
 use super::divide::divide;
 use super::sides::Sides;
-use super::{Place, Start, Triangle, WELD};
+use super::{FileOffset, Triangle, TriangleLocation, WELD};
 use glam::{DVec3, I64Vec3};
 use manifold_rust::types::MeshGL64;
 use std::collections::HashMap;
@@ -18,7 +18,7 @@ pub(super) struct Indexed {
     /// Corners of each triangle, counter-clockwise seen from outside.
     pub(super) triangles: Vec<[u32; 3]>,
     /// Where each triangle stands in its file.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<TriangleLocation>,
     /// Distance below which two points are one.
     pub(super) tolerance: f64,
 }
@@ -51,7 +51,9 @@ impl Indexed {
         }
         let corners = |t: &[u64]| [t[0], t[1], t[2]].map(|k| same[k as usize]);
         let triangles: Vec<[u32; 3]> = found.tri_verts.chunks_exact(3).map(corners).collect();
-        let places = (0..triangles.len()).map(|triangle| Place { triangle, start: Start::Made }).collect();
+        let places = (0..triangles.len())
+            .map(|triangle| TriangleLocation { triangle, start: FileOffset::Made })
+            .collect();
         Self { vertices, triangles, places, tolerance }
     }
 

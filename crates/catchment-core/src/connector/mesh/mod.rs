@@ -32,9 +32,9 @@ mod simplify;
 mod tree;
 pub(in crate::connector) mod union;
 
-pub use point::Point;
+pub use point::MeshPoint;
 pub(super) use problem::MAX_REPORTED;
-pub use problem::{MeshProblem, Place, Start};
+pub use problem::{FileOffset, MeshProblem, TriangleLocation};
 
 use super::{Half, Surface};
 use crate::budget::{Budget, Limit, Overspent};
@@ -65,7 +65,7 @@ pub(crate) const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.1..=16.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Triangle {
     pub(super) corners: [DVec3; 3],
-    pub(super) place: Place,
+    pub(super) place: TriangleLocation,
 }
 
 /// Most triangles that are read.
@@ -134,7 +134,7 @@ impl Triangles {
         let cut = cut.ok_or_else(|| vec![MeshProblem::NotSimple { triangle: first, at }])?;
         self.list.extend(cut.into_iter().enumerate().map(|(k, ids)| Triangle {
             corners: ids.map(|id| corners[id]),
-            place: Place { triangle: first + k, start: Start::Memory },
+            place: TriangleLocation { triangle: first + k, start: FileOffset::Memory },
         }));
         if self.list.len() > most_read(self.treatment) {
             return Err(vec![too_many(self.treatment, self.list.len() as u64)]);
@@ -148,7 +148,10 @@ impl Triangles {
 /// # Errors
 /// Everything that is wrong with the mesh, at most a few problems of each kind, by the number of the triangle.
 pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Half, Vec<MeshProblem>> {
-    let placed = |(triangle, &corners)| Triangle { corners, place: Place { triangle, start: Start::Memory } };
+    let placed = |(triangle, &corners)| Triangle {
+        corners,
+        place: TriangleLocation { triangle, start: FileOffset::Memory },
+    };
     let triangles: Vec<Triangle> = triangles.iter().enumerate().map(placed).collect();
     half(vec![triangles], 1.0, Treatment::AS_IT_IS).map(|ready| ready.half)
 }

@@ -1,7 +1,7 @@
 //! Defects that exclude a mesh as half of a connector, with their places: the triangle, its line or byte in
 //! the file, and a point in the file's own coordinates.
 
-use super::{MAX_TRIANGLES, MOST_READ, Point};
+use super::{MAX_TRIANGLES, MOST_READ, MeshPoint};
 use crate::budget::Overspent;
 use crate::connector::source::UnitProblem;
 use crate::connector::step::StepProblem;
@@ -14,16 +14,16 @@ pub(in crate::connector) const MAX_REPORTED: usize = 5;
 
 /// Where a triangle stands in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct TriangleLocation {
     /// Which triangle, from 0.
     pub triangle: usize,
     /// Its first line (text, from 1) or first byte (binary, from 0).
-    pub start: Start,
+    pub start: FileOffset,
 }
 
 /// Where something begins in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum FileOffset {
     /// Line of a text, from 1.
     Line(usize),
     /// Byte of a binary file, from 0.
@@ -34,13 +34,13 @@ pub enum Start {
     Made,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for TriangleLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.start {
-            Start::Line(line) => write!(f, "triangle {} (line {line})", self.triangle),
-            Start::Byte(byte) => write!(f, "triangle {} (byte {byte})", self.triangle),
-            Start::Memory => write!(f, "triangle {}", self.triangle),
-            Start::Made => write!(f, "triangle {} of the repaired mesh", self.triangle),
+            FileOffset::Line(line) => write!(f, "triangle {} (line {line})", self.triangle),
+            FileOffset::Byte(byte) => write!(f, "triangle {} (byte {byte})", self.triangle),
+            FileOffset::Memory => write!(f, "triangle {}", self.triangle),
+            FileOffset::Made => write!(f, "triangle {} of the repaired mesh", self.triangle),
         }
     }
 }
@@ -182,7 +182,7 @@ pub enum MeshProblem {
         /// The number that its first triangle would have.
         triangle: usize,
         /// Its first corner.
-        at: Point,
+        at: MeshPoint,
     },
     /// A file without triangles.
     #[error("the file holds no triangles")]
@@ -199,17 +199,17 @@ pub enum MeshProblem {
     #[error("{place} has a corner that is not finite, {at}")]
     NotFinite {
         /// Which triangle.
-        place: Place,
+        place: TriangleLocation,
         /// The corner.
-        at: Point,
+        at: MeshPoint,
     },
     /// A triangle without area.
     #[error("{place} at {at} has no area: its corners fall together or lie on a line")]
     ZeroArea {
         /// Which triangle.
-        place: Place,
+        place: TriangleLocation,
         /// One of its corners.
-        at: Point,
+        at: MeshPoint,
     },
     /// An edge with a triangle on one side only.
     #[error(
@@ -217,11 +217,11 @@ pub enum MeshProblem {
     )]
     Open {
         /// The triangle on the one side.
-        place: Place,
+        place: TriangleLocation,
         /// One end.
-        from: Point,
+        from: MeshPoint,
         /// The other end.
-        to: Point,
+        to: MeshPoint,
     },
     /// An edge with more than two triangles.
     #[error(
@@ -231,35 +231,35 @@ pub enum MeshProblem {
         /// How many.
         count: usize,
         /// One end.
-        from: Point,
+        from: MeshPoint,
         /// The other end.
-        to: Point,
+        to: MeshPoint,
     },
     /// Two neighbours wound in opposite senses.
     #[error("{first} and {second} are wound in opposite senses at {at}: unify the normals")]
     Winding {
         /// One of them.
-        first: Place,
+        first: TriangleLocation,
         /// The other.
-        second: Place,
+        second: TriangleLocation,
         /// The middle of the edge between them.
-        at: Point,
+        at: MeshPoint,
     },
     /// The mesh, or a part of it that lies in no other, is wound inward.
     #[error("the mesh is turned inside out at {at}: flip its normals")]
     InsideOut {
         /// One of its corners.
-        at: Point,
+        at: MeshPoint,
     },
     /// Two triangles cross.
     #[error("{first} and {second} cross near {at}: unite the solids before exporting")]
     SelfIntersection {
         /// One of them.
-        first: Place,
+        first: TriangleLocation,
         /// The other.
-        second: Place,
+        second: TriangleLocation,
         /// Where.
-        at: Point,
+        at: MeshPoint,
     },
     /// More triangles may cross than those before it.
     #[error("and {count} triangles were not looked at, which may cross others too")]

@@ -25,7 +25,7 @@ fn block(lo: [f64; 3], hi: [f64; 3]) -> Soup {
 
 /// What became of one body.
 fn treated(soup: &Soup, treatment: Treatment) -> Result<Solid, Vec<MeshProblem>> {
-    let place = |triangle| Place { triangle, start: Start::Memory };
+    let place = |triangle| TriangleLocation { triangle, start: FileOffset::Memory };
     let list = soup.iter().enumerate().map(|(k, corners)| Triangle { corners: *corners, place: place(k) });
     solid(list.collect(), 1.0, treatment)
 }

@@ -7,7 +7,7 @@
 use super::{OutlineProblem, Stroke, Within, line_of};
 use crate::design::{LengthUnit, Quantity, Unit};
 use crate::xml::svg::{self, Refusal};
-use crate::xml::{Attribute, Tag};
+use crate::xml::{Tag, XmlAttribute};
 use glam::DVec2;
 use kurbo::{Affine, Arc, BezPath, Circle, Ellipse, PathEl, Point, Rect, RoundedRect, Shape, SvgArc, Vec2};
 use std::ops::{ControlFlow, Range};
@@ -66,15 +66,16 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
     // Lines are not counted from the start for every shape.
     let breaks: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
     let hidden = svg::shapes(text, |drawn| {
-        let read =
-            drawn.map_err(|refusal| refused(text, &refusal)).and_then(|svg::Shape { tag, frame, .. }| {
+        let read = drawn.map_err(|refusal| refused(text, &refusal)).and_then(
+            |svg::SvgShape { tag, frame, .. }| {
                 let frame = Affine::FLIP_Y * frame;
                 let path = shape(tag, frame, within).map_err(|wrong| refused(text, &wrong))?;
                 let line = 1 + breaks.partition_point(|at| *at < tag.head().start);
                 let strokes = flattened(&(frame * path), within, line)?;
                 corners += strokes.iter().map(|stroke| stroke.corners.len()).sum::<usize>();
                 if corners > super::MOST_CORNERS { Err(OutlineProblem::TooMany) } else { Ok(strokes) }
-            });
+            },
+        );
         match read {
             Ok(strokes) => loops.extend(strokes),
             Err(found) => {
@@ -90,7 +91,7 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
 /// What an element draws, in its own coordinates.
 fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Refusal> {
     let number = |name: &str| -> Result<Option<f64>, Refusal> {
-        let Some(Attribute { value, span }) = tag.attribute(name) else { return Ok(None) };
+        let Some(XmlAttribute { value, span }) = tag.attribute(name) else { return Ok(None) };
         let read = value.trim().trim_end_matches("px").parse::<f64>().ok();
         let read = read.filter(|number| number.abs() <= LARGEST);
         let is_size = ["width", "height", "r", "rx", "ry"].contains(&name);
@@ -142,7 +143,7 @@ fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Refusa
             None => BezPath::new(),
         },
         _ => match tag.attribute("d") {
-            Some(Attribute { value, span }) => path(&value, tolerance)
+            Some(XmlAttribute { value, span }) => path(&value, tolerance)
                 .map_err(|message| wrong(span, message, "save the picture again from the drawing program"))?,
             None => BezPath::new(),
         },
@@ -155,7 +156,7 @@ const fn wrong(at: Range<usize>, message: String, help: &'static str) -> Refusal
 }
 
 /// The corners of a polygon: pairs of numbers, all of which count.
-fn polygon(points: &Attribute<'_>, is_closed: bool) -> Result<BezPath, Refusal> {
+fn polygon(points: &XmlAttribute<'_>, is_closed: bool) -> Result<BezPath, Refusal> {
     const HELP: &str = "repair the list of points, or save the picture again from the drawing program";
     let mut numbers = svgtypes::NumberListParser::from(points.value.as_ref());
     let mut path = BezPath::new();

@@ -16,7 +16,7 @@ mod round;
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem};
 use super::outline::{self, OutlineProblem};
 use super::source::{self, FileBytes};
-use super::{Half, HullError, Problem, Side, Size, Surface, SurfaceError, convex_hull, place};
+use super::{GeometryDefect, Half, HalfRole, HullError, Size, Surface, SurfaceError, convex_hull, place};
 use crate::design::{FileSpec, MeshContent, OutlineSpec, PartSpec, ShapeSpec};
 use crate::exec::Exec;
 use crate::terminal::shown;
@@ -29,7 +29,7 @@ pub(super) use prism::extruded;
 
 /// Why a part is none.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PartError {
+pub enum PartGeometryError {
     /// A mesh file that is none.
     #[error("{}: {error}", shown(path))]
     Mesh {
@@ -74,10 +74,10 @@ pub enum PartError {
 /// The solids of all parts, and what their files held.
 pub(super) fn half(
     parts: &[(PartSpec, Option<FileBytes>)],
-    side: Side,
+    side: HalfRole,
     size: Size,
     exec: &Exec,
-) -> Result<(Half, Vec<MeshContent>), Vec<Problem>> {
+) -> Result<(Half, Vec<MeshContent>), Vec<GeometryDefect>> {
     let (mut half, mut contents, mut problems) = (Half::default(), Vec::new(), Vec::new());
     for (number, (spec, file)) in parts.iter().enumerate() {
         let frame = place::part(spec);
@@ -87,7 +87,11 @@ pub(super) fn half(
                 contents.extend(content);
             }
             Err(errors) => {
-                problems.extend(errors.into_iter().map(|error| Problem::Part { side, part: number, error }));
+                problems.extend(errors.into_iter().map(|error| GeometryDefect::Part {
+                    side,
+                    part: number,
+                    error,
+                }));
             }
         }
     }
@@ -97,7 +101,7 @@ pub(super) fn half(
         let corners = half.surfaces.iter().flat_map(|surface| &surface.vertices).copied();
         let implausible = || (size == Size::Plausible).then(|| mesh::implausible_width(corners)).flatten();
         let error = too_many.or_else(implausible);
-        problems.extend(error.map(|error| Problem::Triangles { side, error }));
+        problems.extend(error.map(|error| GeometryDefect::Triangles { side, error }));
     }
     if problems.is_empty() { Ok((half, contents)) } else { Err(problems) }
 }
@@ -107,13 +111,13 @@ fn shape(
     shape: &ShapeSpec,
     file: Option<&FileBytes>,
     exec: &Exec,
-) -> Result<(Half, Option<MeshContent>), Vec<PartError>> {
-    let alone = |surface: Result<Surface, PartError>| {
+) -> Result<(Half, Option<MeshContent>), Vec<PartGeometryError>> {
+    let alone = |surface: Result<Surface, PartGeometryError>| {
         surface.map(|surface| (Half::of(vec![surface]), None)).map_err(|error| vec![error])
     };
     match shape {
         ShapeSpec::Mesh(spec) => {
-            let refused = |error| PartError::Mesh { path: spec.path.clone(), error };
+            let refused = |error| PartGeometryError::Mesh { path: spec.path.clone(), error };
             let refuse = |errors: Vec<MeshProblem>| errors.into_iter().map(refused).collect::<Vec<_>>();
             let file = file.ok_or_else(|| refuse(vec![MeshProblem::NoFile]))?;
             let (half, content, _) = source::read_mesh(spec, file, mesh::part, exec).map_err(refuse)?;
@@ -121,7 +125,7 @@ fn shape(
         }
         ShapeSpec::Pieces(pieces) => {
             let hull = |(piece, points): (usize, &Vec<_>)| {
-                convex_hull(points).map_err(|error| PartError::Piece { piece, error })
+                convex_hull(points).map_err(|error| PartGeometryError::Piece { piece, error })
             };
             let surfaces: Vec<_> = source::points(pieces).iter().enumerate().map(hull).collect();
             let errors: Vec<_> = surfaces.iter().filter_map(|hull| hull.as_ref().err().cloned()).collect();
@@ -146,12 +150,12 @@ fn profile(
     height: f64,
     chord_error: f64,
     file: Option<&FileBytes>,
-) -> Result<(Half, Option<MeshContent>), PartError> {
+) -> Result<(Half, Option<MeshContent>), PartGeometryError> {
     let path = match outline {
         OutlineSpec::Corners(_) => None,
         OutlineSpec::File(FileSpec { path, .. }) => Some(path.clone()),
     };
-    let refused = |error| PartError::Outline { path: path.clone(), error };
+    let refused = |error| PartGeometryError::Outline { path: path.clone(), error };
     let (loops, content) = match outline {
         OutlineSpec::Corners(corners) => {
             (vec![corners.iter().copied().map(DVec2::from_array).collect()], None)

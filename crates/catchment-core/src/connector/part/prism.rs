@@ -8,7 +8,7 @@
 //!    └────────────┘
 //! ```
 
-use super::PartError;
+use super::PartGeometryError;
 use crate::budget::{Budget, Limit, Overspent};
 use crate::connector::Surface;
 use crate::connector::mesh::cut;
@@ -25,7 +25,7 @@ const STEPS: Limit = Limit {
 };
 
 /// A box that stands on the origin, the middle of its floor.
-pub(super) fn cuboid([x, y, z]: [f64; 3]) -> Result<Surface, PartError> {
+pub(super) fn cuboid([x, y, z]: [f64; 3]) -> Result<Surface, PartGeometryError> {
     let half = DVec2::new(x, y) / 2.0;
     let corner = |k: u8| {
         let sign = |bit: u8| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };

@@ -7,7 +7,7 @@
 //!    ╲__|__╱     r (1 − cos² π/n) ≤ chord error
 //! ```
 
-use super::PartError;
+use super::PartGeometryError;
 use crate::connector::Surface;
 use crate::connector::family::{MAX_CORNERS, circle, corners_of_circle};
 use glam::{DVec2, DVec3};
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const MAX_MERIDIANS: f64 = 128.0;
 
 /// A ball about the origin; both are in D.
-pub(super) fn sphere(radius: f64, chord_error: f64) -> Result<Surface, PartError> {
+pub(super) fn sphere(radius: f64, chord_error: f64) -> Result<Surface, PartGeometryError> {
     let half_angle = (chord_error / radius).min(1.0).sqrt().asin();
     // Rounding must not turn the exact error of n meridians into n + 4.
     let meridians = ((PI / half_angle - 1e-9) / 4.0).ceil().max(2.0) * 4.0;
@@ -36,7 +36,11 @@ pub(super) fn sphere(radius: f64, chord_error: f64) -> Result<Surface, PartError
 }
 
 /// A cone that stands on the origin, with these radii of floor and top; all are in D.
-pub(super) fn cone([floor, top]: [f64; 2], height: f64, chord_error: f64) -> Result<Surface, PartError> {
+pub(super) fn cone(
+    [floor, top]: [f64; 2],
+    height: f64,
+    chord_error: f64,
+) -> Result<Surface, PartGeometryError> {
     let radius = floor.max(top);
     let corners = corners_of_circle(radius, chord_error);
     let least = radius * (1.0 - (PI / MAX_CORNERS).cos());
@@ -50,11 +54,11 @@ pub(super) fn cone([floor, top]: [f64; 2], height: f64, chord_error: f64) -> Res
     Ok(surface?)
 }
 
-fn suits(radius: f64, chord_error: f64, is_coarse: bool, least: f64) -> Result<(), PartError> {
+fn suits(radius: f64, chord_error: f64, is_coarse: bool, least: f64) -> Result<(), PartGeometryError> {
     if is_coarse && chord_error > 0.0 && chord_error < radius {
         Ok(())
     } else {
-        Err(PartError::Chord { chord_error, radius, least })
+        Err(PartGeometryError::Chord { chord_error, radius, least })
     }
 }
 
@@ -137,12 +141,15 @@ mod tests {
     #[test]
     fn chord_errors_that_suit_nothing_are_refused() {
         for (radius, chord_error) in [(0.5, 1e-6), (0.5, 0.5), (0.5, 0.0), (0.5, f64::NAN)] {
-            assert!(matches!(sphere(radius, chord_error), Err(PartError::Chord { .. })), "{chord_error}");
+            assert!(
+                matches!(sphere(radius, chord_error), Err(PartGeometryError::Chord { .. })),
+                "{chord_error}"
+            );
             let cone = cone([radius, 0.0], 1.0, chord_error);
-            assert!(matches!(cone, Err(PartError::Chord { .. })), "{chord_error}");
+            assert!(matches!(cone, Err(PartGeometryError::Chord { .. })), "{chord_error}");
         }
         let least = match sphere(0.5, 1e-6) {
-            Err(PartError::Chord { least, .. }) => least,
+            Err(PartGeometryError::Chord { least, .. }) => least,
             other => panic!("{other:?}"),
         };
         assert_eq!(sphere(0.5, least).unwrap().facets.len(), 128 * 64);

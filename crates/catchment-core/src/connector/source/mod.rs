@@ -19,7 +19,9 @@ pub use unit::UnitProblem;
 pub(super) use unit::scale;
 
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Ready, Triangle};
-use super::{Half, Problem, Side, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf};
+use super::{
+    GeometryDefect, Half, HalfRole, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf,
+};
 use crate::design::{
     FamilySpec, FileSpec, FilesInMemory, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment,
 };
@@ -49,7 +51,7 @@ impl FileBytes {
 }
 
 /// Gives the first bytes of a file, at most as many as the second argument says.
-pub type Read<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
+pub type FileReader<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
 
 /// Reads files that are in memory, and all others from disk.
 pub(super) fn beside(files: &FilesInMemory) -> impl Fn(&Path, u64) -> io::Result<FileBytes> {
@@ -178,7 +180,7 @@ pub(super) fn read_mesh(
 }
 
 /// As much of a mesh file as may be read; of a large one the beginning first.
-fn fetch_mesh(spec: &FileSpec, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
+fn fetch_mesh(spec: &FileSpec, read: FileReader<'_>) -> Result<FileBytes, MeshProblem> {
     let format = Format::of(&spec.path);
     let first = fetch(&spec.path, FIRST_BYTES, read)?;
     if first.size <= first.bytes.len() as u64 {
@@ -194,7 +196,7 @@ fn fetch_mesh(spec: &FileSpec, read: Read<'_>) -> Result<FileBytes, MeshProblem>
 }
 
 /// The bytes of a file, or why there are none.
-fn fetch(path: &Path, most: u64, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
+fn fetch(path: &Path, most: u64, read: FileReader<'_>) -> Result<FileBytes, MeshProblem> {
     read(path, most).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => MeshProblem::NoFile,
         _ => MeshProblem::Io { message: error.to_string() },
@@ -203,7 +205,7 @@ fn fetch(path: &Path, most: u64, read: Read<'_>) -> Result<FileBytes, MeshProble
 
 /// One half, drawn facing +z, before it is built.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Source {
+pub enum HalfSource {
     /// The half that a family has on this side.
     Family(FamilySpec),
     /// Convex pieces whose union is the half, each a list of vertices in D.
@@ -223,14 +225,18 @@ pub enum Source {
     Surface(Surface),
 }
 
-impl Source {
+impl HalfSource {
     /// What a design says of a half, its files read.
-    pub(super) fn of(spec: &HalfSpec, side: Side, read: Read<'_>) -> Result<Self, Vec<Problem>> {
+    pub(super) fn of(
+        spec: &HalfSpec,
+        side: HalfRole,
+        read: FileReader<'_>,
+    ) -> Result<Self, Vec<GeometryDefect>> {
         match spec {
             HalfSpec::Pieces(pieces) => Ok(Self::Pieces(points(pieces))),
             HalfSpec::Mesh(spec) => match fetch_mesh(spec, read) {
                 Ok(file) => Ok(Self::Mesh { spec: spec.clone(), file }),
-                Err(error) => Err(vec![Problem::Mesh { side, path: spec.path.clone(), error }]),
+                Err(error) => Err(vec![GeometryDefect::Mesh { side, path: spec.path.clone(), error }]),
             },
             HalfSpec::Parts(parts) => {
                 let (mut read_parts, mut problems) = (Vec::new(), Vec::new());
@@ -242,7 +248,11 @@ impl Source {
                     let file = part.shape.file().map(|file| {
                         fetched(file).map_err(|error| {
                             let path = file.path.clone();
-                            Problem::Part { side, part: index, error: part::PartError::Mesh { path, error } }
+                            GeometryDefect::Part {
+                                side,
+                                part: index,
+                                error: part::PartGeometryError::Mesh { path, error },
+                            }
                         })
                     });
                     match file.transpose() {
@@ -252,32 +262,37 @@ impl Source {
                 }
                 if problems.is_empty() { Ok(Self::Parts(read_parts)) } else { Err(problems) }
             }
-            HalfSpec::Memory { .. } => Err(vec![Problem::NotInDesign { side }]),
+            HalfSpec::Memory { .. } => Err(vec![GeometryDefect::NotInDesign { side }]),
         }
     }
 
     /// The solid, and what its files held.
-    pub(super) fn build(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
+    pub(super) fn build(
+        &self,
+        side: HalfRole,
+        size: Size,
+        exec: &Exec,
+    ) -> Result<Built, Vec<GeometryDefect>> {
         let built = self.solids(side, size, exec)?;
         // Files hold coordinates in single precision as a rule.
         let is_written = built.contents.is_empty();
         let exactness = if is_written { mesh::union::EXACT } else { mesh::union::SINGLE };
-        let refused = |error| vec![Problem::Union { side, error }];
+        let refused = |error| vec![GeometryDefect::Union { side, error }];
         let half = Half::united(built.half.surfaces, exactness, exec).map_err(refused)?;
         Ok(Built { half, ..built })
     }
 
     /// The solids as they are written, not united, and what its files held.
-    fn solids(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
+    fn solids(&self, side: HalfRole, size: Size, exec: &Exec) -> Result<Built, Vec<GeometryDefect>> {
         match self {
             Self::Family(spec) => {
                 let drawn = family::draw(spec)?;
-                let half = if side == Side::Fixed { drawn.fixed } else { drawn.moving };
+                let half = if side == HalfRole::Fixed { drawn.fixed } else { drawn.moving };
                 Ok(Built::of(half, Vec::new()))
             }
             Self::Pieces(pieces) => Ok(Built::of(from_pieces(pieces, side)?, Vec::new())),
             Self::Mesh { spec, file } => {
-                let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
+                let refused = |error| GeometryDefect::Mesh { side, path: spec.path.clone(), error };
                 let (half, content, scale) =
                     read_mesh(spec, file, if size == Size::Any { mesh::part } else { mesh::half }, exec)
                         .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
@@ -288,7 +303,7 @@ impl Source {
                 Ok(Built::of(half, contents))
             }
             Self::Triangles(triangles) => {
-                let refused = |error| Problem::Triangles { side, error };
+                let refused = |error| GeometryDefect::Triangles { side, error };
                 let half = mesh::from_triangles(triangles)
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
                 Ok(Built::of(half, vec![content::of_triangles(triangles)]))
@@ -306,16 +321,16 @@ pub(super) fn points(pieces: &[Vec<[f64; 3]>]) -> Vec<Vec<DVec3>> {
     pieces.iter().map(|piece| piece.iter().copied().map(DVec3::from_array).collect()).collect()
 }
 
-fn from_pieces(pieces: &[Vec<DVec3>], side: Side) -> Result<Half, Vec<Problem>> {
+fn from_pieces(pieces: &[Vec<DVec3>], side: HalfRole) -> Result<Half, Vec<GeometryDefect>> {
     if pieces.is_empty() || pieces.len() > MAX_PIECES {
-        return Err(vec![Problem::PieceCount { side, count: pieces.len(), most: MAX_PIECES }]);
+        return Err(vec![GeometryDefect::PieceCount { side, count: pieces.len(), most: MAX_PIECES }]);
     }
     let mut half = Half::default();
     let mut problems = Vec::new();
     for (piece, points) in pieces.iter().enumerate() {
         match convex_hull(points) {
             Ok(surface) => half.surfaces.push(surface),
-            Err(error) => problems.push(Problem::Piece { side, piece, error }),
+            Err(error) => problems.push(GeometryDefect::Piece { side, piece, error }),
         }
     }
     if problems.is_empty() { Ok(half) } else { Err(problems) }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::connector::Connector;
-use crate::connector::mesh::{Place, Start};
+use crate::connector::mesh::{FileOffset, TriangleLocation};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FileSpec, OwnSpec};
 use crate::pose::{DofSet, Mount};
 use proptest::prelude::*;
@@ -16,9 +16,9 @@ fn cube() -> Vec<Vec<DVec3>> {
     vec![(0..8).map(corner).collect()]
 }
 
-fn build(source: &Source) -> Result<Half, Vec<Problem>> {
+fn build(source: &HalfSource) -> Result<Half, Vec<GeometryDefect>> {
     source
-        .build(Side::Fixed, crate::connector::Size::Plausible, &crate::exec::Exec::new())
+        .build(HalfRole::Fixed, crate::connector::Size::Plausible, &crate::exec::Exec::new())
         .map(|built| built.half)
 }
 
@@ -27,14 +27,14 @@ fn a_pair_in_memory_is_the_family_without_any_file() {
     let spec = FamilySpec::new(Family::Pyramid);
     let drawn = family::draw(&spec).unwrap();
     let [fixed, moving] =
-        [&drawn.fixed, &drawn.moving].map(|half| Source::Triangles(soup(&half.surfaces[0])));
+        [&drawn.fixed, &drawn.moving].map(|half| HalfSource::Triangles(soup(&half.surfaces[0])));
     let connector = Connector::from_sources(&fixed, &moving, drawn.face_height, Mount::X).unwrap();
     let family = Connector::of_family(&spec, Mount::X).unwrap();
     for (own, drawn) in [(&connector.fixed, &family.fixed), (&connector.moving, &family.moving)] {
         assert!((own.surfaces[0].volume() - drawn.surfaces[0].volume()).abs() < 1e-14);
         assert_eq!(own.surfaces[0].edges.len(), drawn.surfaces[0].edges.len());
     }
-    let halves = [Source::Family(spec), Source::Surface(drawn.moving.surfaces[0].clone())];
+    let halves = [HalfSource::Family(spec), HalfSource::Surface(drawn.moving.surfaces[0].clone())];
     let mixed = Connector::from_sources(&halves[0], &halves[1], drawn.face_height, Mount::X).unwrap();
     assert_eq!((&mixed.fixed, &mixed.moving), (&family.fixed, &family.moving));
     assert!(mixed.contents.fixed.is_empty() && mixed.contents.moving == connector.contents.moving);
@@ -44,13 +44,14 @@ fn a_pair_in_memory_is_the_family_without_any_file() {
 fn triangles_in_memory_are_complained_about_by_number() {
     let hull = convex_hull(&cube()[0]).unwrap();
     let good = soup(&hull);
-    let complaint = |triangles: Vec<[DVec3; 3]>| match &build(&Source::Triangles(triangles)).unwrap_err()[0] {
-        Problem::Triangles { side: Side::Fixed, error } => error.clone(),
-        other => panic!("{other}"),
-    };
+    let complaint =
+        |triangles: Vec<[DVec3; 3]>| match &build(&HalfSource::Triangles(triangles)).unwrap_err()[0] {
+            GeometryDefect::Triangles { side: HalfRole::Fixed, error } => error.clone(),
+            other => panic!("{other}"),
+        };
     let mut bad = good.clone();
     bad[3][1].y = f64::NAN;
-    let place = Place { triangle: 3, start: Start::Memory };
+    let place = TriangleLocation { triangle: 3, start: FileOffset::Memory };
     let problem = complaint(bad);
     assert!(
         matches!(problem, MeshProblem::NotFinite { place: of, at } if of == place && at.at.y.is_nan()),
@@ -94,13 +95,13 @@ fn mesh_design(path: &str, file: &[u8]) -> Design {
 
 fn stl_of(half: &Half) -> Vec<u8> {
     let mut file = Vec::new();
-    stl::write(half, stl::Format::Ascii, &mut file).unwrap();
+    stl::write(half, stl::StlEncoding::Ascii, &mut file).unwrap();
     file
 }
 
 #[test]
 fn what_the_file_held_counts_and_not_where_it_lay() {
-    let half = build(&Source::Pieces(cube())).unwrap();
+    let half = build(&HalfSource::Pieces(cube())).unwrap();
     let design = mesh_design("a.stl", &stl_of(&half));
     let ConnectorSpec::Own(OwnSpec {
         fixed: HalfSpec::Mesh(FileSpec { content: Some(content), .. }), ..
@@ -114,7 +115,7 @@ fn what_the_file_held_counts_and_not_where_it_lay() {
     assert_eq!(mesh_design("folder/b.STL", &stl_of(&half)).digest(), Some(digest));
     let mut moved = cube();
     moved[0][7].x += 1e-9;
-    let moved = build(&Source::Triangles(soup(&convex_hull(&moved[0]).unwrap()))).unwrap();
+    let moved = build(&HalfSource::Triangles(soup(&convex_hull(&moved[0]).unwrap()))).unwrap();
     assert_ne!(mesh_design("a.stl", &stl_of(&moved)).digest(), Some(digest));
     let json = serde_json::to_string(&design).unwrap();
     assert_eq!(serde_json::from_str::<Design>(&json).unwrap(), design);
@@ -123,16 +124,17 @@ fn what_the_file_held_counts_and_not_where_it_lay() {
 #[test]
 fn a_missing_file_and_one_that_cannot_be_read_are_told_apart() {
     let half = HalfSpec::Mesh(FileSpec::new("no/such/file.stl", 1.0));
-    let error = |read: Read<'_>| match Source::of(&half, Side::Moving, read).unwrap_err().remove(0) {
-        Problem::Mesh { side: Side::Moving, error, .. } => error,
-        other => panic!("{other}"),
-    };
+    let error =
+        |read: FileReader<'_>| match HalfSource::of(&half, HalfRole::Moving, read).unwrap_err().remove(0) {
+            GeometryDefect::Mesh { side: HalfRole::Moving, error, .. } => error,
+            other => panic!("{other}"),
+        };
     assert_eq!(error(&disk::read), MeshProblem::NoFile);
     let denied = |_: &Path, _| Err(io::Error::from(io::ErrorKind::PermissionDenied));
     assert!(matches!(error(&denied), MeshProblem::Io { .. }));
     let content = MeshContent::of(b"", 0);
-    let gone = Source::of(&HalfSpec::Memory { content }, Side::Fixed, &disk::read);
-    assert_eq!(gone, Err(vec![Problem::NotInDesign { side: Side::Fixed }]));
+    let gone = HalfSource::of(&HalfSpec::Memory { content }, HalfRole::Fixed, &disk::read);
+    assert_eq!(gone, Err(vec![GeometryDefect::NotInDesign { side: HalfRole::Fixed }]));
 }
 
 proptest! {
@@ -144,8 +146,8 @@ proptest! {
             points.into_iter().filter_map(|p| DVec3::from_array(p).try_normalize()).collect();
         let apart = |a: &DVec3, b: &DVec3| a.distance(*b) > 0.05;
         prop_assume!((0..sphere.len()).all(|i| (0..i).all(|j| apart(&sphere[i], &sphere[j]))));
-        let Ok(piece) = build(&Source::Pieces(vec![sphere])) else { return Ok(()) };
-        let Ok(half) = build(&Source::Triangles(soup(&piece.surfaces[0]))) else { return Ok(()) };
+        let Ok(piece) = build(&HalfSource::Pieces(vec![sphere])) else { return Ok(()) };
+        let Ok(half) = build(&HalfSource::Triangles(soup(&piece.surfaces[0]))) else { return Ok(()) };
         let (piece, mesh) = (&piece.surfaces[0], &half.surfaces[0]);
         prop_assert!(mesh.convex);
         // Sums of at most a hundred terms below 1.

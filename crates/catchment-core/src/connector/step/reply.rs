@@ -2,7 +2,7 @@
 //! little-endian.
 
 use super::{FromCurves, StepProblem};
-use crate::connector::mesh::{self, MeshProblem, Place, Start, Triangle, most_read};
+use crate::connector::mesh::{self, FileOffset, MeshProblem, Triangle, TriangleLocation, most_read};
 use crate::connector::source::Held;
 use crate::design::{LengthUnit, Treatment, hex};
 use glam::DVec3;
@@ -72,7 +72,7 @@ pub(super) fn read(answer: &[u8], program: &str, treatment: Treatment) -> Result
                 index.and_then(|index| corners.get(index as usize)).copied()
             };
             let (Some(a), Some(b), Some(c)) = (at(0), at(1), at(2)) else { return Err(broken()) };
-            let place = Place { triangle: number, start: Start::Memory };
+            let place = TriangleLocation { triangle: number, start: FileOffset::Memory };
             body.push(Triangle { corners: [a, b, c], place });
             number += 1;
         }

@@ -14,7 +14,7 @@
 mod parse;
 mod write;
 
-pub use write::{Format, write};
+pub use write::{StlEncoding, write};
 
 use super::Half;
 use super::mesh::{self, MOST_READ, MeshProblem};

@@ -1,6 +1,6 @@
 //! From bytes to triangles, both dialects.
 
-use crate::connector::mesh::{self, MeshProblem, Place, Start, Triangle};
+use crate::connector::mesh::{self, FileOffset, MeshProblem, Triangle, TriangleLocation};
 use crate::connector::source::most_bytes;
 use crate::design::Treatment;
 use glam::DVec3;
@@ -86,7 +86,7 @@ fn binary(records: &[u8]) -> Vec<Triangle> {
             let corner = |k: usize| DVec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
             Triangle {
                 corners: [corner(0), corner(1), corner(2)],
-                place: Place { triangle, start: Start::Byte(HEADER + RECORD * triangle) },
+                place: TriangleLocation { triangle, start: FileOffset::Byte(HEADER + RECORD * triangle) },
             }
         })
         .collect()
@@ -166,7 +166,10 @@ fn ascii(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, MeshProble
             }
             lines.expect("endloop")?;
             lines.expect("endfacet")?;
-            triangles.push(Triangle { corners, place: Place { triangle, start: Start::Line(line) } });
+            triangles.push(Triangle {
+                corners,
+                place: TriangleLocation { triangle, start: FileOffset::Line(line) },
+            });
         } else if inside && begins(&words, "endsolid") {
             inside = false;
         } else if !inside && begins(&words, "solid") {

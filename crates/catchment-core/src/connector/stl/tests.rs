@@ -1,14 +1,14 @@
 //! All kinds of defects of a file, and the families through both dialects.
 
 use super::*;
-use crate::connector::mesh::{MAX_REPORTED, MAX_TRIANGLES, Place, Start};
+use crate::connector::mesh::{FileOffset, MAX_REPORTED, MAX_TRIANGLES, TriangleLocation};
 use crate::connector::{Surface, family};
 use crate::design::{Family, FamilySpec};
 use glam::DVec3;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
-fn bytes(half: &Half, format: Format) -> Vec<u8> {
+fn bytes(half: &Half, format: StlEncoding) -> Vec<u8> {
     let mut out = Vec::new();
     write(half, format, &mut out).unwrap();
     out
@@ -55,8 +55,9 @@ fn families_survive_both_dialects() {
         let drawn = family::draw(&FamilySpec::new(name)).unwrap();
         for half in [&drawn.fixed, &drawn.moving] {
             let volume: f64 = half.surfaces.iter().map(Surface::volume).sum();
-            let text = parse(&bytes(half, Format::Ascii)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
-            let binary = parse(&bytes(half, Format::Binary)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
+            let text = parse(&bytes(half, StlEncoding::Ascii)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
+            let binary =
+                parse(&bytes(half, StlEncoding::Binary)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
             assert!((text.volume() - volume).abs() < 1e-14);
             // Single precision moves the boundary, of area below 5, by less than 6e-8.
             assert!((binary.volume() - volume).abs() < 3e-7);
@@ -72,7 +73,7 @@ fn families_survive_both_dialects() {
 #[test]
 fn scale_turns_file_units_into_d() {
     let half = socket().mapped(|p| p * 50.0);
-    let file = bytes(&half, Format::Binary);
+    let file = bytes(&half, StlEncoding::Binary);
     let surface = &from_bytes(&file, file.len() as u64, 1.0 / 50.0).unwrap().surfaces[0];
     assert!((surface.volume() - socket().surfaces[0].volume()).abs() < 1e-6);
 }
@@ -86,7 +87,7 @@ fn an_empty_file_says_so() {
 
 #[test]
 fn a_truncated_binary_file_says_where() {
-    let mut file = bytes(&socket(), Format::Binary);
+    let mut file = bytes(&socket(), StlEncoding::Binary);
     let expected = file.len() as u64;
     file.truncate(400);
     let triangles = (expected - 84) / 50;
@@ -95,7 +96,7 @@ fn a_truncated_binary_file_says_where() {
 
 #[test]
 fn a_binary_file_that_begins_with_solid_is_binary() {
-    let mut file = bytes(&socket(), Format::Binary);
+    let mut file = bytes(&socket(), StlEncoding::Binary);
     file[..5].copy_from_slice(b"solid");
     parse(&file).unwrap();
 }
@@ -136,7 +137,7 @@ fn a_corner_that_is_not_finite_is_located() {
     for bad in [f64::NAN, f64::INFINITY] {
         let mut triangles = cube();
         triangles[3][1][2] = bad;
-        let place = Place { triangle: 3, start: Start::Line(2 + 3 * 7) };
+        let place = TriangleLocation { triangle: 3, start: FileOffset::Line(2 + 3 * 7) };
         let problems = complaints(&triangles);
         assert!(
             matches!(problems[..], [MeshProblem::NotFinite { place: of, .. }] if of == place),
@@ -167,7 +168,7 @@ fn a_triangle_without_area_is_located_not_dropped() {
     let mut triangles = cube();
     triangles.push([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let problems = complaints(&triangles);
-    let place = Place { triangle: 12, start: Start::Line(2 + 12 * 7) };
+    let place = TriangleLocation { triangle: 12, start: FileOffset::Line(2 + 12 * 7) };
     assert!(problems.contains(&MeshProblem::ZeroArea { place, at: DVec3::ZERO.into() }), "{problems:?}");
 }
 
@@ -252,7 +253,7 @@ proptest! {
     fn spoilt_files_never_panic(
         at in 0usize..2000, value in any::<u8>(), cut in 0usize..2000, ascii in any::<bool>()
     ) {
-        let mut file = bytes(&socket(), if ascii { Format::Ascii } else { Format::Binary });
+        let mut file = bytes(&socket(), if ascii { StlEncoding::Ascii } else { StlEncoding::Binary });
         let n = file.len();
         file[at % n] = value;
         file.truncate(n - cut % n);
@@ -263,7 +264,7 @@ proptest! {
     fn reading_does_not_depend_on_where_the_part_lies(shift in proptest::array::uniform3(-3.0..3.0f64)) {
         let half = socket();
         let moved = half.mapped(|p| p + DVec3::from_array(shift));
-        let back = parse(&bytes(&moved, Format::Binary)).unwrap();
+        let back = parse(&bytes(&moved, StlEncoding::Binary)).unwrap();
         // Coordinates below 4 round by 2.4e-7 in single precision.
         for v in &half.surfaces[0].vertices {
             let v = *v + DVec3::from_array(shift);

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 /// The two dialects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum StlEncoding {
     /// Text, all digits.
     Ascii,
     /// Single precision: coordinates are rounded to 6e-8 of their size.
@@ -18,10 +18,10 @@ pub enum Format {
 /// The halves of a [`Connector`](crate::connector::Connector) have their face centre at the origin, and the
 /// moving one is mounted; to get it as a design file wants it, turn it back with `mapped(|p| mount.apply(p))`
 /// and give `face_height = 0`.
-pub fn write(half: &Half, format: Format, out: &mut impl Write) -> io::Result<()> {
+pub fn write(half: &Half, format: StlEncoding, out: &mut impl Write) -> io::Result<()> {
     let triangles: Vec<[DVec3; 3]> = half.surfaces.iter().flat_map(corners).collect();
     match format {
-        Format::Ascii => {
+        StlEncoding::Ascii => {
             writeln!(out, "solid half")?;
             for t in &triangles {
                 let n = normal(t);
@@ -33,7 +33,7 @@ pub fn write(half: &Half, format: Format, out: &mut impl Write) -> io::Result<()
             }
             writeln!(out, "endsolid half")
         }
-        Format::Binary => {
+        StlEncoding::Binary => {
             let mut header = [0u8; 80];
             header[..9].copy_from_slice(b"catchment");
             out.write_all(&header)?;

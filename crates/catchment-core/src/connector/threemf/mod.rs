@@ -16,7 +16,7 @@
 
 mod model;
 
-use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use super::mesh::{self, FileOffset, MAX_TRIANGLES, MeshProblem, Triangle, TriangleLocation};
 use super::source::{FileBytes, Held, ZIP};
 use crate::budget::{Budget, Limit};
 use glam::{DAffine3, DVec3};
@@ -211,7 +211,7 @@ impl Build<'_> {
                     let corners: [DVec3; 3] = if mirrored { [a, c, b] } else { [a, b, c] };
                     body.push(Triangle {
                         corners,
-                        place: Place { triangle: first + k, start: Start::Memory },
+                        place: TriangleLocation { triangle: first + k, start: FileOffset::Memory },
                     });
                 }
                 self.bodies.push(body);

@@ -3,7 +3,7 @@
 use crate::budget::Limit;
 use crate::connector::mesh::MAX_TRIANGLES;
 use crate::design::shortened;
-use crate::xml::{Limits, Piece, Tag, Walk, XmlError};
+use crate::xml::{Piece, Tag, Walk, XmlError, XmlLimits};
 use glam::{DAffine3, DMat3, DVec3};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::io::Read;
 /// Most vertices of a file: three for every triangle, where none are shared.
 pub(super) const MOST_VERTICES: usize = 3 * MAX_TRIANGLES;
 /// What the XML of a part may have. Elements of extensions come to those of the solids.
-const LIMITS: Limits = Limits {
+const LIMITS: XmlLimits = XmlLimits {
     elements: Limit { most: 4_000_000, of: "elements", remedy: "export the solids alone" },
     depth: Limit { most: 64, of: "elements within each other", remedy: "export the part again" },
     attributes: Limit { most: 64, of: "attributes of an element", remedy: "export the part again" },

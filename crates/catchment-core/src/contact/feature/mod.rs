@@ -19,7 +19,7 @@
 
 use super::element::Elements;
 use super::{Contact, Meeting, Pair};
-use crate::connector::{Half, Side, Surface};
+use crate::connector::{Half, HalfRole, Surface};
 use crate::disjoint::DisjointSets;
 use crate::tolerance;
 use glam::{DMat3, DVec3};
@@ -175,10 +175,10 @@ enum Touching {
     Vertex(u32),
 }
 
-const fn index(side: Side) -> usize {
+const fn index(side: HalfRole) -> usize {
     match side {
-        Side::Fixed => 0,
-        Side::Moving => 1,
+        HalfRole::Fixed => 0,
+        HalfRole::Moving => 1,
     }
 }
 
@@ -192,7 +192,7 @@ impl Features {
     ///
     /// # Panics
     /// When the half has no such feature.
-    pub fn get(&self, side: Side, number: u32) -> &Feature {
+    pub fn get(&self, side: HalfRole, number: u32) -> &Feature {
         &self.halves[index(side)].features[number as usize]
     }
 
@@ -200,12 +200,12 @@ impl Features {
     ///
     /// # Panics
     /// When the half has no such feature.
-    pub fn class(&self, side: Side, number: u32) -> u32 {
+    pub fn class(&self, side: HalfRole, number: u32) -> u32 {
         self.halves[index(side)].classes[number as usize]
     }
 
     /// The turns and reflections about the approach axis that map a half onto itself.
-    pub(crate) fn turns(&self, side: Side) -> &Turns {
+    pub(crate) fn turns(&self, side: HalfRole) -> &Turns {
         &self.halves[index(side)].turns
     }
 

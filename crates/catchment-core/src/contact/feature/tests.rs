@@ -11,7 +11,7 @@ fn features(family: Family) -> Features {
     Features::of(&Pair::new(&connector, &alignment))
 }
 
-fn count(features: &Features, side: Side, kind: FeatureKind) -> usize {
+fn count(features: &Features, side: HalfRole, kind: FeatureKind) -> usize {
     features.halves[index(side)].features.iter().filter(|feature| feature.kind == kind).count()
 }
 
@@ -19,12 +19,12 @@ fn count(features: &Features, side: Side, kind: FeatureKind) -> usize {
 fn a_pyramid_has_five_faces_eight_edges_five_corners() {
     let found = features(Family::Pyramid);
     let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
-        .map(|kind| count(&found, Side::Moving, kind));
+        .map(|kind| count(&found, HalfRole::Moving, kind));
     assert_eq!(counts, [5, 8, 5]);
     // By its symmetries: base and flank; base edge and flank edge; apex and base corner.
     let classes: BTreeSet<u32> = found.halves[1].classes.iter().copied().collect();
     assert_eq!(classes.len(), 6);
-    assert_eq!(found.turns(Side::Moving).0.len(), 8);
+    assert_eq!(found.turns(HalfRole::Moving).0.len(), 8);
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn a_cone_is_round_and_pointed() {
     let connector = Connector::of_family(&FamilySpec::new(Family::Cone), Mount::X).unwrap();
     let found = Features::of(&Pair::new(&connector, &alignment));
     let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
-        .map(|kind| count(&found, Side::Moving, kind));
+        .map(|kind| count(&found, HalfRole::Moving, kind));
     assert_eq!(counts, [2, 1, 1], "{:?}", found.halves[1].features);
     let names: Vec<String> = found.halves[1].features.iter().map(Feature::name).collect();
     assert!(names.iter().any(|name| name.starts_with("edge between ")), "{names:?}");

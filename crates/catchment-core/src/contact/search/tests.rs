@@ -1,7 +1,7 @@
 //! The trees compared with the list of all elements, bit for bit, and with the brute-force reference.
 
 use super::*;
-use crate::connector::{Connector, Half, Source, convex_hull};
+use crate::connector::{Connector, Half, HalfSource, convex_hull};
 use crate::contact::candidates::{Candidates, FLUSH, Sieve};
 use crate::contact::turned::Turned;
 use crate::contact::{Contact, HeightEnvelope, Lattice, Meeting, brute, meshes};
@@ -17,7 +17,7 @@ fn with_trees(connector: &Connector) -> Pair {
 }
 
 fn funnel(count: usize) -> Pair {
-    let [fixed, moving] = meshes::funnel(count).map(Source::Triangles);
+    let [fixed, moving] = meshes::funnel(count).map(HalfSource::Triangles);
     with_trees(&Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap())
 }
 

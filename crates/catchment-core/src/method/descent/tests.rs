@@ -4,7 +4,7 @@ use super::fall::home;
 use super::rest::TOUCHING;
 use super::{DescentSettings, Follower, outcome, run, trace};
 use crate::acceptance::{Domain, Outcome, Warning};
-use crate::connector::{Connector, Source};
+use crate::connector::{Connector, HalfSource};
 use crate::contact::{Pair, meshes};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::exec::{Cancelled, Exec};
@@ -278,7 +278,7 @@ fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
 
 /// Lathe bodies, which yaw does not change.
 fn lathed(halves: [meshes::Triangles; 2]) -> Pair {
-    let [fixed, moving] = halves.map(Source::Triangles);
+    let [fixed, moving] = halves.map(HalfSource::Triangles);
     let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
     let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
     alignment.center_of_rotation = 0.5;

@@ -259,7 +259,7 @@ proptest! {
 }
 
 /// A family's halves written to STL and read back as one mesh each.
-fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
+fn through_stl(pair: &Pair, format: stl::StlEncoding) -> Pair {
     let read = |half: &Half| {
         let mut file = Vec::new();
         stl::write(half, format, &mut file).unwrap();
@@ -275,7 +275,7 @@ fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
 fn meshes_give_the_familys_region() {
     for (family, exact) in [(Family::Pyramid, 1.0), (Family::XFace3d, 2.0)] {
         let pair = pair(FamilySpec::new(family).with_aspect_ratio(0.7));
-        for (format, tolerance) in [(stl::Format::Ascii, 1e-9), (stl::Format::Binary, 1e-6)] {
+        for (format, tolerance) in [(stl::StlEncoding::Ascii, 1e-9), (stl::StlEncoding::Binary, 1e-6)] {
             let mesh = through_stl(&pair, format);
             let Zraa::Region { area, .. } = run(&mesh, &ZraaSettings::default(), &Exec::new()).unwrap()
             else {

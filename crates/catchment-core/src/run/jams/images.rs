@@ -4,7 +4,7 @@
 //! half under B, then the pose (v, R) of the COR has the image (A v, A R B⁻¹), if both are rotations or both
 //! are reflections. Locked errors must keep their values.
 
-use crate::connector::Side;
+use crate::connector::HalfRole;
 use crate::contact::Features;
 use crate::design::Alignment;
 use crate::pose::{CorPose, Dof, DofSet, PoseError, ROTATIONS, angle_between, euler_axes, step_length};
@@ -33,7 +33,7 @@ pub(in crate::run) struct Images {
 
 impl Images {
     pub(in crate::run) fn of(features: &Features, alignment: &Alignment) -> Self {
-        let [fixed, moving] = [Side::Fixed, Side::Moving].map(|side| &features.turns(side).0);
+        let [fixed, moving] = [HalfRole::Fixed, HalfRole::Moving].map(|side| &features.turns(side).0);
         let like = |a: &DMat3, b: &DMat3| (a.determinant() > 0.0) == (b.determinant() > 0.0);
         let pairs =
             fixed.iter().flat_map(|a| moving.iter().filter(move |b| like(a, b)).map(move |b| [*a, *b]));

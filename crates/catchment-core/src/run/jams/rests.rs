@@ -4,7 +4,7 @@ use super::escape::Leaving;
 use super::firmness::{Firmness, Space};
 use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness};
 use crate::acceptance::{Outcome, Stream};
-use crate::connector::Side;
+use crate::connector::HalfRole;
 use crate::contact::{Contact, Features};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, Follower, Holding, Rest, Sticking, immobility};
@@ -67,7 +67,7 @@ pub(in crate::run) struct Met {
 
 /// The classes of two features.
 pub(in crate::run) fn classes(features: &Features, [fixed, moving]: [u32; 2]) -> [u32; 2] {
-    [features.class(Side::Fixed, fixed), features.class(Side::Moving, moving)]
+    [features.class(HalfRole::Fixed, fixed), features.class(HalfRole::Moving, moving)]
 }
 
 impl Follow<'_> {
@@ -197,7 +197,7 @@ impl Rested {
     /// The names of two features that touch.
     pub(in crate::run) fn names(features: &Features, met: &Met) -> [String; 2] {
         let [fixed, moving] = met.features;
-        [features.get(Side::Fixed, fixed).name(), features.get(Side::Moving, moving).name()]
+        [features.get(HalfRole::Fixed, fixed).name(), features.get(HalfRole::Moving, moving).name()]
     }
 
     /// Two features that touch, named.
@@ -220,20 +220,20 @@ impl Rested {
         let [fixed, moving] = met.features;
         FeatureContact {
             normal: met.contacts.first().map_or(DVec3::Z, |contact| contact.normal).to_array(),
-            fixed: named(Side::Fixed, fixed, first),
-            moving: named(Side::Moving, moving, self.pose.rotation.transpose() * (first - face)),
+            fixed: named(HalfRole::Fixed, fixed, first),
+            moving: named(HalfRole::Moving, moving, self.pose.rotation.transpose() * (first - face)),
             points_d: met.contacts.iter().map(|contact| contact.point.to_array()).collect(),
         }
     }
 }
 
 /// The number of the part on which a point of a half lies, in its frame; where every part is one solid.
-fn part_of(problem: &Problem, side: Side, point: DVec3) -> Option<usize> {
+fn part_of(problem: &Problem, side: HalfRole, point: DVec3) -> Option<usize> {
     use crate::design::{ConnectorSpec, HalfSpec};
     let ConnectorSpec::Own(own) = &problem.design().connector else { return None };
     let (spec, half) = match side {
-        Side::Fixed => (&own.fixed, &problem.connector().fixed),
-        Side::Moving => (&own.moving, &problem.connector().moving),
+        HalfRole::Fixed => (&own.fixed, &problem.connector().fixed),
+        HalfRole::Moving => (&own.moving, &problem.connector().moving),
     };
     let HalfSpec::Parts(parts) = spec else { return None };
     let nearest = half.solids().iter().map(|solid| solid.distance(point)).enumerate();

@@ -5,7 +5,7 @@ use super::rings::{CORNERS, Ring, region};
 use super::{Measure, Read, ReadError};
 use catchment::budget::{Budget, Overspent};
 use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit};
-use catchment::xml::svg::{self, Refusal, Shape};
+use catchment::xml::svg::{self, Refusal, SvgShape};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
 use std::collections::BTreeMap;
@@ -90,7 +90,7 @@ fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut Foun
 
 /// Reads a shape that is drawn; whether it has curves.
 fn element(
-    shape: &Shape<'_>,
+    shape: &SvgShape<'_>,
     factor: f64,
     corners: &mut Budget,
     rings: &mut Vec<Ring>,

@@ -35,7 +35,7 @@ mod verify;
 use super::indexed::Indexed;
 use super::polygons;
 use super::repair::part_crowded;
-use super::{Place, Point, Start};
+use super::{FileOffset, MeshPoint, TriangleLocation};
 use crate::connector::{Surface, SurfaceError};
 use crate::exec::{Cancelled, Exec};
 use glam::DVec3;
@@ -57,32 +57,32 @@ pub enum UnionProblem {
     #[error("{}", explained("does not close", .at))]
     Open {
         /// Where.
-        at: Point,
+        at: MeshPoint,
     },
     /// The border of a face crosses itself.
     #[error("{}", explained("has a face that crosses itself", .at))]
     Tangled {
         /// Where.
-        at: Point,
+        at: MeshPoint,
     },
     /// Facets pass through each other.
     #[error("{}", explained("crosses itself", .at))]
     Crossed {
         /// Where.
-        at: Point,
+        at: MeshPoint,
     },
     /// What it encloses is not what the solids fill.
     #[error("{}", explained("encloses something else than they fill", .at))]
     Differs {
         /// Where.
-        at: Point,
+        at: MeshPoint,
     },
     /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-fn explained(what: &str, at: &Point) -> String {
+fn explained(what: &str, at: &MeshPoint) -> String {
     format!(
         "the union of its solids {what} near {at}: let them overlap clearly there or share whole faces, or give one closed mesh"
     )
@@ -155,7 +155,8 @@ fn surface(
     w: f64,
 ) -> Result<Surface, UnionProblem> {
     let somewhere = triangles.first().map_or(DVec3::ZERO, |t| points[t[0] as usize]);
-    let places = (0..triangles.len()).map(|triangle| Place { triangle, start: Start::Made }).collect();
+    let places =
+        (0..triangles.len()).map(|triangle| TriangleLocation { triangle, start: FileOffset::Made }).collect();
     let mut mesh = Indexed { vertices: points.to_vec(), triangles, places, tolerance: stitch::SPLIT * w };
     mesh.compact();
     part_crowded(&mut mesh);

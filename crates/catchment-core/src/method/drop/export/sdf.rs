@@ -6,7 +6,7 @@
 
 use super::super::settings::Push;
 use super::{Scene, attribute, triple};
-use crate::connector::stl::{Format, write as write_stl};
+use crate::connector::stl::{StlEncoding, write as write_stl};
 use crate::connector::{Half, Surface};
 use crate::pose::{Dof, euler_angles};
 use glam::DVec3;
@@ -36,7 +36,7 @@ pub fn write(scene: &Scene) -> io::Result<World> {
     for (name, pieces) in [("fixed", &scene.fixed), ("moving", &scene.moving)] {
         for (k, piece) in pieces.iter().enumerate() {
             let mut bytes = Vec::new();
-            write_stl(&Half::of(vec![Surface::clone(piece)]), Format::Binary, &mut bytes)?;
+            write_stl(&Half::of(vec![Surface::clone(piece)]), StlEncoding::Binary, &mut bytes)?;
             files.push((format!("{name}-{k}.stl"), bytes));
         }
     }
