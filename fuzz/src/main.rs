@@ -61,7 +61,7 @@ fn chosen() -> Target {
 fn arguments(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let words = std::iter::once("catchment").chain(text.lines());
-    if let Some(said) = catchment_cli::complaint(words) {
+    if let Some(said) = catchment_cli::usage_error(words) {
         assert!(!said.is_empty());
         assert!(!said.chars().any(|c| c.is_control() && c != '\n' && c != '\t'), "{said:?}");
     }

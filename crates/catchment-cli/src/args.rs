@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::failure::Failure;
 use crate::setting::number;
-use catchment::design::{Complaint, Quantity, parse_dofs};
+use catchment::design::{DesignDefect, Quantity, parse_dofs};
 use catchment::exec::Exec;
 use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
@@ -179,7 +179,7 @@ pub(crate) fn quantity(text: &str) -> Result<Quantity, String> {
 }
 
 /// A complaint about the text of an option, and what to write instead.
-pub(crate) fn with_advice(complaint: &Complaint) -> String {
+pub(crate) fn with_advice(complaint: &DesignDefect) -> String {
     escaped(&match complaint.help() {
         Some(help) => format!("{complaint}; {help}"),
         None => complaint.to_string(),
@@ -239,7 +239,7 @@ mod tests {
             let line = if number < seeds.len() { seed } else { mutate::spoilt(&mut dice, &seed, &seeds) };
             let text = String::from_utf8_lossy(&line);
             let words = std::iter::once("catchment").chain(text.lines());
-            if let Some(said) = crate::complaint(words) {
+            if let Some(said) = crate::usage_error(words) {
                 assert!(number >= seeds.len(), "{text}: {said}");
                 refused += 1;
                 assert!(

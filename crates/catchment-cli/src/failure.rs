@@ -3,7 +3,7 @@
 use crate::advice;
 use crate::exit::ExitStatus;
 use crate::{output, signals};
-use catchment::design::Findings;
+use catchment::design::Diagnostics;
 use catchment::problem::ProblemError;
 use catchment::terminal::escaped;
 use miette::{MietteDiagnostic, Report};
@@ -27,14 +27,18 @@ impl Failure {
     /// One message with advice.
     #[expect(clippy::needless_pass_by_value, reason = "every caller makes it on the spot")]
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        Self { reports: vec![Report::new(diagnostic(&message, help))], closing: None, broken_pipe: false }
+        Self {
+            reports: vec![Report::new(miette_diagnostic(&message, help))],
+            closing: None,
+            broken_pipe: false,
+        }
     }
 
     /// Everything that is wrong with the text of an option.
-    pub(crate) fn of_option(option: &str, text: &str, refusal: Findings) -> Self {
+    pub(crate) fn of_option(option: &str, text: &str, refusal: Diagnostics) -> Self {
         let count = refusal.list.len() + refusal.omitted;
         let reports = refusal.list.into_iter().map(|objection| {
-            Report::new(diagnostic(&format!("{option}: {}", objection.message), objection.help))
+            Report::new(miette_diagnostic(&format!("{option}: {}", objection.message), objection.help))
         });
         let shown: String = escaped(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
@@ -80,8 +84,8 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
         if let Some(problem) = taken::<_, ProblemError>(&mut error) {
             return Self::of_problem(problem);
         }
-        if let Some(findings) = taken::<_, Findings>(&mut error) {
-            return Self::of_findings(findings);
+        if let Some(diagnostics) = taken::<_, Diagnostics>(&mut error) {
+            return Self::of_diagnostics(diagnostics);
         }
         let Some(error) = error else { return Self::many(Vec::new(), None) };
         Self::with_help(with_causes(&error), advice::of(&error))
@@ -90,7 +94,7 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
 
 /// A message and its advice, which may repeat what a file or its name says: neither steers the terminal, nor begins a line that
 /// looks like one of the program's own.
-pub(crate) fn diagnostic(message: &str, help: Option<String>) -> MietteDiagnostic {
+pub(crate) fn miette_diagnostic(message: &str, help: Option<String>) -> MietteDiagnostic {
     let mut diagnostic = MietteDiagnostic::new(escaped(message.trim_end()));
     diagnostic.help = help.map(|help| escaped(help.trim_end()));
     diagnostic

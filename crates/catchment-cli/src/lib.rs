@@ -51,7 +51,7 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
 
 /// What is said of a command line that cannot be read, as it reaches a terminal; nothing of one that can, or that asks for help.
 /// The first word is the name of the program.
-pub fn complaint(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
+pub fn usage_error(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
     let mut usage = Cli::try_parse_from(words).err().filter(clap::Error::use_stderr)?;
     usage::advise(&mut usage);
     usage::silence(&mut usage);

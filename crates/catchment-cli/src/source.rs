@@ -1,7 +1,7 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
-use crate::failure::{Failure, diagnostic};
-use catchment::design::{Finding, Findings, SourceText};
+use crate::failure::{Failure, miette_diagnostic};
+use catchment::design::{Diagnostic, Diagnostics, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;
 use catchment::terminal::{shown, steers};
@@ -31,30 +31,30 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
     })
 }
 
-/// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
+/// The diagnostic as a report with the lines it is about. Where those are too long to show (a mesh written
 /// on one line), it says their numbers instead.
-fn report(source: Option<&SourceText>, finding: Finding) -> Report {
-    let mut diagnostic = diagnostic(&finding.message, finding.help);
-    let Some(source) = source else { return Report::new(diagnostic) };
+fn report(source: Option<&SourceText>, diagnostic: Diagnostic) -> Report {
+    let mut labelled = miette_diagnostic(&diagnostic.message, diagnostic.help);
+    let Some(source) = source else { return Report::new(labelled) };
     let name = shown(&source.path).to_string();
-    let Some(span) = finding.span else {
+    let Some(span) = diagnostic.span else {
         // What is said of an option is not said of the file.
-        if !diagnostic.message.contains(&name) && !diagnostic.message.starts_with("--") {
-            diagnostic.message = format!("{name}: {}", diagnostic.message);
+        if !labelled.message.contains(&name) && !labelled.message.starts_with("--") {
+            labelled.message = format!("{name}: {}", labelled.message);
         }
-        return Report::new(diagnostic);
+        return Report::new(labelled);
     };
     let span = first_line(&source.text, span);
     let lines = around(&source.text, span.start);
     if source.text[lines.clone()].lines().any(|line| line.len() > WIDEST) {
         let (line, column) = source.line_column(span.start);
-        diagnostic.message = format!("{name}, line {line}, column {column}: {}", diagnostic.message);
-        return Report::new(diagnostic);
+        labelled.message = format!("{name}, line {line}, column {column}: {}", labelled.message);
+        return Report::new(labelled);
     }
     let label = span.start - lines.start..span.end - lines.start;
-    diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, label)]);
+    labelled.labels = Some(vec![LabeledSpan::new_with_span(None, label)]);
     let before = source.line_column(lines.start).0 - 1;
-    Report::new(diagnostic).with_source_code(Excerpt { name, text: printable(&source.text[lines]), before })
+    Report::new(labelled).with_source_code(Excerpt { name, text: printable(&source.text[lines]), before })
 }
 
 /// Longest line that is shown, in bytes.
@@ -118,10 +118,10 @@ fn printable(text: &str) -> String {
 
 impl Failure {
     /// Everything that is wrong with a text, each in its place.
-    pub(crate) fn of_findings(findings: Findings) -> Self {
-        let Findings { source, mut list, omitted } = findings;
+    pub(crate) fn of_diagnostics(diagnostics: Diagnostics) -> Self {
+        let Diagnostics { source, mut list, omitted } = diagnostics;
         let count = list.len() + omitted;
-        list.truncate(Findings::MOST);
+        list.truncate(Diagnostics::MOST);
         let part = if count > list.len() {
             format!(", of which the first {} are shown", list.len())
         } else {
@@ -129,7 +129,7 @@ impl Failure {
         };
         let place = source.as_ref().map(|source| shown(&source.path));
         let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{part}"));
-        Self::many(list.into_iter().map(|finding| report(source.as_ref(), finding)).collect(), closing)
+        Self::many(list.into_iter().map(|diagnostic| report(source.as_ref(), diagnostic)).collect(), closing)
     }
 }
 
@@ -138,7 +138,7 @@ impl Failure {
     pub(crate) fn of_problem(error: ProblemError) -> Self {
         match error {
             ProblemError::Load(error) => Self::with_help(error.to_string(), None),
-            ProblemError::Findings(findings) => Self::of_findings(findings),
+            ProblemError::Diagnostics(diagnostics) => Self::of_diagnostics(diagnostics),
         }
     }
 }
@@ -148,8 +148,8 @@ mod tests {
     use super::*;
 
     fn shown(text: &str, span: Range<usize>) -> String {
-        let finding = Finding { message: "wrong".to_owned(), help: None, span: Some(span) };
-        format!("{:?}", report(Some(&SourceText::new("d.toml", text)), finding))
+        let diagnostic = Diagnostic { message: "wrong".to_owned(), help: None, span: Some(span) };
+        format!("{:?}", report(Some(&SourceText::new("d.toml", text)), diagnostic))
     }
 
     #[test]
@@ -177,11 +177,12 @@ mod tests {
 
     #[test]
     fn the_first_findings_are_shown_and_all_are_counted() {
-        let finding = |k: usize| Finding { message: format!("wrong {k}"), help: None, span: Some(0..1) };
-        let list = (0..50).map(finding).collect();
+        let diagnostic =
+            |k: usize| Diagnostic { message: format!("wrong {k}"), help: None, span: Some(0..1) };
+        let list = (0..50).map(diagnostic).collect();
         let source = Some(SourceText::new("d.toml", "a = 1\n"));
-        let failure = Failure::of_findings(Findings { source, list, omitted: 7 });
-        assert_eq!(failure.text().lines().count(), Findings::MOST);
+        let failure = Failure::of_diagnostics(Diagnostics { source, list, omitted: 7 });
+        assert_eq!(failure.text().lines().count(), Diagnostics::MOST);
         assert!(format!("{failure:?}").contains("57 problems in d.toml, of which the first 20 are shown"));
     }
 

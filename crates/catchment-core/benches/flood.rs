@@ -217,8 +217,8 @@ fn scikit_image(landscape: &Landscape, smooth: Smooth) -> Result<String, String>
         .output()
         .map_err(|e| format!("{}: {e}", python.display()))?;
     if !output.status.success() {
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        return Err(complaint.lines().last().unwrap_or("it failed").to_owned());
+        let defect = String::from_utf8_lossy(&output.stderr);
+        return Err(defect.lines().last().unwrap_or("it failed").to_owned());
     }
     String::from_utf8(output.stdout).map_err(|e| e.to_string())
 }

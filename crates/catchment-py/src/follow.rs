@@ -28,7 +28,8 @@ impl Problem {
     /// A pose error as a person writes it, in D and radians.
     fn pose(&self, py: Python<'_>, text: &str) -> PyResult<[f64; 5]> {
         let read = parse_pose(text, self.inner.design());
-        read.map(PoseError::to_array).map_err(|findings| Refusal::of_argument("pose", findings).raise(py))
+        read.map(PoseError::to_array)
+            .map_err(|diagnostics| Refusal::of_argument("pose", diagnostics).raise(py))
     }
 
     /// Where one pose ends: its outcome, the last pose error, z of the COR there, and what touches.

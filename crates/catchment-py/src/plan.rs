@@ -56,7 +56,7 @@ impl Expected {
             (None, Some(text)) => ("error_uniform", Distribution::uniform(text, design)),
             (None, None) => return Ok(None),
         };
-        read.map(Some).map_err(|findings| Refusal::of_argument(name, findings))
+        read.map(Some).map_err(|diagnostics| Refusal::of_argument(name, diagnostics))
     }
 }
 

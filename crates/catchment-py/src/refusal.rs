@@ -1,7 +1,7 @@
 //! Why something is refused, as an exception of the package: facts with their places and advice.
 
 use catchment::advice::{Advice, Advised};
-use catchment::design::{Finding, Findings};
+use catchment::design::{Diagnostic, Diagnostics};
 use catchment::exec::Cancelled;
 use catchment::landscape::ResolutionError;
 use catchment::method::{MethodError, NotApplicable};
@@ -16,11 +16,11 @@ use std::error::Error;
 #[derive(Debug)]
 pub(crate) enum Refusal {
     /// What the design says.
-    Design(Findings),
+    Design(Diagnostics),
     /// The geometry that it describes.
-    Geometry(Findings),
+    Geometry(Diagnostics),
     /// An argument of a call.
-    Argument(Findings),
+    Argument(Diagnostics),
     /// It does not fit into memory, with what helps.
     Memory(String),
     /// There is no answer.
@@ -32,64 +32,64 @@ pub(crate) enum Refusal {
 impl Refusal {
     /// An argument is wrong.
     pub(crate) fn argument(name: &str, message: impl ToString) -> Self {
-        let list = vec![Finding::new(format!("{name}: {}", message.to_string()), None)];
-        Self::Argument(Findings { source: None, list, omitted: 0 })
+        let list = vec![Diagnostic::new(format!("{name}: {}", message.to_string()), None)];
+        Self::Argument(Diagnostics { source: None, list, omitted: 0 })
     }
 
     /// Everything that is wrong with the text of an argument.
-    pub(crate) fn of_argument(name: &str, mut findings: Findings) -> Self {
-        for finding in &mut findings.list {
-            finding.message = format!("{name}: {}", finding.message);
+    pub(crate) fn of_argument(name: &str, mut diagnostics: Diagnostics) -> Self {
+        for diagnostic in &mut diagnostics.list {
+            diagnostic.message = format!("{name}: {}", diagnostic.message);
         }
-        Self::Argument(findings)
+        Self::Argument(diagnostics)
     }
 
     /// The problem was read and is not built.
     pub(crate) fn of_geometry(error: ProblemError) -> Self {
         match error {
-            ProblemError::Findings(findings) => Self::Geometry(findings),
+            ProblemError::Diagnostics(diagnostics) => Self::Geometry(diagnostics),
             error @ ProblemError::Load(_) => error.into(),
         }
     }
 
     /// As the exception.
     pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
-        let (class, findings, message) = match self {
+        let (class, diagnostics, message) = match self {
             Self::Cancelled => return PyKeyboardInterrupt::new_err(()),
-            Self::Design(findings) => ("DesignError", Some(findings), String::new()),
-            Self::Geometry(findings) => ("GeometryError", Some(findings), String::new()),
-            Self::Argument(findings) => ("ArgumentError", Some(findings), String::new()),
+            Self::Design(diagnostics) => ("DesignError", Some(diagnostics), String::new()),
+            Self::Geometry(diagnostics) => ("GeometryError", Some(diagnostics), String::new()),
+            Self::Argument(diagnostics) => ("ArgumentError", Some(diagnostics), String::new()),
             Self::Memory(message) => ("MemoryLimitError", None, message),
             Self::Compute(message) => ("ComputeError", None, message),
         };
-        match exception(py, class, findings, message) {
+        match exception(py, class, diagnostics, message) {
             Ok(exception) => PyErr::from_value(exception),
             Err(error) => error,
         }
     }
 }
 
-/// `class(message, findings, omitted, path)` of `catchment._errors`; a finding is `(message, advice, line, column)`.
+/// `class(message, diagnostics, omitted, path)` of `catchment._errors`; a finding is `(message, advice, line, column)`.
 fn exception<'py>(
     py: Python<'py>,
     class: &str,
-    findings: Option<Findings>,
+    diagnostics: Option<Diagnostics>,
     message: String,
 ) -> PyResult<Bound<'py, PyAny>> {
     let class = py.import("catchment._errors")?.getattr(class)?;
-    let Some(findings) = findings else { return class.call1((message,)) };
-    let message = findings.to_string();
-    let path = findings.path().map(|path| path.display().to_string());
-    let place = |finding: &Finding| {
-        let span = finding.span.as_ref()?;
-        Some(findings.source.as_ref()?.line_column(span.start))
+    let Some(diagnostics) = diagnostics else { return class.call1((message,)) };
+    let message = diagnostics.to_string();
+    let path = diagnostics.path().map(|path| path.display().to_string());
+    let place = |diagnostic: &Diagnostic| {
+        let span = diagnostic.span.as_ref()?;
+        Some(diagnostics.source.as_ref()?.line_column(span.start))
     };
-    let list: Vec<_> = findings
+    let list: Vec<_> = diagnostics
         .list
         .iter()
-        .map(|finding| (finding.message.clone(), finding.help.clone(), place(finding)))
+        .map(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone(), place(diagnostic)))
         .collect();
-    class.call1((message, list, findings.omitted, path))
+    class.call1((message, list, diagnostics.omitted, path))
 }
 
 impl<E: Error + 'static> From<E> for Refusal {
@@ -97,23 +97,23 @@ impl<E: Error + 'static> From<E> for Refusal {
         let mut error = Some(error);
         if let Some(problem) = taken::<_, ProblemError>(&mut error) {
             return match problem {
-                ProblemError::Findings(findings) => Self::Design(findings),
-                ProblemError::Load(error) => Self::Design(Findings {
+                ProblemError::Diagnostics(diagnostics) => Self::Design(diagnostics),
+                ProblemError::Load(error) => Self::Design(Diagnostics {
                     source: None,
-                    list: vec![Finding::new(error.to_string(), None)],
+                    list: vec![Diagnostic::new(error.to_string(), None)],
                     omitted: 0,
                 }),
             };
         }
-        if let Some(findings) = taken::<_, Findings>(&mut error) {
-            return Self::Argument(findings);
+        if let Some(diagnostics) = taken::<_, Diagnostics>(&mut error) {
+            return Self::Argument(diagnostics);
         }
         if taken::<_, Cancelled>(&mut error).is_some() {
             return Self::Cancelled;
         }
         if let Some(error) = taken::<_, RunError>(&mut error) {
             return match error {
-                RunError::NotHeld(findings) => Self::Geometry(findings),
+                RunError::NotHeld(diagnostics) => Self::Geometry(diagnostics),
                 RunError::NotApplicable(error) => Self::argument("method", error),
                 RunError::Resolution(error) => Self::argument("resolution", error),
                 RunError::Cancelled(_) => Self::Cancelled,

@@ -45,7 +45,7 @@ impl Problem {
             let problem = &self.inner;
             let sizes = |name: &str, text: &Option<String>| {
                 let read = text.as_ref().map(|text| parse_sizes(text, problem.design())).transpose();
-                read.map_err(|findings| Refusal::of_argument(name, findings))
+                read.map_err(|diagnostics| Refusal::of_argument(name, diagnostics))
             };
             let fixed = sizes("fix", &fix)?.unwrap_or_default();
             let proportions = sizes("proportions", &proportions)?;

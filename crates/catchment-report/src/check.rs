@@ -4,7 +4,7 @@ use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
-    ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
+    ConnectorSpec, Design, Diagnostic, Diagnostics, DrawnFrames, FileSpec, HalfSpec, OutlineSpec, OwnSpec,
 };
 use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
 use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
@@ -143,12 +143,12 @@ impl CheckReport {
     }
 
     /// Of everything that is wrong with a file.
-    pub fn bad(findings: &Findings) -> Self {
-        let source = findings.source.as_ref();
-        let problem = |finding: &Finding| ProblemReport {
-            message: finding.message.clone(),
-            help: finding.help.clone(),
-            place: finding.span.as_ref().zip(source).map(|(span, source)| {
+    pub fn bad(diagnostics: &Diagnostics) -> Self {
+        let source = diagnostics.source.as_ref();
+        let problem = |diagnostic: &Diagnostic| ProblemReport {
+            message: diagnostic.message.clone(),
+            help: diagnostic.help.clone(),
+            place: diagnostic.span.as_ref().zip(source).map(|(span, source)| {
                 let (line, column) = source.line_column(span.start);
                 Place { line, column, bytes: [span.start, span.end] }
             }),
@@ -159,8 +159,8 @@ impl CheckReport {
             design: None,
             drawing: None,
             ungendered: None,
-            problems: findings.list.iter().map(problem).collect(),
-            omitted: findings.omitted,
+            problems: diagnostics.list.iter().map(problem).collect(),
+            omitted: diagnostics.omitted,
         };
         Self::of(body, Vec::new(), None)
     }
@@ -258,8 +258,10 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         places("centre of rotation", fixed.center_of_rotation, moving.center_of_rotation);
         let along = format!("{} and {} as the fixed half is drawn", direction(fixed.x), direction(fixed.y));
         row("errors in x and y", &format!("along {along}"));
-        let is_assembled =
-            matches!(&design.connector, ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. }));
+        let is_assembled = matches!(
+            &design.connector,
+            ConnectorSpec::Own(OwnSpec { drawn: DrawnFrames::Assembled { .. }, .. })
+        );
         let moved = apart.filter(|apart| is_assembled && rounded(apart.abs()) > 0.0);
         if let Some(apart) = moved {
             let way = if apart > 0.0 { "apart" } else { "into each other" };
@@ -418,8 +420,9 @@ mod tests {
     #[test]
     fn problems_have_their_places() {
         let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\nkey = 4\n"));
-        let list = vec![Finding::new("no such key", None).at(Some(18..19)), Finding::new("empty", None)];
-        let report = CheckReport::bad(&Findings { source, list, omitted: 2 });
+        let list =
+            vec![Diagnostic::new("no such key", None).at(Some(18..19)), Diagnostic::new("empty", None)];
+        let report = CheckReport::bad(&Diagnostics { source, list, omitted: 2 });
         let text = report.table();
         assert!(text.contains("     3       7  no such key\n") && text.ends_with("  and 2 more\n"), "{text}");
         assert_eq!(report.records()[2], ["", "", "empty", ""]);

@@ -29,7 +29,9 @@
 //! has its default; a key without a default is required. A getter also returns its default, or the end of its
 //! range, if the value is wrong: the error is then on the list, and [`Form::read`] returns the list.
 
-use catchment::design::{Complaint, Finding, Findings, LengthUnit, Quantity, SourceText, Unit, nearest};
+use catchment::design::{
+    DesignDefect, Diagnostic, Diagnostics, LengthUnit, Quantity, QuantityUnit, SourceText, nearest,
+};
 use catchment::suggest::{odd, value_help};
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -43,7 +45,7 @@ const MOST: usize = 20;
 /// Collects the problems of one text.
 #[derive(Debug)]
 pub struct Form<'t> {
-    found: Vec<Finding>,
+    found: Vec<Diagnostic>,
     /// Where the text is no TOML: what is wrong there is an echo, and what is missing may have been swallowed.
     broken: Vec<Range<usize>>,
     text: &'t str,
@@ -106,12 +108,12 @@ impl Form<'_> {
     pub fn read<T>(
         source: SourceText,
         fill: impl FnOnce(&mut Form<'_>, &Section<'_>) -> T,
-    ) -> Result<T, Findings> {
+    ) -> Result<T, Diagnostics> {
         let (document, syntax) = DeTable::parse_recoverable(&source.text);
         let broken = syntax.iter().map(|e| e.span().unwrap_or_default()).collect();
         let refused = |error: toml::de::Error| {
             let help = value_help(&source.text, error.span().unwrap_or_default().start);
-            Finding::new(error.message(), help).at(error.span())
+            Diagnostic::new(error.message(), help).at(error.span())
         };
         let found = syntax.into_iter().map(refused).collect();
         let mut form = Form { found, broken, text: &source.text };
@@ -126,11 +128,11 @@ impl Form<'_> {
         if list.is_empty() {
             return Ok(value);
         }
-        list.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
+        list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         let omitted = list.len().saturating_sub(MOST);
         list.truncate(MOST);
         drop(document);
-        Err(Findings { source: Some(source), list, omitted })
+        Err(Diagnostics { source: Some(source), list, omitted })
     }
 }
 
@@ -138,7 +140,7 @@ impl<'t> Form<'t> {
     /// Notes a problem at a place of the text.
     pub fn refuse(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(Finding::new(message, help.map(str::to_owned)).at(Some(span)));
+            self.found.push(Diagnostic::new(message, help.map(str::to_owned)).at(Some(span)));
         }
     }
 
@@ -251,7 +253,7 @@ impl<'t> Form<'t> {
         default: Option<f64>,
     ) -> f64 {
         let bare = |q: Quantity| match q.unit {
-            Unit::Bare => Ok(q.value),
+            QuantityUnit::Bare => Ok(q.value),
             _ => Err(format!("`{q}` is a number with a unit where a bare one is wanted")),
         };
         self.quantity(section, key, "a number", "", range, default, bare)
@@ -307,7 +309,7 @@ impl<'t> Form<'t> {
         let text = text.replace('_', "");
         let parsed = text.parse::<Quantity>();
         match parsed
-            .map_err(|error: Complaint| told(&error, error.help()))
+            .map_err(|error: DesignDefect| told(&error, error.help()))
             .and_then(|q| meaning(q).map_err(|message| (message, None)))
         {
             Ok(number) => Some(number),
@@ -417,10 +419,12 @@ fn told(error: &impl Display, help: Option<String>) -> (String, Option<String>) 
 /// A length of the outside world.
 fn millimetres(quantity: Quantity) -> Result<f64, String> {
     match quantity.unit {
-        Unit::Bare => Ok(quantity.value),
-        Unit::Length(unit) => Ok(quantity.value * (unit.metres() / LengthUnit::Mm.metres())),
-        Unit::D => Err(format!("`{quantity}` is in D, where a length in mm is wanted")),
-        Unit::Degrees | Unit::Radians => Err(format!("`{quantity}` is an angle where a length is wanted")),
+        QuantityUnit::Bare => Ok(quantity.value),
+        QuantityUnit::Length(unit) => Ok(quantity.value * (unit.metres() / LengthUnit::Mm.metres())),
+        QuantityUnit::D => Err(format!("`{quantity}` is in D, where a length in mm is wanted")),
+        QuantityUnit::Degrees | QuantityUnit::Radians => {
+            Err(format!("`{quantity}` is an angle where a length is wanted"))
+        }
     }
 }
 

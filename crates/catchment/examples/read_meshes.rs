@@ -8,7 +8,7 @@
 //! With `SIMPLIFY=0.001` in the environment, simplified to that part of its width; with `REPAIR=0`, taken as they are.
 
 use catchment::connector::{Connector, FileBytes, GeometryDefect, HalfSource, MeshProblem};
-use catchment::design::{FileSpec, Treatment};
+use catchment::design::{FileSpec, MeshPreparation};
 use catchment::pose::Mount;
 use std::env;
 use std::error::Error;
@@ -17,8 +17,11 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let simplify = env::var("SIMPLIFY").ok().map(|text| text.parse()).transpose()?;
-    let treatment =
-        Treatment { repair: env::var("REPAIR").as_deref() != Ok("0"), simplify, ..Treatment::DEFAULT };
+    let treatment = MeshPreparation {
+        repair: env::var("REPAIR").as_deref() != Ok("0"),
+        simplify,
+        ..MeshPreparation::DEFAULT
+    };
     let other = HalfSource::Family(catchment::design::FamilySpec::new(catchment::design::Family::Pyramid));
     let mut out = io::stdout().lock();
     for path in env::args().skip(1) {

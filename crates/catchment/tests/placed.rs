@@ -1,6 +1,6 @@
 //! Halves as their files have them: whichever way they are drawn, the same problem; and where they are not what they are said to be, why.
 
-use catchment::design::{ConnectorSpec, Drawn, HalfSpec, OwnSpec, Placement, SourceText};
+use catchment::design::{ConnectorSpec, DrawnFrames, HalfSpec, OwnSpec, PartPlacement, SourceText};
 use catchment::pose::CorPose;
 use catchment::prelude::*;
 use catchment::report::{CheckReport, Report};
@@ -53,7 +53,7 @@ fn assembled(world: &DAffine3, apart: f64) -> OwnSpec {
     let approach = world.transform_vector3(DVec3::NEG_Z).to_array();
     OwnSpec {
         face_height: None,
-        drawn: Drawn::Assembled { approach, face_center: None },
+        drawn: DrawnFrames::Assembled { approach, face_center: None },
         ..OwnSpec::new(
             0.0,
             moved(&fixed, &(*world * face)),
@@ -108,7 +108,7 @@ proptest! {
     #[test]
     fn a_placed_half_is_where_it_was(a in turn(), s in prop::array::uniform3(-20.0..20.0f64)) {
         let place = affine(a, s);
-        let placement = Placement { rotate: a, translate: s, ..Placement::NONE };
+        let placement = PartPlacement { rotate: a, translate: s, ..PartPlacement::NONE };
         let [fixed, moving] = drawn();
         let away = place.inverse();
         let own = OwnSpec {
@@ -180,7 +180,7 @@ fn an_assembly_drawn_askew_settles() {
     let own = |settle: bool| {
         let straight = assembled(&DAffine3::IDENTITY, 0.0);
         let HalfSpec::Pieces(pieces) = &straight.moving else { panic!("pieces") };
-        let drawn = Drawn::Assembled { approach: [0.0, 0.0, -1.0], face_center: Some([0.0; 3]) };
+        let drawn = DrawnFrames::Assembled { approach: [0.0, 0.0, -1.0], face_center: Some([0.0; 3]) };
         OwnSpec { settle, drawn, moving: moved(pieces, &askew), ..straight }
     };
     let refused = problem(own(false)).unwrap().checked().unwrap_err().to_string();
@@ -227,9 +227,9 @@ fn whatever_places_a_half_changes_the_digest() {
         digest(&|own| own.moving_placement.facing = down),
         digest(&|own| own.fixed_placement.rotate[0] = 1.0),
         digest(&|own| own.fixed_placement.translate[0] = 1.0),
-        digest(&|own| own.drawn = Drawn::Assembled { approach: down, face_center: None }),
-        digest(&|own| own.drawn = Drawn::Assembled { approach: [1.0, 0.0, 0.0], face_center: None }),
-        digest(&|own| own.drawn = Drawn::Assembled { approach: down, face_center: Some([0.0; 3]) }),
+        digest(&|own| own.drawn = DrawnFrames::Assembled { approach: down, face_center: None }),
+        digest(&|own| own.drawn = DrawnFrames::Assembled { approach: [1.0, 0.0, 0.0], face_center: None }),
+        digest(&|own| own.drawn = DrawnFrames::Assembled { approach: down, face_center: Some([0.0; 3]) }),
     ];
     let all = digests.len();
     digests.sort_unstable();

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::design::{Finding, SourceText};
+use catchment::design::{Diagnostic, SourceText};
 use catchment::exec::OutOfBudget;
 use catchment::prelude::*;
 use catchment::report::SweepReport;
@@ -184,8 +184,8 @@ fn what_cannot_be_built_is_told_and_stops_nothing() {
     assert!(sweep.designs[0].found.figures().is_some());
     let DesignResult::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
     let alone = Draft::read(SourceText::new("d.toml", text.replace("pyramid", "cone")));
-    let Err(ProblemError::Findings(findings)) = alone.unwrap().build() else { panic!("it builds") };
-    let Finding { message, help, .. } = &findings.list[0];
+    let Err(ProblemError::Diagnostics(diagnostics)) = alone.unwrap().build() else { panic!("it builds") };
+    let Diagnostic { message, help, .. } = &diagnostics.list[0];
     assert_eq!(*reason, format!("{message}; {}", help.as_ref().unwrap()), "what is wrong, and what helps");
     assert_eq!((sweep.largest, sweep.smallest), (Some(0), Some(0)));
     let report = SweepReport::new(&base, sweep.clone(), Vec::new(), None);

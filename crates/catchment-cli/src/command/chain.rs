@@ -84,7 +84,7 @@ fn angles(text: &str) -> Result<Angles, String> {
     /// The largest that a chain file takes, in radians.
     const LARGEST: f64 = 0.5;
     let angle = |text: &str| {
-        let quantity: Quantity = text.trim().parse().map_err(|complaint| with_advice(&complaint))?;
+        let quantity: Quantity = text.trim().parse().map_err(|defect| with_advice(&defect))?;
         let angle = quantity.angle_rad().map_err(|error| error.to_string())?;
         let shown = text.trim();
         (0.0..=LARGEST)

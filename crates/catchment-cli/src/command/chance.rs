@@ -10,7 +10,7 @@ use crate::output::to_stderr;
 use crate::result_args::{Draw, ResultArgs, study};
 use crate::setting::number;
 use crate::source::read_table;
-use catchment::design::{Design, Findings, SourceText, load, parse_dofs};
+use catchment::design::{Design, Diagnostics, SourceText, load, parse_dofs};
 use catchment::document::Subject;
 use catchment::pose::Dof;
 use catchment::poses::{Circumstance, Dynamics, OffsetsAt, PoseTable, parse_draw, parse_pose, read_dynamics};
@@ -140,8 +140,8 @@ impl ChanceArgs {
         };
         let mut drawn: Vec<Circumstance> = Vec::new();
         for text in &self.draw {
-            let (of, law) =
-                parse_draw(text, design).map_err(|findings| Failure::of_option("--draw", text, findings))?;
+            let (of, law) = parse_draw(text, design)
+                .map_err(|diagnostics| Failure::of_option("--draw", text, diagnostics))?;
             if drawn.contains(&of) {
                 let message = format!("--draw says twice how {} is drawn", of.name());
                 return Err(Failure::with_help(message, Some("name it once".to_owned())));
@@ -160,14 +160,14 @@ impl ChanceArgs {
         let design = problem.design();
         let mut asked = Question { times: self.times.clone(), ..Question::default() };
         for text in &self.pose {
-            let pose =
-                parse_pose(text, design).map_err(|findings| Failure::of_option("--pose", text, findings))?;
+            let pose = parse_pose(text, design)
+                .map_err(|diagnostics| Failure::of_option("--pose", text, diagnostics))?;
             asked.poses.push(pose);
         }
         if let Some(path) = &self.poses {
             let source = read_table(path)?;
             let table = PoseTable::parse(&source.text, design, OffsetsAt::Face)
-                .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+                .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
             asked.poses.extend_from_slice(table.errors());
         }
         asked.errors = self.errors.spread(design)?;
@@ -180,7 +180,7 @@ impl ChanceArgs {
 
 /// Two different errors.
 fn two(text: &str) -> Result<[Dof; 2], String> {
-    parse_dofs(text).map_err(|complaint| complaint.to_string())?;
+    parse_dofs(text).map_err(|defect| defect.to_string())?;
     let named: Result<Vec<Dof>, _> = text.split(',').map(|name| name.trim().parse::<Dof>()).collect();
     match named.map_err(|unknown| unknown.to_string())?[..] {
         [first, second] if first != second => Ok([first, second]),

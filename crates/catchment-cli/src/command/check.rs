@@ -38,7 +38,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
         match args.design.draft_on(&running.exec).and_then(|draft| draft.judged_on(&running.exec)) {
             Ok((problem, None)) => (problem.clone().checked(), Some(problem)),
             // Also of halves that are refused for their mated pose: a picture shows why.
-            Ok((problem, Some(findings))) => (Err(findings.into()), Some(problem)),
+            Ok((problem, Some(diagnostics))) => (Err(diagnostics.into()), Some(problem)),
             Err(error) => (Err(error), None),
         };
     running.exec.check()?;
@@ -49,9 +49,9 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     };
     match checked {
         Ok(problem) => output.finish(&CheckReport::good(&problem), picture),
-        Err(ProblemError::Findings(findings)) if args.result.is_json() => {
+        Err(ProblemError::Diagnostics(diagnostics)) if args.result.is_json() => {
             let output = if problem.is_some() { output } else { output.without_picture() };
-            output.finish(&CheckReport::bad(&findings), picture)?;
+            output.finish(&CheckReport::bad(&diagnostics), picture)?;
             Ok(ExitStatus::Failed)
         }
         Err(error) => {

@@ -6,7 +6,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::ResultArgs;
 use crate::source::read_table;
-use catchment::design::{Quantity, Unit};
+use catchment::design::{Quantity, QuantityUnit};
 use catchment::exec::Exec;
 use catchment::report::figure::ensure_fits;
 use catchment::report::{Body, csv};
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
 
 fn region(path: &Path, exec: &Exec) -> Result<Read, Failure> {
     read(read_table(path)?, exec).map_err(|error| match error {
-        ReadError::Findings(findings) => findings.into(),
+        ReadError::Diagnostics(diagnostics) => diagnostics.into(),
         ReadError::Problem(problem) => problem.into(),
         error => Failure::with_help(format!("{}: {error}", shown(path)), None),
     })
@@ -118,12 +118,12 @@ fn spread([from, to]: [f64; 2], count: u16) -> Vec<f64> {
 
 /// `5 deg`, `-20..20 deg`, `-0.3..0.3`.
 fn headings(text: &str) -> Result<[f64; 2], String> {
-    let angle = |part: &str, unit: Option<Unit>| -> Result<(f64, Unit), String> {
-        let mut quantity: Quantity = part.parse().map_err(|complaint| with_advice(&complaint))?;
-        if let (Unit::Bare, Some(unit)) = (quantity.unit, unit) {
+    let angle = |part: &str, unit: Option<QuantityUnit>| -> Result<(f64, QuantityUnit), String> {
+        let mut quantity: Quantity = part.parse().map_err(|defect| with_advice(&defect))?;
+        if let (QuantityUnit::Bare, Some(unit)) = (quantity.unit, unit) {
             quantity.unit = unit;
         }
-        let angle = quantity.angle_rad().map_err(|complaint| format!("{complaint}"))?;
+        let angle = quantity.angle_rad().map_err(|defect| format!("{defect}"))?;
         if angle.abs() > std::f64::consts::PI + 1e-9 {
             return Err("a heading is at most half a turn".to_owned());
         }

@@ -74,12 +74,13 @@ impl HoldArgs {
         let length = |option: &str, quantity: &Quantity| {
             quantity
                 .length_d(&design.scale())
-                .map_err(|complaint| Failure::with_help(format!("{option}: {complaint}"), complaint.help()))
+                .map_err(|defect| Failure::with_help(format!("{option}: {defect}"), defect.help()))
         };
         let pose = match &self.pose {
             None => None,
             Some(text) => Some(
-                parse_pose(text, design).map_err(|findings| Failure::of_option("--pose", text, findings))?,
+                parse_pose(text, design)
+                    .map_err(|diagnostics| Failure::of_option("--pose", text, diagnostics))?,
             ),
         };
         let play = self.play.as_ref().map(|play| length("--play", play)).transpose()?;

@@ -75,7 +75,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let feature_d = args
         .min_feature
         .length_d(&design.scale())
-        .map_err(|complaint| Failure::with_help(format!("--min-feature: {complaint}"), complaint.help()))?;
+        .map_err(|defect| Failure::with_help(format!("--min-feature: {defect}"), defect.help()))?;
     let running = args.exec.start()?;
     running.may_be_left();
     let exec = &running.exec;
@@ -139,7 +139,7 @@ fn wanted(path: &Path, design: &Design) -> Result<Wanted, Failure> {
 }
 
 fn angle(text: &str) -> Result<f64, String> {
-    quantity(text)?.angle_rad().map_err(|complaint| with_advice(&complaint))
+    quantity(text)?.angle_rad().map_err(|defect| with_advice(&defect))
 }
 
 /// Angles of a list or a range, in radians.

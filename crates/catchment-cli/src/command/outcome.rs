@@ -9,7 +9,7 @@ use crate::output::{OutputArgs, to_stderr, to_stdout};
 use crate::signals;
 use crate::source::read_table;
 use catchment::advice::Advice;
-use catchment::design::Findings;
+use catchment::design::Diagnostics;
 use catchment::method::Method;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let source = read_table(&args.poses)?;
     let table = PoseTable::parse(&source.text, problem.design(), args.offsets_at.into())
-        .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+        .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
     let running = args.exec.start()?;
     let needed = OutcomesReport::bytes(&table, args.json);
     running

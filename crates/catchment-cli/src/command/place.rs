@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
-use catchment::design::{Complaint, LengthUnit, Quantity, Scale, Unit, parse_dofs};
+use catchment::design::{DesignDefect, LengthScale, LengthUnit, Quantity, QuantityUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
@@ -279,12 +279,12 @@ fn refused(error: ProposalError) -> Failure {
 fn error_of(error: ProposalError) -> Failure {
     match error {
         // There is no design yet in which the key could be written.
-        ProposalError::Problem(ProblemError::Findings(mut findings)) => {
-            for finding in &mut findings.list {
-                finding.message =
-                    finding.message.replace(IN_THE_DESIGN, "give --simplify \"0.01 mm\", which");
+        ProposalError::Problem(ProblemError::Diagnostics(mut diagnostics)) => {
+            for diagnostic in &mut diagnostics.list {
+                diagnostic.message =
+                    diagnostic.message.replace(IN_THE_DESIGN, "give --simplify \"0.01 mm\", which");
             }
-            ProblemError::from(findings).into()
+            ProblemError::from(diagnostics).into()
         }
         ProposalError::Problem(problem) => problem.into(),
         other => other.into(),
@@ -335,13 +335,12 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
 
 /// How far a surface may move, in the unit of the files.
 fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
-    let scale = Scale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
-    let told = |complaint: Complaint| {
-        Failure::with_help(format!("--simplify {text:?}: {complaint}"), complaint.help())
-    };
+    let scale = LengthScale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
+    let told =
+        |defect: DesignDefect| Failure::with_help(format!("--simplify {text:?}: {defect}"), defect.help());
     let quantity: Quantity = text.parse().map_err(told)?;
     let help = || Some("say how far the surface may move, such as '0.01 mm'".to_owned());
-    if quantity.unit == Unit::D {
+    if quantity.unit == QuantityUnit::D {
         return Err(Failure::with_help(format!("--simplify {text:?}: D is not known yet"), help()));
     }
     let most = quantity.drawn_length_d(&scale).map_err(told)?;
@@ -353,7 +352,7 @@ fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
 }
 
 fn dofs(text: &str) -> Result<DofSet, String> {
-    parse_dofs(text).map_err(|complaint| complaint.to_string())
+    parse_dofs(text).map_err(|defect| defect.to_string())
 }
 
 #[cfg(test)]

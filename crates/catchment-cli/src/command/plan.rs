@@ -7,7 +7,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, warnings};
 use crate::setting::number;
-use catchment::design::Findings;
+use catchment::design::Diagnostics;
 use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
@@ -201,8 +201,9 @@ impl PatternArgs {
                 let lever = needed("--lever", &self.lever, why)?;
                 let pitch =
                     needed("--pitch", &self.pitch, "angles of the joint, such as \"0..45:2.25 deg\"")?;
-                let told =
-                    |option: &str, text: &str, refusal: Findings| Failure::of_option(option, text, refusal);
+                let told = |option: &str, text: &str, refusal: Diagnostics| {
+                    Failure::of_option(option, text, refusal)
+                };
                 Ok(Pattern::Arc {
                     lever: parse_length(&lever, design)
                         .map_err(|refusal| told("--lever", &lever, refusal))?,

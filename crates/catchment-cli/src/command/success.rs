@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
 use crate::source::read_table;
-use catchment::design::{Design, Findings};
+use catchment::design::{Design, Diagnostics};
 use catchment::poses::{Distribution, Robot, Spread};
 use catchment::problem::Problem;
 use catchment::report::figure;
@@ -107,7 +107,7 @@ impl SuccessArgs {
 
 impl ExpectedArgs {
     fn robots(&self, problem: &Problem) -> Result<Vec<Robot>, Failure> {
-        type Read = fn(&str, &Design) -> Result<Distribution, Findings>;
+        type Read = fn(&str, &Design) -> Result<Distribution, Diagnostics>;
         let design = problem.design();
         if let Some(path) = &self.robots {
             return robots_of(path, design);

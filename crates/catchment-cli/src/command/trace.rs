@@ -70,7 +70,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let design = problem.design();
     let error = parse_pose(&args.pose, design)
-        .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
+        .map_err(|diagnostics| Failure::of_option("--pose", &args.pose, diagnostics))?;
     match args.method {
         By::Kinematic => {
             if let Some(change) = args.drop.changes().first() {

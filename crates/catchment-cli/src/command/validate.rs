@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::result_args::{ResultArgs, warnings};
 use crate::setting::number;
 use crate::source::read_table;
-use catchment::design::Findings;
+use catchment::design::Diagnostics;
 use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::PoseError;
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     };
     let source = read_table(&args.plan)?;
     let table = TriedTable::parse(&source.text, problem.design(), args.offsets_at.into())
-        .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+        .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
     let validation = judge(&problem, &table.rows, &settings, &running.exec)?;
     let validation = Validation { offsets_at: table.offsets_at, ..validation };
     let slices = if output.wants_picture() {

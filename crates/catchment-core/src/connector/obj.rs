@@ -12,15 +12,15 @@
 use super::mesh::{self, MeshProblem, Triangle, cut};
 use super::source::{FileBytes, Held};
 use crate::budget::Budget;
-use crate::design::Treatment;
+use crate::design::MeshPreparation;
 use glam::DVec3;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
     parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 
-fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], treatment: MeshPreparation) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let mut vertices: Vec<DVec3> = Vec::new();
     let mut budget = Budget::new(mesh::vertex_limit(treatment));
     let mut triangles = mesh::Triangles::new(treatment);
@@ -86,7 +86,7 @@ mod tests {
                         vn 0 0 1\nusemtl red\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\ng back\nf -8 -4 -1 -5\n";
 
     fn read(text: &str) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
-        let as_it_is = Treatment::AS_IT_IS;
+        let as_it_is = MeshPreparation::AS_IT_IS;
         let held = super::read(&FileBytes::whole(text.as_bytes().to_vec()), as_it_is)?;
         mesh::half(held.bodies, 0.5, as_it_is).map(|mut ready| ready.half.surfaces.swap_remove(0))
     }

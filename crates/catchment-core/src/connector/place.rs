@@ -7,7 +7,7 @@
 //!
 //! Turns by right angles are exact: an upright wall stays upright.
 
-use crate::design::{Drawn, OwnSpec, PartSpec, Placement};
+use crate::design::{DrawnFrames, OwnSpec, PartPlacement, PartSpec};
 use crate::pose::Mount;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -19,13 +19,13 @@ const RIGHT: f64 = 1e-12;
 pub(super) fn frames(own: &OwnSpec, mount: Mount) -> [DAffine3; 2] {
     let [fixed, moving] = [&own.fixed_placement, &own.moving_placement].map(placed);
     match own.drawn {
-        Drawn::Facing => {
+        DrawnFrames::Facing => {
             let to_face = to_origin(DVec3::new(0.0, 0.0, own.face_height.unwrap_or_default()));
             let turned =
                 DMat3::from_cols(mount.apply(DVec3::X), mount.apply(DVec3::Y), mount.apply(DVec3::Z));
             [to_face * fixed, DAffine3::from_mat3(turned) * to_face * moving]
         }
-        Drawn::Assembled { approach, face_center } => {
+        DrawnFrames::Assembled { approach, face_center } => {
             let down = DAffine3::from_mat3(turn_between(DVec3::from_array(approach), DVec3::NEG_Z));
             let to_face = to_origin(face_center.map_or(DVec3::ZERO, DVec3::from_array));
             [down * to_face * fixed, down * to_face * moving]
@@ -48,8 +48,8 @@ fn to_origin(point: DVec3) -> DAffine3 {
     DAffine3::from_translation(-point)
 }
 
-fn placed(placement: &Placement) -> DAffine3 {
-    let Placement { facing, rotate, translate } = *placement;
+fn placed(placement: &PartPlacement) -> DAffine3 {
+    let PartPlacement { facing, rotate, translate } = *placement;
     let turn = turned(rotate) * turn_between(DVec3::from_array(facing), DVec3::Z);
     DAffine3 { matrix3: turn, translation: DVec3::from_array(translate) }
 }
@@ -76,7 +76,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::FRAC_PI_2;
 
-    fn own(drawn: Drawn, fixed_placement: Placement, moving_placement: Placement) -> OwnSpec {
+    fn own(drawn: DrawnFrames, fixed_placement: PartPlacement, moving_placement: PartPlacement) -> OwnSpec {
         let pieces = || HalfSpec::Pieces(Vec::new());
         OwnSpec { drawn, fixed_placement, moving_placement, ..OwnSpec::new(0.0, pieces(), pieces()) }
     }
@@ -88,8 +88,8 @@ mod tests {
             let facing = DVec3::from_array(v);
             prop_assume!(facing.length() > 0.1);
             let facing = facing.normalize();
-            let placement = Placement { facing: facing.to_array(), rotate: [0.0, 0.0, z], translate: t };
-            let [fixed, _] = frames(&own(Drawn::Facing, placement, Placement::NONE), Mount::X);
+            let placement = PartPlacement { facing: facing.to_array(), rotate: [0.0, 0.0, z], translate: t };
+            let [fixed, _] = frames(&own(DrawnFrames::Facing, placement, PartPlacement::NONE), Mount::X);
             prop_assert!((fixed.matrix3 * fixed.matrix3.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-12));
             prop_assert!((fixed.matrix3.determinant() - 1.0).abs() < 1e-12);
             prop_assert!(fixed.transform_vector3(facing).abs_diff_eq(DVec3::Z, 1e-12));
@@ -102,8 +102,8 @@ mod tests {
             let approach = DVec3::from_array(v);
             prop_assume!(approach.length() > 0.1);
             let approach = approach.normalize().to_array();
-            let drawn = Drawn::Assembled { approach, face_center: Some(c) };
-            let [fixed, moving] = frames(&own(drawn, Placement::NONE, Placement::NONE), Mount::Y);
+            let drawn = DrawnFrames::Assembled { approach, face_center: Some(c) };
+            let [fixed, moving] = frames(&own(drawn, PartPlacement::NONE, PartPlacement::NONE), Mount::Y);
             prop_assert_eq!(fixed, moving);
             prop_assert!(fixed.transform_vector3(DVec3::from_array(approach)).abs_diff_eq(DVec3::NEG_Z, 1e-12));
             prop_assert!(fixed.transform_point3(DVec3::from_array(c)).length() < 1e-12);
@@ -118,7 +118,7 @@ mod tests {
             assert_eq!(turn * from, to, "{from} {to}");
             assert!(turn.to_cols_array().iter().all(|c| [-1.0, 0.0, 1.0].contains(c)), "{from} {to}");
         }
-        let placement = Placement { rotate: [FRAC_PI_2, 0.0, -FRAC_PI_2], ..Placement::NONE };
+        let placement = PartPlacement { rotate: [FRAC_PI_2, 0.0, -FRAC_PI_2], ..PartPlacement::NONE };
         let turn = placed(&placement);
         // Turned about x first: y becomes z; then about z.
         assert_eq!(turn.transform_vector3(DVec3::Y), DVec3::Z);
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn facing_down_is_a_half_turn_about_x() {
-        let turn = placed(&Placement { facing: [0.0, 0.0, -1.0], ..Placement::NONE });
+        let turn = placed(&PartPlacement { facing: [0.0, 0.0, -1.0], ..PartPlacement::NONE });
         assert_eq!(turn.transform_point3(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(1.0, -2.0, -3.0));
     }
 }

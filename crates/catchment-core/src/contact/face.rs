@@ -17,7 +17,7 @@
 use super::Pair;
 use super::mated::{CONTACT_TOLERANCE, MatedProblem};
 use crate::connector::{Connector, Half};
-use crate::design::{Alignment, ConnectorSpec, Drawn, OwnSpec};
+use crate::design::{Alignment, ConnectorSpec, DrawnFrames, OwnSpec};
 use crate::pose::{DofSet, Mount};
 use glam::{DVec2, DVec3};
 
@@ -26,7 +26,7 @@ pub(crate) const MOST_APART: f64 = 0.05;
 
 /// What speaks against halves that are drawn docked: that they are not.
 pub fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProblem> {
-    let ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. }) = spec else { return None };
+    let ConnectorSpec::Own(OwnSpec { drawn: DrawnFrames::Assembled { .. }, .. }) = spec else { return None };
     let gap = connector.origin.apart?;
     if gap > MOST_APART {
         Some(MatedProblem::DrawnApart { gap })
@@ -46,20 +46,20 @@ pub fn found(connector: Connector, own: &OwnSpec) -> Connector {
     if !lift.is_finite() {
         return connector;
     }
-    let given = matches!(own.drawn, Drawn::Assembled { face_center: Some(_), .. });
+    let given = matches!(own.drawn, DrawnFrames::Assembled { face_center: Some(_), .. });
     let center = if given { DVec3::ZERO } else { center(&connector, own.drawn, lift) };
     connector.moved(-center, DVec3::new(0.0, 0.0, lift) - center, -lift)
 }
 
 /// The face centre with the moving half lifted by `lift`.
-fn center(connector: &Connector, drawn: Drawn, lift: f64) -> DVec3 {
+fn center(connector: &Connector, drawn: DrawnFrames, lift: f64) -> DVec3 {
     let Connector { fixed, moving, .. } = connector;
     let ([_, top], [bottom, _]) = (fixed.span(), moving.span());
     // Flat on flat they share a plane.
     let (bottom, top) = (bottom + lift - CONTACT_TOLERANCE, top + CONTACT_TOLERANCE);
     let lateral = match drawn {
-        Drawn::Facing => DVec2::ZERO,
-        Drawn::Assembled { .. } => {
+        DrawnFrames::Facing => DVec2::ZERO,
+        DrawnFrames::Assembled { .. } => {
             let within = |half: &Half, lift: f64| {
                 let points = half.surfaces.iter().flat_map(|surface| &surface.vertices);
                 let shared = points.filter(|p| (bottom..=top).contains(&(p.z + lift)));

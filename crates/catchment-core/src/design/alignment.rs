@@ -1,7 +1,7 @@
 //! The alignment problem: every input besides the geometry that changes the result.
 
 use super::Family;
-use super::complaint::Complaint;
+use super::defect::DesignDefect;
 use super::docked::Docked;
 use super::family::Freedom;
 use crate::pose::{Dof, DofSet, Mount, PoseError, rotation_angle};
@@ -67,11 +67,11 @@ impl Alignment {
         }
     }
 
-    /// The complaint about Euler angles that reach rotations twice, if they do.
-    pub(super) fn beyond_the_pole(&self) -> Option<Complaint> {
+    /// The defect about Euler angles that reach rotations twice, if they do.
+    pub(super) fn beyond_the_pole(&self) -> Option<DesignDefect> {
         // "90 deg" may round to one unit in the last place above π/2.
         let beyond = self.half_ranges[Dof::Pitch.index()] > FRAC_PI_2 * (1.0 + 4.0 * f64::EPSILON);
-        (self.free.rotations() == 3 && beyond).then_some(Complaint::PitchBeyondPole)
+        (self.free.rotations() == 3 && beyond).then_some(DesignDefect::PitchBeyondPole)
     }
 
     /// The yaw nearest to `yaw` at which the pair is aligned: a multiple of 2π/n for an n-fold symmetry, and the yaw itself where it

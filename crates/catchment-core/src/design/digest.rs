@@ -10,8 +10,8 @@
 
 use super::family::Value;
 use super::{
-    Alignment, ConnectorSpec, Design, Docked, Drawn, FileSpec, FileUnit, HalfSpec, OutlineSpec, OwnSpec,
-    PartSpec, Placement,
+    Alignment, ConnectorSpec, Design, Docked, DrawnFrames, FileSpec, FileUnit, HalfSpec, OutlineSpec,
+    OwnSpec, PartPlacement, PartSpec,
 };
 use super::{ShapeSpec, keys};
 use crate::pose::{Dof, DofSet, Mount};
@@ -84,7 +84,7 @@ impl Hash {
             Some(height) => self.number(height),
             None => self.text("face height found"),
         }
-        if let Drawn::Assembled { approach, face_center } = &own.drawn {
+        if let DrawnFrames::Assembled { approach, face_center } = &own.drawn {
             self.text("assembled");
             self.numbers(approach);
             self.count(u64::from(face_center.is_some()));
@@ -95,7 +95,7 @@ impl Hash {
         }
         for (side, placement) in [("fixed", &own.fixed_placement), ("moving", &own.moving_placement)] {
             if !placement.is_none() {
-                let Placement { facing, rotate, translate } = placement;
+                let PartPlacement { facing, rotate, translate } = placement;
                 self.text(side);
                 self.numbers(&[*facing, *rotate, *translate].concat());
             }
@@ -233,7 +233,7 @@ impl Hash {
 mod tests {
     use super::*;
     use crate::design::family::Cone;
-    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec, Repairs, Treatment};
+    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, MeshPreparation, OwnSpec, Repairs};
 
     fn family(family: Family) -> Design {
         let spec = FamilySpec::new(family);
@@ -318,18 +318,18 @@ mod tests {
             let own = OwnSpec::new(0.0, half.clone(), half);
             Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest().unwrap()
         };
-        let simplified = |d| Treatment { simplify: Some(d), ..Treatment::DEFAULT };
+        let simplified = |d| MeshPreparation { simplify: Some(d), ..MeshPreparation::DEFAULT };
         let repaired = Repairs { turned: 1, ..Repairs::default() };
-        let plain = mesh(Treatment::DEFAULT, Repairs::default());
-        assert_eq!(mesh(Treatment::AS_IT_IS, Repairs::default()), plain);
+        let plain = mesh(MeshPreparation::DEFAULT, Repairs::default());
+        assert_eq!(mesh(MeshPreparation::AS_IT_IS, Repairs::default()), plain);
         let all = [
             plain,
-            mesh(Treatment::DEFAULT, repaired.clone()),
+            mesh(MeshPreparation::DEFAULT, repaired.clone()),
             mesh(simplified(1e-3), Repairs::default()),
             mesh(simplified(2e-3), Repairs::default()),
             mesh(simplified(1e-3), repaired),
-            mesh(Treatment { body: Some(1), ..Treatment::DEFAULT }, Repairs::default()),
-            mesh(Treatment { body: Some(2), ..Treatment::DEFAULT }, Repairs::default()),
+            mesh(MeshPreparation { body: Some(1), ..MeshPreparation::DEFAULT }, Repairs::default()),
+            mesh(MeshPreparation { body: Some(2), ..MeshPreparation::DEFAULT }, Repairs::default()),
         ];
         assert!((0..all.len()).all(|i| (0..i).all(|j| all[i] != all[j])));
     }

@@ -1,7 +1,7 @@
 //! The text of a design with one key replaced, for a sweep. All other text remains as its author wrote it.
 
-use super::complaint::Complaint;
-use super::keys::{Key, Kind, Table};
+use super::defect::DesignDefect;
+use super::keys::{DesignTable, Key, ValueKind};
 use crate::suggest::{nearest, value_help};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -9,26 +9,33 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 const ALIASES: [(&str, &str); 2] = [("cor", "center_of_rotation"), ("rho", "rotation_length")];
 
 /// The tables of a table of keys, by their paths.
-fn paths_of(table: Table) -> &'static [&'static str] {
+fn paths_of(table: DesignTable) -> &'static [&'static str] {
     match table {
-        Table::Root => &[""],
-        Table::Connector => &["connector."],
-        Table::Half => &["connector.fixed.", "connector.moving."],
+        DesignTable::Root => &[""],
+        DesignTable::Connector => &["connector."],
+        DesignTable::Half => &["connector.fixed.", "connector.moving."],
         // They stand in lists, of which a path names no member.
-        Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => &[],
-        Table::Alignment => &["alignment."],
-        Table::Errors => &["errors."],
-        Table::Docked => &["docked."],
+        DesignTable::Part | DesignTable::Sphere | DesignTable::Cylinder | DesignTable::Cone => &[],
+        DesignTable::Alignment => &["alignment."],
+        DesignTable::Errors => &["errors."],
+        DesignTable::Docked => &["docked."],
     }
 }
 
 /// Keys whose values a person may replace: those that hold one value and change the answer.
 fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
-    Table::ALL.into_iter().flat_map(|table| {
+    DesignTable::ALL.into_iter().flat_map(|table| {
         let one_value = |key: &&Key| {
-            !matches!(key.kind, Kind::Table(_) | Kind::Parts | Kind::Later | Kind::Pieces | Kind::Line)
+            !matches!(
+                key.kind,
+                ValueKind::Table(_)
+                    | ValueKind::Parts
+                    | ValueKind::Later
+                    | ValueKind::Pieces
+                    | ValueKind::Line
+            )
         };
-        let keys = table.keys().filter(one_value).filter(|key| key.table != Table::Root);
+        let keys = table.keys().filter(one_value).filter(|key| key.table != DesignTable::Root);
         keys.flat_map(move |key| paths_of(table).iter().map(move |path| (format!("{path}{}", key.name), key)))
     })
 }
@@ -38,7 +45,7 @@ fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
 ///
 /// # Errors
 /// No key is called so, or several are.
-pub fn key_path(name: &str) -> Result<String, Complaint> {
+pub fn key_path(name: &str) -> Result<String, DesignDefect> {
     let name = name.trim();
     let full = ALIASES.iter().find(|(short, _)| *short == name).map_or(name, |(_, full)| *full);
     let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
@@ -50,9 +57,9 @@ pub fn key_path(name: &str) -> Result<String, Complaint> {
             let paths: Vec<String> = replaceable().map(|(path, _)| path).collect();
             let words: Vec<String> = paths.iter().map(|path| last(path)).collect();
             let meant = nearest(full, paths.iter().chain(&words).map(String::as_str)).map(str::to_owned);
-            Err(Complaint::NoSuchKey { name: super::quantity::shortened(name), meant })
+            Err(DesignDefect::NoSuchKey { name: super::quantity::shortened(name), meant })
         }
-        _ => Err(Complaint::AmbiguousKey { name: super::quantity::shortened(name), paths: found }),
+        _ => Err(DesignDefect::AmbiguousKey { name: super::quantity::shortened(name), paths: found }),
     }
 }
 
@@ -65,8 +72,8 @@ fn value(text: &str) -> Value {
 ///
 /// # Errors
 /// The text is not TOML, or something that is no table stands where the key's table should be.
-pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, Complaint> {
-    let syntax = |error: toml_edit::TomlError| Complaint::Syntax {
+pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, DesignDefect> {
+    let syntax = |error: toml_edit::TomlError| DesignDefect::Syntax {
         message: error.message().to_owned(),
         help: error.span().and_then(|span| value_help(text, span.start)),
     };
@@ -77,7 +84,7 @@ pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, Complai
     for word in words {
         let entry = table.entry(word).or_insert_with(|| Item::Table(toml_edit::Table::new()));
         let not_a_table =
-            Complaint::WrongType { key: word.to_owned(), expected: "a table", found: entry.type_name() };
+            DesignDefect::WrongType { key: word.to_owned(), expected: "a table", found: entry.type_name() };
         table = entry.as_table_like_mut().ok_or(not_a_table)?;
     }
     let mut value = value(written);
@@ -99,10 +106,12 @@ mod tests {
         assert_eq!(path("cor"), "alignment.center_of_rotation");
         assert_eq!(path("errors.x"), "errors.x");
         assert_eq!(path("connector.fixed.mesh"), "connector.fixed.mesh");
-        assert!(matches!(key_path("mesh"), Err(Complaint::AmbiguousKey { paths, .. }) if paths.len() == 2));
-        assert!(matches!(key_path("x"), Err(Complaint::AmbiguousKey { .. })));
+        assert!(
+            matches!(key_path("mesh"), Err(DesignDefect::AmbiguousKey { paths, .. }) if paths.len() == 2)
+        );
+        assert!(matches!(key_path("x"), Err(DesignDefect::AmbiguousKey { .. })));
         let meant = |name: &str| match key_path(name) {
-            Err(Complaint::NoSuchKey { meant, .. }) => meant,
+            Err(DesignDefect::NoSuchKey { meant, .. }) => meant,
             other => panic!("{other:?}"),
         };
         assert_eq!(meant("aspect_ration").as_deref(), Some("aspect_ratio"));

@@ -1,6 +1,6 @@
 //! The resolved design: without units, and with all defaults filled in.
 
-use super::{Alignment, Drawn, Family, FamilySpec, FileSpec, MeshContent, PartSpec, Placement};
+use super::{Alignment, DrawnFrames, Family, FamilySpec, FileSpec, MeshContent, PartPlacement, PartSpec};
 use crate::pose::DofSet;
 use serde::{Deserialize, Serialize};
 
@@ -94,8 +94,8 @@ pub struct OwnSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub face_height: Option<f64>,
     /// Frames in which the halves are drawn.
-    #[serde(default, skip_serializing_if = "Drawn::is_facing")]
-    pub drawn: Drawn,
+    #[serde(default, skip_serializing_if = "DrawnFrames::is_facing")]
+    pub drawn: DrawnFrames,
     /// Source of D.
     #[serde(default, skip_serializing_if = "WidthFrom::is_written")]
     pub width_from: WidthFrom,
@@ -107,11 +107,11 @@ pub struct OwnSpec {
     /// The moving half.
     pub moving: HalfSpec,
     /// Placement of the fixed half.
-    #[serde(default, skip_serializing_if = "Placement::is_none")]
-    pub fixed_placement: Placement,
+    #[serde(default, skip_serializing_if = "PartPlacement::is_none")]
+    pub fixed_placement: PartPlacement,
     /// Placement of the moving half.
-    #[serde(default, skip_serializing_if = "Placement::is_none")]
-    pub moving_placement: Placement,
+    #[serde(default, skip_serializing_if = "PartPlacement::is_none")]
+    pub moving_placement: PartPlacement,
 }
 
 /// Source of D.
@@ -138,7 +138,7 @@ impl WidthFrom {
 impl OwnSpec {
     /// Two halves drawn facing +z, their face centres on the z axis at `face_height`.
     pub const fn new(face_height: f64, fixed: HalfSpec, moving: HalfSpec) -> Self {
-        let (drawn, none) = (Drawn::Facing, Placement::NONE);
+        let (drawn, none) = (DrawnFrames::Facing, PartPlacement::NONE);
         let face_height = Some(face_height);
         Self {
             face_height,
@@ -155,8 +155,8 @@ impl OwnSpec {
     /// Whether where the face centre is has to be found.
     pub const fn is_face_unknown(&self) -> bool {
         match self.drawn {
-            Drawn::Facing => self.face_height.is_none(),
-            Drawn::Assembled { .. } => true,
+            DrawnFrames::Facing => self.face_height.is_none(),
+            DrawnFrames::Assembled { .. } => true,
         }
     }
 }

@@ -14,7 +14,7 @@ use super::Design;
 
 /// A parameter that options replace and that names state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parameter {
+pub enum DesignParameter {
     /// H/D.
     AspectRatio,
     /// The centre of rotation.
@@ -23,7 +23,7 @@ pub enum Parameter {
     RotationLength,
 }
 
-impl Parameter {
+impl DesignParameter {
     /// Every parameter, with its key in the design file.
     const KEYS: [(Self, &'static str); 3] = [
         (Self::AspectRatio, "connector.aspect_ratio"),
@@ -77,7 +77,7 @@ fn after_value(text: &str) -> Option<&str> {
 
 impl Design {
     /// The design under the title that states `value` of a parameter, in the place of what its name states.
-    pub(crate) fn titled(mut self, parameter: Parameter, value: &str) -> Self {
+    pub(crate) fn titled(mut self, parameter: DesignParameter, value: &str) -> Self {
         let now = format!("{} {value}", parameter.words()[0]);
         let mut is_stated = false;
         self.rename(|part| match parameter.stated(part) {
@@ -95,7 +95,7 @@ impl Design {
 
     /// The design under a title that states no value of a parameter, as where many are computed.
     #[must_use]
-    pub fn untitled(mut self, parameter: Parameter) -> Self {
+    pub fn untitled(mut self, parameter: DesignParameter) -> Self {
         self.rename(|part| match parameter.stated(part) {
             Some((before, after)) => joined([before, "", after]),
             None => part.to_owned(),
@@ -121,7 +121,7 @@ fn joined(words: [&str; 3]) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::{Design, Quantity, read};
-    use super::Parameter;
+    use super::DesignParameter;
 
     fn named(name: &str) -> Design {
         let text = format!(
@@ -158,8 +158,8 @@ mod tests {
     #[test]
     fn what_is_swept_is_not_in_the_title() {
         let title = |name: &str| {
-            let design = named(name).untitled(Parameter::AspectRatio);
-            design.untitled(Parameter::CenterOfRotation).name
+            let design = named(name).untitled(DesignParameter::AspectRatio);
+            design.untitled(DesignParameter::CenterOfRotation).name
         };
         assert_eq!(title("V-Face, AR 1, COR 0"), "V-Face");
         assert_eq!(title("AR tan 30°"), "AR tan 30°");

@@ -1,10 +1,10 @@
 //! A design with a changed setting, for sweeps and command-line options. The rules of the file apply, and the
 //! name shows the new value ([`super::name`]).
 
-use super::complaint::Complaint;
+use super::defect::DesignDefect;
 use super::keys;
-use super::name::Parameter;
-use super::quantity::{Quantity, Unit, shortened};
+use super::name::DesignParameter;
+use super::quantity::{Quantity, QuantityUnit, shortened};
 use super::reader::unknown_name;
 use super::{ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{Dof, DofSet};
@@ -13,17 +13,17 @@ use crate::pose::{Dof, DofSet};
 ///
 /// # Errors
 /// An unknown name, one that stands twice, or an empty list.
-pub fn parse_dofs(text: &str) -> Result<DofSet, Complaint> {
+pub fn parse_dofs(text: &str) -> Result<DofSet, DesignDefect> {
     let mut set = DofSet::EMPTY;
     for name in text.split(',').map(str::trim) {
         if text.trim().is_empty() {
-            return Err(Complaint::nothing_free("free".to_owned()));
+            return Err(DesignDefect::nothing_free("free".to_owned()));
         }
         let dof: Dof = name.parse().map_err(|_| {
             unknown_name("degree of freedom", &shortened(name), Dof::ALL.into_iter().map(Dof::name))
         })?;
         if set.contains(dof) {
-            return Err(Complaint::Repeated { dof });
+            return Err(DesignDefect::Repeated { dof });
         }
         set = set.with(dof);
     }
@@ -51,19 +51,19 @@ impl Design {
     ///
     /// # Errors
     /// None are free, or one leaves the plane of a planar family.
-    pub fn with_free(mut self, free: DofSet) -> Result<Self, Complaint> {
+    pub fn with_free(mut self, free: DofSet) -> Result<Self, DesignDefect> {
         if free.is_empty() {
-            return Err(Complaint::nothing_free("free".to_owned()));
+            return Err(DesignDefect::nothing_free("free".to_owned()));
         }
-        if let Some(complaint) = free.iter().find_map(|dof| Complaint::out_of_plane(dof, self.family_spec()))
+        if let Some(defect) = free.iter().find_map(|dof| DesignDefect::out_of_plane(dof, self.family_spec()))
         {
-            return Err(complaint);
+            return Err(defect);
         }
         self.alignment.free = free;
         self.alignment.dont_care =
             self.alignment.dont_care.iter().filter(|dof| !free.contains(*dof)).collect();
         match self.alignment.beyond_the_pole() {
-            Some(complaint) => Err(complaint),
+            Some(defect) => Err(defect),
             None => Ok(self),
         }
     }
@@ -72,41 +72,41 @@ impl Design {
     ///
     /// # Errors
     /// Out of the range of the design file, or not a length.
-    pub fn with_center_of_rotation(mut self, cor: Quantity) -> Result<Self, Complaint> {
+    pub fn with_center_of_rotation(mut self, cor: Quantity) -> Result<Self, DesignDefect> {
         let was = self.alignment.center_of_rotation;
         let Some(now) = keys::CENTER_OF_ROTATION.checked(cor, Some(&self.scale()))? else { return Ok(self) };
         self.alignment.center_of_rotation = now;
-        Ok(if now == was { self } else { self.titled(Parameter::CenterOfRotation, &cor.to_string()) })
+        Ok(if now == was { self } else { self.titled(DesignParameter::CenterOfRotation, &cor.to_string()) })
     }
 
     /// This design with another ρ; bare numbers are in D.
     ///
     /// # Errors
     /// Out of the range of the design file, or not a length.
-    pub fn with_rotation_length(mut self, length: Quantity) -> Result<Self, Complaint> {
+    pub fn with_rotation_length(mut self, length: Quantity) -> Result<Self, DesignDefect> {
         let was = self.alignment.rotation_length;
         let Some(now) = keys::ROTATION_LENGTH.checked(length, Some(&self.scale()))? else { return Ok(self) };
         self.alignment.rotation_length = now;
-        Ok(if now == was { self } else { self.titled(Parameter::RotationLength, &length.to_string()) })
+        Ok(if now == was { self } else { self.titled(DesignParameter::RotationLength, &length.to_string()) })
     }
 
     /// This design with another H/D.
     ///
     /// # Errors
     /// Out of the range of the design file, or the halves are the person's own and have a fixed shape.
-    pub fn with_aspect_ratio(mut self, ratio: f64) -> Result<Self, Complaint> {
+    pub fn with_aspect_ratio(mut self, ratio: f64) -> Result<Self, DesignDefect> {
         let scale = self.scale();
         let ConnectorSpec::Family(spec) = &mut self.connector else {
-            return Err(Complaint::NotAParameter {
+            return Err(DesignDefect::NotAParameter {
                 key: keys::ASPECT_RATIO.name.to_owned(),
                 owner: "own halves",
                 belongs_to: keys::ASPECT_RATIO.applies.to_string(),
             });
         };
         let was = spec.aspect_ratio();
-        let quantity = Quantity { value: ratio, unit: Unit::Bare };
+        let quantity = Quantity { value: ratio, unit: QuantityUnit::Bare };
         let Some(now) = keys::ASPECT_RATIO.checked(quantity, Some(&scale))? else { return Ok(self) };
         *spec = spec.with_aspect_ratio(now);
-        Ok(if now == was { self } else { self.titled(Parameter::AspectRatio, &quantity.to_string()) })
+        Ok(if now == was { self } else { self.titled(DesignParameter::AspectRatio, &quantity.to_string()) })
     }
 }

@@ -12,7 +12,7 @@
 //! The half is the union of its parts, which may overlap. Lengths in D, angles in radians.
 
 use super::model::LengthUnit;
-use super::{MeshContent, Treatment};
+use super::{MeshContent, MeshPreparation};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -31,8 +31,8 @@ pub struct FileSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub written: Option<LengthUnit>,
     /// Permitted changes to a mesh before use.
-    #[serde(default, skip_serializing_if = "Treatment::is_default")]
-    pub treatment: Treatment,
+    #[serde(default, skip_serializing_if = "MeshPreparation::is_default")]
+    pub treatment: MeshPreparation,
     /// Content of the file, once it was read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub content: Option<MeshContent>,
@@ -46,7 +46,7 @@ impl FileSpec {
             scale,
             unit: FileUnit::Beside,
             written: None,
-            treatment: Treatment::DEFAULT,
+            treatment: MeshPreparation::DEFAULT,
             content: None,
         }
     }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Drawn {
+pub enum DrawnFrames {
     /// Each half in its own frame, facing +z after placement; a half turn brings the moving half face to face
     /// with the fixed half.
     #[default]
@@ -33,7 +33,7 @@ pub enum Drawn {
     },
 }
 
-impl Drawn {
+impl DrawnFrames {
     /// Whether it is the way that needs no word.
     pub(super) fn is_facing(&self) -> bool {
         *self == Self::Facing
@@ -43,7 +43,7 @@ impl Drawn {
 /// Rotation and translation of a part from the coordinates of its file; applied in the order of the fields.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Placement {
+pub struct PartPlacement {
     /// Unit vector in which the part faces in its file; rotated to +z by the shortest rotation, about x for
     /// −z.
     pub facing: [f64; 3],
@@ -53,7 +53,7 @@ pub struct Placement {
     pub translate: [f64; 3],
 }
 
-impl Placement {
+impl PartPlacement {
     /// As the file has it.
     pub const NONE: Self = Self { facing: [0.0, 0.0, 1.0], rotate: [0.0; 3], translate: [0.0; 3] };
 
@@ -63,7 +63,7 @@ impl Placement {
     }
 }
 
-impl Default for Placement {
+impl Default for PartPlacement {
     fn default() -> Self {
         Self::NONE
     }

@@ -3,7 +3,7 @@
 //! A bare number is in D or radians. A length with a unit is converted to D by the width of the design, which
 //! needs a design with a unit.
 
-use super::complaint::{Complaint, Dimension};
+use super::defect::{DesignDefect, Dimension};
 use super::{Design, LengthUnit};
 use crate::suggest::nearest;
 use std::fmt;
@@ -11,7 +11,7 @@ use std::str::FromStr;
 
 /// What a number is measured in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unit {
+pub enum QuantityUnit {
     /// Nothing written: D for lengths, radians for angles.
     Bare,
     /// The width of the connector.
@@ -25,18 +25,18 @@ pub enum Unit {
 }
 
 /// Every unit with the ways to write it; the first is the one in messages.
-const UNITS: [(Unit, &[&str]); 8] = [
-    (Unit::D, &["D"]),
-    (Unit::Length(LengthUnit::Um), &["um", "µm", "μm"]),
-    (Unit::Length(LengthUnit::Mm), &["mm"]),
-    (Unit::Length(LengthUnit::Cm), &["cm"]),
-    (Unit::Length(LengthUnit::M), &["m"]),
-    (Unit::Length(LengthUnit::In), &["in", "inch"]),
-    (Unit::Degrees, &["deg", "°"]),
-    (Unit::Radians, &["rad"]),
+const UNITS: [(QuantityUnit, &[&str]); 8] = [
+    (QuantityUnit::D, &["D"]),
+    (QuantityUnit::Length(LengthUnit::Um), &["um", "µm", "μm"]),
+    (QuantityUnit::Length(LengthUnit::Mm), &["mm"]),
+    (QuantityUnit::Length(LengthUnit::Cm), &["cm"]),
+    (QuantityUnit::Length(LengthUnit::M), &["m"]),
+    (QuantityUnit::Length(LengthUnit::In), &["in", "inch"]),
+    (QuantityUnit::Degrees, &["deg", "°"]),
+    (QuantityUnit::Radians, &["rad"]),
 ];
 
-impl Unit {
+impl QuantityUnit {
     fn named(name: &str) -> Option<Self> {
         UNITS.iter().find(|(_, names)| names.contains(&name)).map(|(unit, _)| *unit)
     }
@@ -52,38 +52,38 @@ pub struct Quantity {
     /// The number.
     pub value: f64,
     /// Its unit.
-    pub unit: Unit,
+    pub unit: QuantityUnit,
 }
 
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.unit {
-            Unit::Bare => write!(f, "{}", self.value),
+            QuantityUnit::Bare => write!(f, "{}", self.value),
             unit => write!(f, "{} {}", self.value, unit.symbol()),
         }
     }
 }
 
 impl FromStr for Quantity {
-    type Err = Complaint;
+    type Err = DesignDefect;
 
-    fn from_str(text: &str) -> Result<Self, Complaint> {
+    fn from_str(text: &str) -> Result<Self, DesignDefect> {
         let text = text.trim();
         let is_unit = |c: char| c.is_alphabetic() || c == '°';
         let number = text.trim_end_matches(is_unit);
         let unit = &text[number.len()..];
-        let not_a_quantity = || Complaint::NotAQuantity { text: shortened(text) };
+        let not_a_quantity = || DesignDefect::NotAQuantity { text: shortened(text) };
         if number.trim().is_empty() {
             return Err(not_a_quantity());
         }
         let value: f64 = number.trim().parse().map_err(|_| not_a_quantity())?;
         if !value.is_finite() {
-            return Err(Complaint::NotFinite { text: shortened(text) });
+            return Err(DesignDefect::NotFinite { text: shortened(text) });
         }
         if unit.is_empty() {
-            return Ok(Self { value, unit: Unit::Bare });
+            return Ok(Self { value, unit: QuantityUnit::Bare });
         }
-        let unit = Unit::named(unit).ok_or_else(|| Complaint::UnknownUnit {
+        let unit = QuantityUnit::named(unit).ok_or_else(|| DesignDefect::UnknownUnit {
             unit: shortened(unit),
             meant: nearest(unit, UNITS.iter().flat_map(|(_, names)| names.iter().copied())),
         })?;
@@ -104,7 +104,7 @@ pub fn shortened(text: &str) -> String {
 
 /// What turns lengths into D.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub struct LengthScale {
     /// D in `unit`, or in the nameless unit that a dimensionless design is drawn in.
     pub width: f64,
     /// The unit of the design.
@@ -116,15 +116,17 @@ impl Quantity {
     ///
     /// # Errors
     /// An angle, or a unit in a design that has none.
-    pub fn length_d(self, scale: &Scale) -> Result<f64, Complaint> {
+    pub fn length_d(self, scale: &LengthScale) -> Result<f64, DesignDefect> {
         match (self.unit, scale.unit) {
-            (Unit::Bare | Unit::D, _) => Ok(self.value),
-            (Unit::Length(unit), Some(design)) => {
+            (QuantityUnit::Bare | QuantityUnit::D, _) => Ok(self.value),
+            (QuantityUnit::Length(unit), Some(design)) => {
                 Ok(self.value * (unit.metres() / (design.metres() * scale.width)))
             }
-            (Unit::Length(_), None) => Err(Complaint::UnitInDimensionlessDesign { text: self.to_string() }),
-            (Unit::Degrees | Unit::Radians, _) => {
-                Err(Complaint::WrongDimension { text: self.to_string(), wanted: Dimension::Length })
+            (QuantityUnit::Length(_), None) => {
+                Err(DesignDefect::UnitInDimensionlessDesign { text: self.to_string() })
+            }
+            (QuantityUnit::Degrees | QuantityUnit::Radians, _) => {
+                Err(DesignDefect::WrongDimension { text: self.to_string(), wanted: Dimension::Length })
             }
         }
     }
@@ -133,10 +135,10 @@ impl Quantity {
     ///
     /// # Errors
     /// An angle, a length in D, or a unit in a design that has none.
-    pub fn width(self, unit: Option<LengthUnit>) -> Result<f64, Complaint> {
+    pub fn width(self, unit: Option<LengthUnit>) -> Result<f64, DesignDefect> {
         match self.unit {
-            Unit::D => Err(Complaint::WidthInD),
-            _ => self.length_d(&Scale { width: 1.0, unit }),
+            QuantityUnit::D => Err(DesignDefect::WidthInD),
+            _ => self.length_d(&LengthScale { width: 1.0, unit }),
         }
     }
 
@@ -144,9 +146,9 @@ impl Quantity {
     ///
     /// # Errors
     /// As [`Quantity::length_d`].
-    pub fn drawn_length_d(self, scale: &Scale) -> Result<f64, Complaint> {
+    pub fn drawn_length_d(self, scale: &LengthScale) -> Result<f64, DesignDefect> {
         match self.unit {
-            Unit::Bare => Ok(self.value / scale.width),
+            QuantityUnit::Bare => Ok(self.value / scale.width),
             _ => self.length_d(scale),
         }
     }
@@ -155,12 +157,12 @@ impl Quantity {
     ///
     /// # Errors
     /// A length.
-    pub fn angle_rad(self) -> Result<f64, Complaint> {
+    pub fn angle_rad(self) -> Result<f64, DesignDefect> {
         match self.unit {
-            Unit::Bare | Unit::Radians => Ok(self.value),
-            Unit::Degrees => Ok(self.value.to_radians()),
-            Unit::D | Unit::Length(_) => {
-                Err(Complaint::WrongDimension { text: self.to_string(), wanted: Dimension::Angle })
+            QuantityUnit::Bare | QuantityUnit::Radians => Ok(self.value),
+            QuantityUnit::Degrees => Ok(self.value.to_radians()),
+            QuantityUnit::D | QuantityUnit::Length(_) => {
+                Err(DesignDefect::WrongDimension { text: self.to_string(), wanted: Dimension::Angle })
             }
         }
     }
@@ -168,8 +170,8 @@ impl Quantity {
 
 impl Design {
     /// What turns lengths into D in this design.
-    pub const fn scale(&self) -> Scale {
-        Scale { width: self.width, unit: self.unit }
+    pub const fn scale(&self) -> LengthScale {
+        LengthScale { width: self.width, unit: self.unit }
     }
 }
 
@@ -178,7 +180,7 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_6;
 
-    const MM50: Scale = Scale { width: 50.0, unit: Some(LengthUnit::Mm) };
+    const MM50: LengthScale = LengthScale { width: 50.0, unit: Some(LengthUnit::Mm) };
 
     fn quantity(text: &str) -> Quantity {
         text.parse().unwrap()
@@ -205,15 +207,18 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_said() {
-        let complaint = |text: &str| text.parse::<Quantity>().unwrap_err();
-        assert!(matches!(complaint("5 mmm"), Complaint::UnknownUnit { meant: Some("mm"), .. }));
-        assert!(matches!(complaint("5 furlong"), Complaint::UnknownUnit { meant: None, .. }));
-        assert!(matches!(complaint("mm"), Complaint::NotAQuantity { .. }));
-        assert!(matches!(complaint("1e999 mm"), Complaint::NotFinite { .. }));
-        assert!(matches!(complaint("5,5 mm"), Complaint::NotAQuantity { .. }));
-        let bare = Scale { width: 1.0, unit: None };
-        assert!(matches!(quantity("5 mm").length_d(&bare), Err(Complaint::UnitInDimensionlessDesign { .. })));
-        assert!(matches!(quantity("5 deg").length_d(&MM50), Err(Complaint::WrongDimension { .. })));
-        assert!(matches!(quantity("5 D").angle_rad(), Err(Complaint::WrongDimension { .. })));
+        let defect = |text: &str| text.parse::<Quantity>().unwrap_err();
+        assert!(matches!(defect("5 mmm"), DesignDefect::UnknownUnit { meant: Some("mm"), .. }));
+        assert!(matches!(defect("5 furlong"), DesignDefect::UnknownUnit { meant: None, .. }));
+        assert!(matches!(defect("mm"), DesignDefect::NotAQuantity { .. }));
+        assert!(matches!(defect("1e999 mm"), DesignDefect::NotFinite { .. }));
+        assert!(matches!(defect("5,5 mm"), DesignDefect::NotAQuantity { .. }));
+        let bare = LengthScale { width: 1.0, unit: None };
+        assert!(matches!(
+            quantity("5 mm").length_d(&bare),
+            Err(DesignDefect::UnitInDimensionlessDesign { .. })
+        ));
+        assert!(matches!(quantity("5 deg").length_d(&MM50), Err(DesignDefect::WrongDimension { .. })));
+        assert!(matches!(quantity("5 D").angle_rad(), Err(DesignDefect::WrongDimension { .. })));
     }
 }

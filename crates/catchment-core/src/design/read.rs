@@ -1,13 +1,13 @@
 //! Parses the text of a design file into a [`Design`], or into all its errors at once.
 
-use super::complaint::Complaint;
+use super::defect::DesignDefect;
 use super::family::Value;
-use super::keys::{self, Applies, Key, Kind, Table};
-use super::problem::{Problems, Sources};
-use super::quantity::Scale;
+use super::keys::{self, Applies, DesignTable, Key, ValueKind};
+use super::located_defect::{LocatedDefects, Sources};
+use super::quantity::LengthScale;
 use super::reader::Reader;
 use super::section::Section;
-use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, OwnSpec, WidthFrom};
+use super::{Alignment, ConnectorSpec, Design, DrawnFrames, Family, FamilySpec, OwnSpec, WidthFrom};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
@@ -30,7 +30,7 @@ pub struct DesignFile {
 ///
 /// # Errors
 /// All problems of the text, in order.
-pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, Problems> {
+pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, LocatedDefects> {
     read_as(text, base_dir, Width::Written).map(|(file, _)| file)
 }
 
@@ -47,10 +47,14 @@ pub(crate) enum Width {
 }
 
 /// The same; and whether `width` was used.
-pub(crate) fn read_as(text: &str, base_dir: &Path, width: Width) -> Result<(DesignFile, bool), Problems> {
+pub(crate) fn read_as(
+    text: &str,
+    base_dir: &Path,
+    width: Width,
+) -> Result<(DesignFile, bool), LocatedDefects> {
     if text.len() > LARGEST_FILE {
-        let complaint = Complaint::TooLarge { limit: LARGEST_FILE };
-        return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
+        let defect = DesignDefect::TooLarge { limit: LARGEST_FILE };
+        return Err(LocatedDefects::new(vec![(defect, 0..0)], 0, text));
     }
     let (document, syntax) = DeTable::parse_recoverable(text);
     let mut walk = Walk { reader: Reader::new(text, syntax), base_dir, width };
@@ -59,8 +63,8 @@ pub(crate) fn read_as(text: &str, base_dir: &Path, width: Width) -> Result<(Desi
     let mut sources = walk.reader.finish()?;
     // Whatever is missing was complained about, so this is the one way out without a design.
     let Some(design) = design else {
-        let complaint = Complaint::Missing { key: "connector".to_owned(), advice: NO_CONNECTOR };
-        return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
+        let defect = DesignDefect::Missing { key: "connector".to_owned(), advice: NO_CONNECTOR };
+        return Err(LocatedDefects::new(vec![(defect, 0..0)], 0, text));
     };
     sources.insert(String::new(), 0..0);
     Ok((DesignFile { design, sources }, is_measured))
@@ -95,11 +99,11 @@ pub(super) struct Walk<'t> {
 
 impl<'t> Walk<'t> {
     fn design(&mut self, root: &Section<'t>) -> Option<Design> {
-        self.reader.refuse_unknown_keys(root, Table::Root);
+        self.reader.refuse_unknown_keys(root, DesignTable::Root);
         if let Some((found, span)) = self.reader.integer(root, &keys::SCHEMA_KEY)
             && found != keys::SCHEMA
         {
-            self.reader.complain(Complaint::OtherSchema { found, known: keys::SCHEMA }, span);
+            self.reader.report(DesignDefect::OtherSchema { found, known: keys::SCHEMA }, span);
         }
         let name = self.reader.line(root, &keys::NAME);
         let connector = self.reader.section(root, &keys::CONNECTOR);
@@ -110,7 +114,7 @@ impl<'t> Walk<'t> {
         let scale = connector.as_ref().and_then(|section| self.scale(section, owner));
         let spec = connector.as_ref().and_then(|section| self.connector(section, owner, scale.as_ref()));
         let alignment = self.alignment(root, owner, spec.as_ref(), scale.as_ref());
-        let (Scale { width, unit }, connector) = (scale?, spec?);
+        let (LengthScale { width, unit }, connector) = (scale?, spec?);
         let name =
             name.unwrap_or_else(|| owner.family().map_or("own halves", |family| family.name()).to_owned());
         Some(Design { name, connector, width, unit, alignment })
@@ -118,17 +122,17 @@ impl<'t> Walk<'t> {
 
     /// Family or own halves; complains about both, neither, and parameters of the wrong one.
     fn owner(&mut self, section: &Section<'t>) -> Owner {
-        self.reader.refuse_unknown_keys(section, Table::Connector);
+        self.reader.refuse_unknown_keys(section, DesignTable::Connector);
         let halves = [keys::FIXED, keys::MOVING];
         let owner = if section.has(&keys::FAMILY) {
             for half in &halves {
                 if let Some(span) = section.key_span(half) {
-                    let complaint = Complaint::Contradiction {
+                    let defect = DesignDefect::Contradiction {
                         key: section.place(half.name),
                         other: section.place(keys::FAMILY.name),
                         advice: "a design has a built-in family or own halves: remove one of them",
                     };
-                    self.reader.complain(complaint, span);
+                    self.reader.report(defect, span);
                 }
             }
             self.reader.family(section, &keys::FAMILY).map_or(Owner::Unknown, Owner::Family)
@@ -141,23 +145,23 @@ impl<'t> Walk<'t> {
         if owner == Owner::Unknown {
             return owner;
         }
-        for key in Table::Connector.keys().filter(|key| !key.applies.to(owner.family())) {
+        for key in DesignTable::Connector.keys().filter(|key| !key.applies.to(owner.family())) {
             if let Some(span) = section.key_span(key)
                 && !halves.contains(key)
             {
-                let complaint = Complaint::NotAParameter {
+                let defect = DesignDefect::NotAParameter {
                     key: key.name.to_owned(),
                     owner: owner.family().map_or("own halves", Family::name),
                     belongs_to: key.applies.to_string(),
                 };
-                self.reader.complain(complaint, span);
+                self.reader.report(defect, span);
             }
         }
         owner
     }
 
     /// Width and unit; `None` when one of them is wrong.
-    fn scale(&mut self, section: &Section<'t>, owner: Owner) -> Option<Scale> {
+    fn scale(&mut self, section: &Section<'t>, owner: Owner) -> Option<LengthScale> {
         let unit = self.reader.unit(section, &keys::UNIT);
         if section.has(&keys::UNIT) && unit.is_none() {
             return None;
@@ -171,17 +175,17 @@ impl<'t> Walk<'t> {
             if let (Owner::OwnHalves, Some(width), Some(_)) = (owner, width, unit) {
                 self.reader.measures_width = true;
                 self.reader.is_provisional = matches!(self.width, Width::Provisional(_));
-                return Some(Scale { width, unit });
+                return Some(LengthScale { width, unit });
             }
             if unit.is_some() {
                 self.reader.missing(section, &keys::WIDTH, "a design with a unit needs its D: width = 50.0");
                 return None;
             }
-            return Some(Scale { width: 1.0, unit });
+            return Some(LengthScale { width: 1.0, unit });
         }
         // In "widths of 1 unit", the number is the width in the unit of the design.
-        let width = self.reader.number(section, &keys::WIDTH, Some(&Scale { width: 1.0, unit }))?;
-        Some(Scale { width, unit })
+        let width = self.reader.number(section, &keys::WIDTH, Some(&LengthScale { width: 1.0, unit }))?;
+        Some(LengthScale { width, unit })
     }
 
     /// Whether what is round is drawn roughly, because nobody knows yet how large D is.
@@ -193,7 +197,7 @@ impl<'t> Walk<'t> {
         &mut self,
         section: &Section<'t>,
         owner: Owner,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<ConnectorSpec> {
         // Parameters of an unknown family are checked against any one's ranges.
         let spec = self.family_spec(section, owner.family().unwrap_or(Family::Pyramid), scale);
@@ -205,13 +209,18 @@ impl<'t> Walk<'t> {
     }
 
     /// Every parameter that is written is checked, also those that the family does not have.
-    fn family_spec(&mut self, section: &Section<'t>, family: Family, scale: Option<&Scale>) -> FamilySpec {
+    fn family_spec(
+        &mut self,
+        section: &Section<'t>,
+        family: Family,
+        scale: Option<&LengthScale>,
+    ) -> FamilySpec {
         let mut spec = FamilySpec::new(family);
         let of_families = |key: &&Key| matches!(key.applies, Applies::AnyFamily | Applies::Families(_));
-        for key in Table::Connector.keys().filter(of_families) {
+        for key in DesignTable::Connector.keys().filter(of_families) {
             let value = match key.kind {
-                Kind::Whole { .. } => self.reader.whole(section, key).map(Value::Whole),
-                Kind::Flag => self.reader.flag(section, key).map(Value::Flag),
+                ValueKind::Whole { .. } => self.reader.whole(section, key).map(Value::Whole),
+                ValueKind::Flag => self.reader.flag(section, key).map(Value::Flag),
                 _ => self.reader.number(section, key, scale).map(Value::Number),
             };
             if let Some(value) = value {
@@ -221,16 +230,16 @@ impl<'t> Walk<'t> {
         spec
     }
 
-    fn own_spec(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<OwnSpec> {
+    fn own_spec(&mut self, section: &Section<'t>, scale: Option<&LengthScale>) -> Option<OwnSpec> {
         let is_assembled = self.reader.is_assembled(section, &keys::DRAWN).unwrap_or_default();
         let approach = self.reader.direction(section, &keys::APPROACH);
         let face_center = self.reader.triple(section, &keys::FACE_CENTER, scale);
         let face_height = self.reader.number(section, &keys::FACE_HEIGHT, scale);
         let (drawn, not_its_own) = if is_assembled {
             let approach = approach.unwrap_or([0.0, 0.0, -1.0]);
-            (Drawn::Assembled { approach, face_center }, &[keys::FACE_HEIGHT][..])
+            (DrawnFrames::Assembled { approach, face_center }, &[keys::FACE_HEIGHT][..])
         } else {
-            (Drawn::Facing, &[keys::APPROACH, keys::FACE_CENTER][..])
+            (DrawnFrames::Facing, &[keys::APPROACH, keys::FACE_CENTER][..])
         };
         for key in not_its_own {
             self.reader.not_drawn_so(section, key, is_assembled);
@@ -260,11 +269,11 @@ impl<'t> Walk<'t> {
         root: &Section<'t>,
         owner: Owner,
         connector: Option<&ConnectorSpec>,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Alignment {
         let mut alignment = Alignment::default_for(owner.family());
         if let Some(section) = self.reader.section(root, &keys::ALIGNMENT) {
-            self.reader.refuse_unknown_keys(&section, Table::Alignment);
+            self.reader.refuse_unknown_keys(&section, DesignTable::Alignment);
             self.freedom(&section, connector, &mut alignment);
             if let Some(cor) = self.reader.number(&section, &keys::CENTER_OF_ROTATION, scale) {
                 alignment.center_of_rotation = cor;
@@ -280,20 +289,20 @@ impl<'t> Walk<'t> {
             }
         }
         if let Some(section) = self.reader.section(root, &keys::ERRORS) {
-            self.reader.refuse_unknown_keys(&section, Table::Errors);
+            self.reader.refuse_unknown_keys(&section, DesignTable::Errors);
             for (half_range, key) in alignment.half_ranges.iter_mut().zip(&keys::ERROR_KEYS) {
                 if let Some(number) = self.reader.number(&section, key, scale) {
                     *half_range = number;
                 }
             }
-            if let (Some(complaint), Some(span)) =
+            if let (Some(defect), Some(span)) =
                 (alignment.beyond_the_pole(), section.key_span(&keys::ERROR_PITCH))
             {
-                self.reader.complain(complaint, span);
+                self.reader.report(defect, span);
             }
         }
         if let Some(section) = self.reader.section(root, &keys::DOCKED) {
-            self.reader.refuse_unknown_keys(&section, Table::Docked);
+            self.reader.refuse_unknown_keys(&section, DesignTable::Docked);
             if let Some(depth) = self.reader.number(&section, &keys::DOCKED_DEPTH, scale) {
                 alignment.docked.depth = depth;
             }
@@ -322,12 +331,12 @@ impl<'t> Walk<'t> {
                 .raw(section, &keys::FREE)
                 .filter(|value| matches!(value.get_ref(), DeValue::Array(elements) if elements.is_empty()));
             if let Some(value) = empty {
-                let complaint = Complaint::nothing_free(section.place(keys::FREE.name));
-                self.reader.complain(complaint, value.span());
+                let defect = DesignDefect::nothing_free(section.place(keys::FREE.name));
+                self.reader.report(defect, value.span());
             }
             for (dof, span) in &list {
-                if let Some(complaint) = Complaint::out_of_plane(*dof, family) {
-                    self.reader.complain(complaint, span.clone());
+                if let Some(defect) = DesignDefect::out_of_plane(*dof, family) {
+                    self.reader.report(defect, span.clone());
                 }
             }
             alignment.free = set(&list);
@@ -340,9 +349,9 @@ impl<'t> Walk<'t> {
             let free_is_written = section.has(&keys::FREE);
             for (dof, span) in &list {
                 if !dof.is_rotation() {
-                    self.reader.complain(Complaint::DontCareTranslation { dof: *dof }, span.clone());
+                    self.reader.report(DesignDefect::DontCareTranslation { dof: *dof }, span.clone());
                 } else if free_is_written && alignment.free.contains(*dof) {
-                    self.reader.complain(Complaint::FreeAndDontCare { dof: *dof }, span.clone());
+                    self.reader.report(DesignDefect::FreeAndDontCare { dof: *dof }, span.clone());
                 }
             }
             alignment.dont_care = set(&list);

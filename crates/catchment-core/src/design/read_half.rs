@@ -1,11 +1,11 @@
 //! Parses the tables of own halves: pieces, a mesh, or parts.
 
-use super::complaint::Complaint;
-use super::keys::{self, Key, Table};
-use super::quantity::Scale;
+use super::defect::DesignDefect;
+use super::keys::{self, DesignTable, Key};
+use super::quantity::LengthScale;
 use super::read::Walk;
 use super::section::Section;
-use super::{FileSpec, FileUnit, HalfSpec, OutlineSpec, PartSpec, Placement, ShapeSpec, Treatment};
+use super::{FileSpec, FileUnit, HalfSpec, MeshPreparation, OutlineSpec, PartPlacement, PartSpec, ShapeSpec};
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -37,21 +37,21 @@ impl<'t> Walk<'t> {
         parent: &Section<'t>,
         key: &Key,
         is_assembled: bool,
-        scale: Option<&Scale>,
-    ) -> Option<(HalfSpec, Placement)> {
+        scale: Option<&LengthScale>,
+    ) -> Option<(HalfSpec, PartPlacement)> {
         let Some(section) = self.reader.section(parent, key) else {
             if !parent.has(key) {
                 self.reader.missing(parent, key, HALF_ADVICE);
             }
             return None;
         };
-        self.reader.refuse_unknown_keys(&section, Table::Half);
+        self.reader.refuse_unknown_keys(&section, DesignTable::Half);
         let spec = self.half_spec(&section, scale);
         if is_assembled {
             self.reader.not_drawn_so(&section, &keys::FACING, is_assembled);
         }
-        let none = Placement::NONE;
-        let placement = Placement {
+        let none = PartPlacement::NONE;
+        let placement = PartPlacement {
             facing: self.reader.direction(&section, &keys::FACING).unwrap_or(none.facing),
             rotate: self.reader.triple(&section, &keys::ROTATE, scale).unwrap_or(none.rotate),
             translate: self.reader.triple(&section, &keys::TRANSLATE, scale).unwrap_or(none.translate),
@@ -59,11 +59,11 @@ impl<'t> Walk<'t> {
         Some((spec?, placement))
     }
 
-    fn half_spec(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<HalfSpec> {
+    fn half_spec(&mut self, section: &Section<'t>, scale: Option<&LengthScale>) -> Option<HalfSpec> {
         let later = [keys::PROFILE, keys::HEIGHTFIELD];
         for key in &later {
             if let Some(span) = section.key_span(key) {
-                self.reader.complain(Complaint::UnsupportedHalf { key: key.name }, span);
+                self.reader.report(DesignDefect::UnsupportedHalf { key: key.name }, span);
             }
         }
         let ways = [keys::PIECES, keys::MESH, keys::PARTS];
@@ -73,8 +73,8 @@ impl<'t> Walk<'t> {
         }
         let way = self.one_of(section, &ways, advice)?;
         if way == keys::MESH {
-            let treatment = Treatment {
-                repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
+            let treatment = MeshPreparation {
+                repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(MeshPreparation::DEFAULT.repair),
                 simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
                 deflection: self.reader.number(section, &keys::DEFLECTION, scale),
                 body: self.reader.whole(section, &keys::BODY).and_then(|body| u16::try_from(body).ok()),
@@ -112,17 +112,17 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// The one of `keys` that is written; `None` where none is, and after a complaint about two of them.
+    /// The one of `keys` that is written; `None` where none is, and after a defect about two of them.
     fn one_of(&mut self, section: &Section<'t>, keys: &[Key], advice: &'static str) -> Option<Key> {
         let mut written = keys.iter().filter(|key| section.has(key));
         let (first, second) = (written.next(), written.next());
         if let (Some(first), Some(second)) = (first, second) {
-            let complaint = Complaint::Contradiction {
+            let defect = DesignDefect::Contradiction {
                 key: section.place(second.name),
                 other: section.place(first.name),
                 advice,
             };
-            self.reader.complain(complaint, section.key_span(second).unwrap_or_default());
+            self.reader.report(defect, section.key_span(second).unwrap_or_default());
             return None;
         }
         first.copied()
@@ -131,22 +131,22 @@ impl<'t> Walk<'t> {
     fn not_its_own(&mut self, section: &Section<'t>, key: &Key, owner: &'static str, belongs_to: &str) {
         if let Some(span) = section.key_span(key) {
             let (key, belongs_to) = (key.name.to_owned(), belongs_to.to_owned());
-            self.reader.complain(Complaint::NotAParameter { key, owner, belongs_to }, span);
+            self.reader.report(DesignDefect::NotAParameter { key, owner, belongs_to }, span);
         }
     }
 
-    fn parts(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<PartSpec>> {
+    fn parts(&mut self, section: &Section<'t>, scale: Option<&LengthScale>) -> Option<Vec<PartSpec>> {
         let value = self.reader.raw(section, &keys::PARTS)?;
         let place = section.place(keys::PARTS.name);
         let elements = self.reader.array(&place, "a list of parts", value)?;
         if elements.is_empty() {
             let advice = "a half has at least one part";
-            self.reader.complain(Complaint::Empty { key: place, advice }, value.span());
+            self.reader.report(DesignDefect::Empty { key: place, advice }, value.span());
             return None;
         }
         if elements.len() > keys::MOST_PARTS {
-            let complaint = Complaint::TooManyParts { key: place, found: elements.len() };
-            self.reader.complain(complaint, value.span());
+            let defect = DesignDefect::TooManyParts { key: place, found: elements.len() };
+            self.reader.report(defect, value.span());
             return None;
         }
         // Every part is looked at, also behind a wrong one.
@@ -161,17 +161,17 @@ impl<'t> Walk<'t> {
         parts.into_iter().collect()
     }
 
-    fn part(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<PartSpec> {
-        self.reader.refuse_unknown_keys(section, Table::Part);
+    fn part(&mut self, section: &Section<'t>, scale: Option<&LengthScale>) -> Option<PartSpec> {
+        self.reader.refuse_unknown_keys(section, DesignTable::Part);
         let shape = self.shape(section, scale);
-        let none = Placement::NONE;
+        let none = PartPlacement::NONE;
         let axis = self.reader.direction(section, &keys::PART_AXIS).unwrap_or(none.facing);
         let rotate = self.reader.triple(section, &keys::PART_ROTATE, scale).unwrap_or(none.rotate);
         let at = self.reader.triple(section, &keys::PART_AT, scale).unwrap_or(none.translate);
         Some(PartSpec { shape: shape?, axis, rotate, at })
     }
 
-    fn shape(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<ShapeSpec> {
+    fn shape(&mut self, section: &Section<'t>, scale: Option<&LengthScale>) -> Option<ShapeSpec> {
         let advice = "a part has one shape: remove one of them, or make it a part of its own";
         if !SHAPES.iter().any(|key| section.has(key)) {
             self.reader.missing_shape(section, PART_ADVICE);
@@ -201,7 +201,7 @@ impl<'t> Walk<'t> {
                 let deflection = self.reader.number(section, &keys::PART_DEFLECTION, scale);
                 let file = self.file(section, &way, &keys::PART_UNIT, scale);
                 self.deflection_of(section, &keys::PART_DEFLECTION, file.as_ref());
-                let treatment = Treatment { deflection, ..Treatment::DEFAULT };
+                let treatment = MeshPreparation { deflection, ..MeshPreparation::DEFAULT };
                 file.map(|file| ShapeSpec::Mesh(FileSpec { treatment, ..file }))
             }
             keys::PART_PIECES => self.pieces(section, &way, scale).map(ShapeSpec::Pieces),
@@ -222,16 +222,16 @@ impl<'t> Walk<'t> {
         section: &Section<'t>,
         way: &Key,
         chord_error: impl Fn(f64) -> f64,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<ShapeSpec> {
-        let keys::Kind::Table(table) = way.kind else { return None };
+        let keys::ValueKind::Table(table) = way.kind else { return None };
         let section = &self.reader.section(section, way)?;
         self.reader.refuse_unknown_keys(section, table);
-        if table == Table::Sphere {
+        if table == DesignTable::Sphere {
             let radius = self.needed(section, &keys::SPHERE_RADIUS, scale)?;
             return Some(ShapeSpec::Sphere { radius, chord_error: chord_error(radius) });
         }
-        let is_cone = table == Table::Cone;
+        let is_cone = table == DesignTable::Cone;
         let (radius, height) = if is_cone {
             (keys::CONE_RADIUS, keys::CONE_HEIGHT)
         } else {
@@ -246,7 +246,7 @@ impl<'t> Walk<'t> {
     }
 
     /// A number that must be there.
-    fn needed(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<f64> {
+    fn needed(&mut self, section: &Section<'t>, key: &Key, scale: Option<&LengthScale>) -> Option<f64> {
         if !section.has(key) {
             self.reader.missing(section, key, key.doc);
         }
@@ -254,19 +254,24 @@ impl<'t> Walk<'t> {
     }
 
     /// The corners of a polygon, or a drawing.
-    fn outline(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<OutlineSpec> {
+    fn outline(
+        &mut self,
+        section: &Section<'t>,
+        key: &Key,
+        scale: Option<&LengthScale>,
+    ) -> Option<OutlineSpec> {
         const FEWEST: usize = 3;
         if section.is_text(key) {
             let file = self.file(section, key, &keys::PART_UNIT, scale)?;
             if !DRAWINGS.contains(&file.ending().as_str()) {
                 let (written, span) = self.reader.string(section, key)?;
-                let complaint = Complaint::UnknownName {
+                let defect = DesignDefect::UnknownName {
                     what: "kind of drawing",
                     name: super::quantity::shortened(written),
                     meant: None,
                     known: vec!["an .svg or .dxf file", "a list of corners [[x, y], …]"],
                 };
-                self.reader.complain(complaint, span);
+                self.reader.report(defect, span);
                 return None;
             }
             return Some(OutlineSpec::File(file));
@@ -276,8 +281,8 @@ impl<'t> Walk<'t> {
         let elements =
             self.reader.array(&place, "a list of corners [x, y], or the path of a drawing", value)?;
         if elements.len() < FEWEST {
-            let complaint = Complaint::TooFewCorners { key: place, found: elements.len() };
-            self.reader.complain(complaint, value.span());
+            let defect = DesignDefect::TooFewCorners { key: place, found: elements.len() };
+            self.reader.report(defect, value.span());
             return None;
         }
         let element = key.element();
@@ -298,14 +303,14 @@ impl<'t> Walk<'t> {
         section: &Section<'t>,
         key: &Key,
         unit_key: &Key,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<FileSpec> {
         let unit = self.reader.unit(section, unit_key);
         let path = self.reader.string(section, key).and_then(|(written, span)| {
             let path = self.base_dir.join(written);
             if written.trim().is_empty() {
                 let key = section.place(key.name);
-                self.reader.complain(Complaint::Empty { key, advice: "name an STL file" }, span);
+                self.reader.report(DesignDefect::Empty { key, advice: "name an STL file" }, span);
                 None
             } else {
                 Some(path)
@@ -324,7 +329,7 @@ impl<'t> Walk<'t> {
             (Some(file), None) => {
                 let text = file.symbol().to_owned();
                 let span = section.key_span(unit_key)?;
-                self.reader.complain(Complaint::UnitInDimensionlessDesign { text }, span);
+                self.reader.report(DesignDefect::UnitInDimensionlessDesign { text }, span);
                 return None;
             }
             (None, Some(design)) if says_it && !section.has(unit_key) => {
@@ -345,7 +350,7 @@ impl<'t> Walk<'t> {
         &mut self,
         section: &Section<'t>,
         key: &Key,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<Vec<Vec<[f64; 3]>>> {
         const LEAST_POINTS: usize = 4;
         let value = self.reader.raw(section, key)?;
@@ -353,7 +358,7 @@ impl<'t> Walk<'t> {
         let elements = self.reader.array(&place, "a list of pieces", value)?;
         if elements.is_empty() {
             let advice = "a half has at least one convex piece";
-            self.reader.complain(Complaint::Empty { key: place, advice }, value.span());
+            self.reader.report(DesignDefect::Empty { key: place, advice }, value.span());
             return None;
         }
         let mut pieces = Some(Vec::with_capacity(elements.len()));
@@ -362,8 +367,8 @@ impl<'t> Walk<'t> {
             self.reader.sources.insert(place.clone(), element.span());
             let piece = self.reader.array(&place, "a list of points [x, y, z]", element).and_then(|points| {
                 if points.len() < LEAST_POINTS {
-                    let complaint = Complaint::TooFewPoints { key: place.clone(), found: points.len() };
-                    self.reader.complain(complaint, element.span());
+                    let defect = DesignDefect::TooFewPoints { key: place.clone(), found: points.len() };
+                    self.reader.report(defect, element.span());
                     return None;
                 }
                 // Every point is looked at, also behind a wrong one.
@@ -382,7 +387,7 @@ impl<'t> Walk<'t> {
         &mut self,
         place: &str,
         value: &'t Spanned<DeValue<'t>>,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<[f64; 3]> {
         self.reader.three(place, "a point [x, y, z]", value, |reader, place, value| {
             reader.checked(place, &keys::COORDINATE, value, scale)

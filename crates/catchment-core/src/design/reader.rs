@@ -3,10 +3,10 @@
 //! A getter returns `None` if the key is absent *or* its value is wrong; in the second case the error is on
 //! the list, and a document with errors never becomes a design.
 
-use super::complaint::Complaint;
-use super::keys::{self, Key, Kind, Table};
-use super::problem::{Problems, Sources};
-use super::quantity::{Quantity, Scale, Unit, shortened};
+use super::defect::DesignDefect;
+use super::keys::{self, DesignTable, Key, ValueKind};
+use super::located_defect::{LocatedDefects, Sources};
+use super::quantity::{LengthScale, Quantity, QuantityUnit, shortened};
 use super::section::Section;
 use super::{Family, LengthUnit};
 use crate::pose::{Dof, Mount};
@@ -32,7 +32,7 @@ pub(super) const DIRECTIONS: [(&str, [f64; 3]); 6] = [
 /// Collects problems and sources.
 pub(super) struct Reader<'t> {
     text: &'t str,
-    found: Vec<(Complaint, Range<usize>)>,
+    found: Vec<(DesignDefect, Range<usize>)>,
     omitted: usize,
     broken: Vec<Range<usize>>,
     pub sources: Sources,
@@ -42,7 +42,7 @@ pub(super) struct Reader<'t> {
     pub is_provisional: bool,
 }
 
-/// Problems kept before they are sorted: enough that the first [`Problems::MOST`] are among them unless the
+/// Problems kept before they are sorted: enough that the first [`LocatedDefects::MOST`] are among them unless the
 /// file is hopeless, few enough that a hopeless one costs nothing.
 const MOST_KEPT: usize = 1000;
 
@@ -59,7 +59,7 @@ impl<'t> Reader<'t> {
         };
         for error in syntax {
             let span = error.span().unwrap_or(0..0);
-            let syntax = || Complaint::Syntax {
+            let syntax = || DesignDefect::Syntax {
                 message: error.message().to_owned(),
                 help: value_help(text, span.start),
             };
@@ -72,79 +72,79 @@ impl<'t> Reader<'t> {
     }
 
     /// All problems, if any.
-    pub(super) fn finish(self) -> Result<Sources, Problems> {
+    pub(super) fn finish(self) -> Result<Sources, LocatedDefects> {
         if self.found.is_empty() {
             Ok(self.sources)
         } else {
-            Err(Problems::new(self.found, self.omitted, self.text))
+            Err(LocatedDefects::new(self.found, self.omitted, self.text))
         }
     }
 
-    fn note(&mut self, complaint: impl FnOnce() -> Complaint, span: Range<usize>) {
+    fn note(&mut self, defect: impl FnOnce() -> DesignDefect, span: Range<usize>) {
         if self.found.len() < MOST_KEPT {
-            self.found.push((complaint(), span));
+            self.found.push((defect(), span));
         } else {
             self.omitted += 1;
         }
     }
 
     /// Notes a problem, unless it is the echo of a syntax error at the same place.
-    pub(super) fn complain(&mut self, complaint: Complaint, span: Range<usize>) {
-        self.complain_with(|| complaint, span);
+    pub(super) fn report(&mut self, defect: DesignDefect, span: Range<usize>) {
+        self.complain_with(|| defect, span);
     }
 
     /// The same; it is spelled out only if it is kept.
-    fn complain_with(&mut self, complaint: impl FnOnce() -> Complaint, span: Range<usize>) {
+    fn complain_with(&mut self, defect: impl FnOnce() -> DesignDefect, span: Range<usize>) {
         let echo = self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end);
         if !echo {
-            self.note(complaint, span);
+            self.note(defect, span);
         }
     }
 
     /// Notes that something is not there, unless syntax errors may have swallowed it.
     pub(super) fn missing(&mut self, section: &Section<'t>, key: &Key, advice: &'static str) {
         if self.broken.is_empty() {
-            let complaint = Complaint::Missing { key: section.place(key.name), advice };
-            self.complain(complaint, section.span.clone());
+            let defect = DesignDefect::Missing { key: section.place(key.name), advice };
+            self.report(defect, section.span.clone());
         }
     }
 
     /// Complains about a part that is nothing.
     pub(super) fn missing_shape(&mut self, section: &Section<'t>, advice: &'static str) {
         if self.broken.is_empty() {
-            let complaint = Complaint::NoShape { key: section.path.clone(), advice };
-            self.complain(complaint, section.span.clone());
+            let defect = DesignDefect::NoShape { key: section.path.clone(), advice };
+            self.report(defect, section.span.clone());
         }
     }
 
     fn wrong_type(&mut self, place: String, expected: &'static str, value: &Spanned<DeValue<'t>>) {
-        let complaint = Complaint::WrongType { key: place, expected, found: value.get_ref().type_str() };
-        self.complain(complaint, value.span());
+        let defect = DesignDefect::WrongType { key: place, expected, found: value.get_ref().type_str() };
+        self.report(defect, value.span());
     }
 
     fn out_of_range(&mut self, key: &Key, found: String, range: keys::Range, span: Range<usize>) {
-        let complaint = Complaint::OutOfRange { key: key.name.to_owned(), found, range, doc: key.doc };
-        self.complain(complaint, span);
+        let defect = DesignDefect::OutOfRange { key: key.name.to_owned(), found, range, doc: key.doc };
+        self.report(defect, span);
     }
 
     /// Complains about every key that `table` does not have.
-    pub(super) fn refuse_unknown_keys(&mut self, section: &Section<'t>, table: Table) {
+    pub(super) fn refuse_unknown_keys(&mut self, section: &Section<'t>, table: DesignTable) {
         for (name, _) in section.table {
             let written: &str = name.get_ref();
             if table.keys().any(|key| key.name == written) {
                 continue;
             }
-            let complaint = || Complaint::UnknownKey {
+            let defect = || DesignDefect::UnknownKey {
                 key: shortened(written),
                 table: table.name(),
                 meant: nearest(written, table.keys().map(|key| key.name)),
-                elsewhere: Table::ALL
+                elsewhere: DesignTable::ALL
                     .into_iter()
                     .find(|other| other.keys().any(|key| key.name == written))
-                    .map(Table::name),
+                    .map(DesignTable::name),
                 known: table.keys().map(|key| key.name).collect(),
             };
-            self.complain_with(complaint, name.span());
+            self.complain_with(defect, name.span());
         }
     }
 
@@ -190,10 +190,10 @@ impl<'t> Reader<'t> {
         let (text, span) = self.string(section, key)?;
         let place = section.place(key.name);
         if text.trim().is_empty() {
-            self.complain(Complaint::Empty { key: place, advice: "write a name, or remove the key" }, span);
+            self.report(DesignDefect::Empty { key: place, advice: "write a name, or remove the key" }, span);
             None
         } else if text.chars().count() > keys::LONGEST_LINE || text.contains(char::is_control) {
-            self.complain(Complaint::NotALine { key: place, longest: keys::LONGEST_LINE }, span);
+            self.report(DesignDefect::NotALine { key: place, longest: keys::LONGEST_LINE }, span);
             None
         } else {
             Some(text.to_owned())
@@ -224,7 +224,7 @@ impl<'t> Reader<'t> {
     /// A whole number in the range of its key.
     pub(super) fn whole(&mut self, section: &Section<'t>, key: &Key) -> Option<u32> {
         let (number, span) = self.integer(section, key)?;
-        let Kind::Whole { min, max } = key.kind else { return None };
+        let ValueKind::Whole { min, max } = key.kind else { return None };
         match u32::try_from(number) {
             Ok(number) if (min..=max).contains(&number) => Some(number),
             _ => {
@@ -240,10 +240,12 @@ impl<'t> Reader<'t> {
         let number = match value.get_ref() {
             DeValue::String(text) => {
                 let quantity = match text.parse::<Quantity>() {
-                    Ok(Quantity { unit: Unit::Bare, .. }) => Err(Complaint::NoUnit { text: shortened(text) }),
+                    Ok(Quantity { unit: QuantityUnit::Bare, .. }) => {
+                        Err(DesignDefect::NoUnit { text: shortened(text) })
+                    }
                     other => other,
                 };
-                return quantity.map_err(|complaint| self.complain(complaint, value.span())).ok();
+                return quantity.map_err(|defect| self.report(defect, value.span())).ok();
             }
             DeValue::Integer(integer) => {
                 i64::from_str_radix(integer.as_str(), integer.radix()).map_or(f64::INFINITY, |i| i as f64)
@@ -255,16 +257,21 @@ impl<'t> Reader<'t> {
             }
         };
         if number.is_finite() {
-            return Some(Quantity { value: number, unit: Unit::Bare });
+            return Some(Quantity { value: number, unit: QuantityUnit::Bare });
         }
         let text = shortened(&self.text[value.span()]);
-        self.complain(Complaint::NotFinite { text }, value.span());
+        self.report(DesignDefect::NotFinite { text }, value.span());
         None
     }
 
     /// The number of a key in the unit of its range (D, radians or none). `scale` is `None` when the width or
     /// the unit of the design is wrong: what needs them is then let pass.
-    pub(super) fn number(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<f64> {
+    pub(super) fn number(
+        &mut self,
+        section: &Section<'t>,
+        key: &Key,
+        scale: Option<&LengthScale>,
+    ) -> Option<f64> {
         let value = self.value(section, key)?;
         self.checked(&section.place(key.name), key, value, scale)
     }
@@ -275,20 +282,23 @@ impl<'t> Reader<'t> {
         place: &str,
         key: &Key,
         value: &Spanned<DeValue<'t>>,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<f64> {
         let quantity = self.quantity(place, value)?;
-        if self.measures_width && quantity.unit == Unit::D && matches!(key.kind, Kind::DrawnLength(_)) {
-            self.complain(Complaint::ShapesWidth { text: quantity.to_string() }, value.span());
+        if self.measures_width
+            && quantity.unit == QuantityUnit::D
+            && matches!(key.kind, ValueKind::DrawnLength(_))
+        {
+            self.report(DesignDefect::ShapesWidth { text: quantity.to_string() }, value.span());
             return None;
         }
         match key.checked(quantity, scale) {
             Ok(number) => number,
-            Err(Complaint::OutOfRange { .. }) if self.is_provisional && key.depends_on_width(quantity) => {
+            Err(DesignDefect::OutOfRange { .. }) if self.is_provisional && key.depends_on_width(quantity) => {
                 key.unchecked(quantity, scale)
             }
-            Err(complaint) => {
-                self.complain(complaint, value.span());
+            Err(defect) => {
+                self.report(defect, value.span());
                 None
             }
         }
@@ -303,7 +313,7 @@ impl<'t> Reader<'t> {
         if let Some((_, value)) = known.iter().find(|(name, _)| *name == written) {
             return Some(*value);
         }
-        self.complain(unknown_name(what, written, known.iter().map(|(name, _)| *name)), span);
+        self.report(unknown_name(what, written, known.iter().map(|(name, _)| *name)), span);
         None
     }
 
@@ -334,8 +344,8 @@ impl<'t> Reader<'t> {
             let [facing, assembled] = ["halves that are drawn facing +z", "halves that are drawn assembled"];
             let (owner, belongs_to) = if is_assembled { (assembled, facing) } else { (facing, assembled) };
             let belongs_to = belongs_to.to_owned();
-            let complaint = Complaint::NotAParameter { key: key.name.to_owned(), owner, belongs_to };
-            self.complain(complaint, span);
+            let defect = DesignDefect::NotAParameter { key: key.name.to_owned(), owner, belongs_to };
+            self.report(defect, span);
         }
     }
 
@@ -349,7 +359,7 @@ impl<'t> Reader<'t> {
         let expected = "a direction such as \"-z\", or [x, y, z]";
         let number = |reader: &mut Self, place: &str, element: &Spanned<DeValue<'t>>| {
             let Quantity { value, unit } = reader.quantity(place, element)?;
-            if unit == Unit::Bare {
+            if unit == QuantityUnit::Bare {
                 return Some(value);
             }
             reader.wrong_type(place.to_owned(), "a bare number", element);
@@ -358,7 +368,7 @@ impl<'t> Reader<'t> {
         let vector = DVec3::from_array(self.three(&place, expected, value, number)?);
         let unit = vector.try_normalize();
         if unit.is_none() {
-            self.complain(Complaint::NoDirection { key: place }, value.span());
+            self.report(DesignDefect::NoDirection { key: place }, value.span());
         }
         Some(unit?.to_array())
     }
@@ -368,7 +378,7 @@ impl<'t> Reader<'t> {
         &mut self,
         section: &Section<'t>,
         key: &Key,
-        scale: Option<&Scale>,
+        scale: Option<&LengthScale>,
     ) -> Option<[f64; 3]> {
         let value = self.value(section, key)?;
         let place = section.place(key.name);
@@ -409,8 +419,8 @@ impl<'t> Reader<'t> {
     ) -> Option<[T; N]> {
         let elements = self.array(place, expected, value)?;
         if elements.len() != N {
-            let complaint = Complaint::NotAPoint { key: place.to_owned(), found: elements.len(), needed: N };
-            self.complain(complaint, value.span());
+            let defect = DesignDefect::NotAPoint { key: place.to_owned(), found: elements.len(), needed: N };
+            self.report(defect, value.span());
             return None;
         }
         let read: Vec<Option<T>> = elements.iter().map(|element| one(self, place, element)).collect();
@@ -450,7 +460,7 @@ impl<'t> Reader<'t> {
             };
             let Some(dof) = self.name("degree of freedom", &known, (text, element.span())) else { continue };
             if list.iter().any(|(other, _)| *other == dof) {
-                self.complain(Complaint::Repeated { dof }, element.span());
+                self.report(DesignDefect::Repeated { dof }, element.span());
             } else {
                 list.push((dof, element.span()));
             }
@@ -459,13 +469,13 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// The complaint about a word that is none of `known`.
+/// The defect about a word that is none of `known`.
 pub(super) fn unknown_name(
     what: &'static str,
     written: &str,
     known: impl Iterator<Item = &'static str> + Clone,
-) -> Complaint {
-    Complaint::UnknownName {
+) -> DesignDefect {
+    DesignDefect::UnknownName {
         what,
         name: shortened(written),
         meant: nearest(written, known.clone()),

@@ -1,6 +1,6 @@
 //! The JSON schema of design files, for completion and checks in editors.
 
-use super::keys::{self, Applies, Key, Kind, Table};
+use super::keys::{self, Applies, DesignTable, Key, ValueKind};
 use super::reader::{DIRECTIONS, DRAWN};
 use super::{Family, LengthUnit};
 use crate::pose::Dof;
@@ -12,20 +12,20 @@ pub fn json_schema() -> String {
     let mut schema = Map::new();
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
     schema.insert("title".into(), json!("catchment design"));
-    schema.extend(table(Table::Root));
+    schema.extend(table(DesignTable::Root));
     format!("{:#}\n", Value::Object(schema))
 }
 
-fn table(table: Table) -> Map<String, Value> {
+fn table(table: DesignTable) -> Map<String, Value> {
     let properties: Map<String, Value> = table
         .keys()
-        .filter(|key| key.kind != Kind::Later)
+        .filter(|key| key.kind != ValueKind::Later)
         .map(|key| (key.name.to_owned(), property(key)))
         .collect();
     let mut schema = Map::new();
     schema.insert("type".into(), json!("object"));
     schema.insert("additionalProperties".into(), json!(false));
-    if table == Table::Root {
+    if table == DesignTable::Root {
         schema.insert("required".into(), json!([keys::CONNECTOR.name]));
     }
     schema.insert("properties".into(), Value::Object(properties));
@@ -34,34 +34,34 @@ fn table(table: Table) -> Map<String, Value> {
 
 fn property(key: &Key) -> Value {
     let mut schema = match key.kind {
-        Kind::Table(inner) => Value::Object(table(inner)),
-        Kind::Line => json!({ "type": "string", "minLength": 1, "maxLength": keys::LONGEST_LINE }),
-        Kind::Path => json!({ "type": "string", "minLength": 1 }),
-        Kind::Ratio(range) => json!({ "type": "number", "minimum": range.min, "maximum": range.max }),
-        Kind::Whole { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
-        Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Length(range) | Kind::Angle(range) | Kind::Width(range) => json!({ "anyOf": [
+        ValueKind::Table(inner) => Value::Object(table(inner)),
+        ValueKind::Line => json!({ "type": "string", "minLength": 1, "maxLength": keys::LONGEST_LINE }),
+        ValueKind::Path => json!({ "type": "string", "minLength": 1 }),
+        ValueKind::Ratio(range) => json!({ "type": "number", "minimum": range.min, "maximum": range.max }),
+        ValueKind::Whole { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        ValueKind::Flag => json!({ "type": "boolean" }),
+        ValueKind::Length(range) | ValueKind::Angle(range) | ValueKind::Width(range) => json!({ "anyOf": [
             { "type": "number", "minimum": range.min, "maximum": range.max },
             with_unit(key.kind),
         ]}),
-        Kind::DrawnLength(_) => json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] }),
-        Kind::Unit => json!({ "enum": LengthUnit::ALL.map(LengthUnit::symbol) }),
-        Kind::Family => json!({ "enum": Family::ALL.map(Family::name) }),
-        Kind::Mount => json!({ "enum": ["x", "y"] }),
-        Kind::Drawn => json!({ "enum": DRAWN.map(|(name, _)| name) }),
-        Kind::Direction => json!({ "anyOf": [
+        ValueKind::DrawnLength(_) => json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] }),
+        ValueKind::Unit => json!({ "enum": LengthUnit::ALL.map(LengthUnit::symbol) }),
+        ValueKind::Family => json!({ "enum": Family::ALL.map(Family::name) }),
+        ValueKind::Mount => json!({ "enum": ["x", "y"] }),
+        ValueKind::Drawn => json!({ "enum": DRAWN.map(|(name, _)| name) }),
+        ValueKind::Direction => json!({ "anyOf": [
             { "enum": DIRECTIONS.map(|(name, _)| name) },
             three(&json!({ "type": "number" })),
         ]}),
-        Kind::Point(_) | Kind::Turns(_) => {
+        ValueKind::Point(_) | ValueKind::Turns(_) => {
             three(&json!({ "anyOf": [{ "type": "number" }, with_unit(key.element().kind)] }))
         }
-        Kind::Dofs => json!({
+        ValueKind::Dofs => json!({
             "type": "array",
             "uniqueItems": true,
             "items": { "enum": Dof::ALL.map(Dof::name) },
         }),
-        Kind::Pieces => json!({
+        ValueKind::Pieces => json!({
             "type": "array",
             "minItems": 1,
             "items": {
@@ -70,13 +70,13 @@ fn property(key: &Key) -> Value {
                 "items": three(&json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] })),
             },
         }),
-        Kind::Parts => json!({
+        ValueKind::Parts => json!({
             "type": "array",
             "minItems": 1,
             "maxItems": keys::MOST_PARTS,
-            "items": Value::Object(table(Table::Part)),
+            "items": Value::Object(table(DesignTable::Part)),
         }),
-        Kind::Outline(_) => json!({ "anyOf": [
+        ValueKind::Outline(_) => json!({ "anyOf": [
             { "type": "string", "minLength": 1 },
             { "type": "array", "minItems": 3, "items": {
                 "type": "array",
@@ -85,7 +85,7 @@ fn property(key: &Key) -> Value {
                 "items": { "anyOf": [{ "type": "number" }, with_unit(key.element().kind)] },
             }},
         ]}),
-        Kind::Later => json!(false),
+        ValueKind::Later => json!(false),
     };
     let doc = match key.applies {
         Applies::Always => key.doc.to_owned(),
@@ -101,10 +101,10 @@ fn three(items: &Value) -> Value {
 }
 
 /// A string that carries a unit.
-fn with_unit(kind: Kind) -> Value {
+fn with_unit(kind: ValueKind) -> Value {
     let units = match kind {
-        Kind::Angle(_) => "deg|°|rad",
-        Kind::Width(_) => "um|µm|mm|cm|m|in|inch",
+        ValueKind::Angle(_) => "deg|°|rad",
+        ValueKind::Width(_) => "um|µm|mm|cm|m|in|inch",
         _ => "D|um|µm|mm|cm|m|in|inch",
     };
     let number = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*";
@@ -140,6 +140,6 @@ mod tests {
             + properties(&schema["properties"]["alignment"])
             + properties(&schema["properties"]["errors"])
             + properties(&schema["properties"]["docked"]);
-        assert_eq!(counted, keys::KEYS.iter().filter(|key| key.kind != Kind::Later).count());
+        assert_eq!(counted, keys::KEYS.iter().filter(|key| key.kind != ValueKind::Later).count());
     }
 }

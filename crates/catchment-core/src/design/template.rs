@@ -1,7 +1,7 @@
 //! Commented starting points for `catchment new`.
 
 use super::family::{Freedom, Value, XFace};
-use super::keys::{self, Applies, Key, Kind, Table};
+use super::keys::{self, Applies, DesignTable, Key, ValueKind};
 use super::{Alignment, Docked, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
 use std::fmt::Write;
@@ -13,8 +13,14 @@ pub fn template(family: Family) -> String {
          # A docking connector. Bare numbers are in D (the width) and radians; strings carry a unit: \"5 mm\",\n\
          # \"30 deg\". The first line is for editors; `catchment schema -o schema.json` writes the file it names.\n\n",
     );
-    for table in [Table::Root, Table::Connector, Table::Alignment, Table::Errors, Table::Docked] {
-        if table != Table::Root {
+    for table in [
+        DesignTable::Root,
+        DesignTable::Connector,
+        DesignTable::Alignment,
+        DesignTable::Errors,
+        DesignTable::Docked,
+    ] {
+        if table != DesignTable::Root {
             let _ = writeln!(text, "\n{}", table.name());
         }
         for key in table.keys().filter(|key| key.applies.to(Some(family))) {
@@ -34,17 +40,22 @@ pub fn template(family: Family) -> String {
 fn is_active(key: &Key, family: Family) -> bool {
     let free = Alignment::default_for(Some(family)).free;
     match key.table {
-        Table::Root => true,
-        Table::Connector => {
+        DesignTable::Root => true,
+        DesignTable::Connector => {
             [keys::FAMILY, keys::WIDTH, keys::ASPECT_RATIO].contains(key)
                 || (matches!(key.applies, Applies::Families(_)) && FamilySpec::new(family).get(key).is_some())
         }
-        Table::Alignment => {
+        DesignTable::Alignment => {
             [keys::FREE, keys::CENTER_OF_ROTATION, keys::ROTATION_LENGTH].contains(key)
                 || (*key == keys::DONT_CARE && family.freedom() == Freedom::Round)
         }
-        Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
-        Table::Half | Table::Docked | Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => false,
+        DesignTable::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
+        DesignTable::Half
+        | DesignTable::Docked
+        | DesignTable::Part
+        | DesignTable::Sphere
+        | DesignTable::Cylinder
+        | DesignTable::Cone => false,
     }
 }
 
@@ -67,18 +78,18 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
         keys::ROTATION_LENGTH => number(alignment.rotation_length),
         keys::MOUNT => Some(if alignment.mount == Mount::X { "\"x\"" } else { "\"y\"" }.to_owned()),
         keys::SYMMETRY => Some(alignment.symmetry.to_string()),
-        _ if key.table == Table::Errors => {
+        _ if key.table == DesignTable::Errors => {
             let dof = key.name.parse::<Dof>().ok()?;
             let value = alignment.half_ranges[dof.index()];
-            if matches!(key.kind, Kind::Angle(_)) { Some(degrees(value)) } else { number(value) }
+            if matches!(key.kind, ValueKind::Angle(_)) { Some(degrees(value)) } else { number(value) }
         }
         keys::DOCKED_DEPTH => number(alignment.docked.depth),
-        _ if key.table == Table::Docked => {
+        _ if key.table == DesignTable::Docked => {
             let [length, angle] = Docked::MOST_PLAY;
-            if matches!(key.kind, Kind::Angle(_)) { Some(degrees(angle)) } else { number(length) }
+            if matches!(key.kind, ValueKind::Angle(_)) { Some(degrees(angle)) } else { number(length) }
         }
         _ => match spec.get(key)? {
-            Value::Number(value) if matches!(key.kind, Kind::Angle(_)) => Some(degrees(value)),
+            Value::Number(value) if matches!(key.kind, ValueKind::Angle(_)) => Some(degrees(value)),
             Value::Number(value) => number(value),
             Value::Whole(value) => Some(value.to_string()),
             Value::Flag(value) => Some(value.to_string()),

@@ -12,7 +12,7 @@ fn design(text: &str) -> Design {
     }
 }
 
-fn problems(text: &str) -> Problems {
+fn problems(text: &str) -> LocatedDefects {
     match read(text, Path::new("")) {
         Ok(file) => panic!("no problem found: {file:?}"),
         Err(problems) => problems,
@@ -20,7 +20,7 @@ fn problems(text: &str) -> Problems {
 }
 
 /// The only problem of a design.
-fn problem(text: &str) -> Problem {
+fn problem(text: &str) -> LocatedDefect {
     let problems = problems(text);
     assert_eq!(problems.list.len(), 1, "{problems}");
     problems.list[0].clone()
@@ -112,9 +112,9 @@ fn a_mesh_is_scaled_from_its_unit_to_d() {
     };
     assert!((scale("width = 5\nunit = \"cm\"", "unit = \"mm\"") - 0.02).abs() < 1e-17);
     assert_eq!(scale("width = 4.0", ""), 0.25);
-    let complaint = |head, unit| read_here(head, unit).unwrap_err().list[0].complaint.clone();
-    assert!(matches!(complaint("width = 5\nunit = \"cm\"", ""), Complaint::Missing { .. }));
-    assert!(matches!(complaint("", "unit = \"mm\""), Complaint::UnitInDimensionlessDesign { .. }));
+    let defect = |head, unit| read_here(head, unit).unwrap_err().list[0].defect.clone();
+    assert!(matches!(defect("width = 5\nunit = \"cm\"", ""), DesignDefect::Missing { .. }));
+    assert!(matches!(defect("", "unit = \"mm\""), DesignDefect::UnitInDimensionlessDesign { .. }));
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn all_problems_are_found_at_once_with_their_places() {
                 z = true\n";
     let problems = problems(text);
     let got: Vec<(usize, usize, String)> =
-        problems.list.iter().map(|p| (p.line, p.column, p.complaint.to_string())).collect();
+        problems.list.iter().map(|p| (p.line, p.column, p.defect.to_string())).collect();
     let expected = [
         (1, 10, "this design has schema 2; this program reads schema 1"),
         (3, 10, "unknown family `pyramide`"),
@@ -149,7 +149,7 @@ fn all_problems_are_found_at_once_with_their_places() {
         (13, 1, "unknown key `z` in [errors]"),
     ];
     assert_eq!(got, expected.map(|(line, column, text)| (line, column, text.to_owned())));
-    let help = |index: usize| problems.list[index].complaint.help().unwrap();
+    let help = |index: usize| problems.list[index].defect.help().unwrap();
     assert!(help(1).starts_with("did you mean `pyramid`?"));
     assert_eq!(help(2), "did you mean `width`?");
     assert_eq!(help(5), "did you mean `pitch`? One of x, y, roll, pitch, yaw");
@@ -157,41 +157,41 @@ fn all_problems_are_found_at_once_with_their_places() {
 
 #[test]
 fn each_rule_has_its_complaint() {
-    let pyramid = |rest: &str| problem(&format!("[connector]\nfamily = \"pyramid\"\n{rest}")).complaint;
-    assert!(matches!(pyramid("pins = 3"), Complaint::NotAParameter { .. }));
-    assert!(matches!(pyramid("face_height = 0.3"), Complaint::NotAParameter { .. }));
-    assert!(matches!(pyramid("aspect_ratio = \"5 mm\""), Complaint::NotARatio { .. }));
-    assert!(matches!(pyramid("aspect_ratio = true"), Complaint::WrongType { .. }));
-    assert!(matches!(pyramid("aspect_ratio = nan"), Complaint::NotFinite { .. }));
-    assert!(matches!(pyramid("aspect_ratio = 1e999"), Complaint::NotFinite { .. }));
-    assert!(matches!(pyramid("width = \"1 D\""), Complaint::WidthInD));
-    assert!(matches!(pyramid("width = 0"), Complaint::OutOfRange { .. }));
-    assert!(matches!(pyramid("unit = \"mm\""), Complaint::Missing { .. }));
+    let pyramid = |rest: &str| problem(&format!("[connector]\nfamily = \"pyramid\"\n{rest}")).defect;
+    assert!(matches!(pyramid("pins = 3"), DesignDefect::NotAParameter { .. }));
+    assert!(matches!(pyramid("face_height = 0.3"), DesignDefect::NotAParameter { .. }));
+    assert!(matches!(pyramid("aspect_ratio = \"5 mm\""), DesignDefect::NotARatio { .. }));
+    assert!(matches!(pyramid("aspect_ratio = true"), DesignDefect::WrongType { .. }));
+    assert!(matches!(pyramid("aspect_ratio = nan"), DesignDefect::NotFinite { .. }));
+    assert!(matches!(pyramid("aspect_ratio = 1e999"), DesignDefect::NotFinite { .. }));
+    assert!(matches!(pyramid("width = \"1 D\""), DesignDefect::WidthInD));
+    assert!(matches!(pyramid("width = 0"), DesignDefect::OutOfRange { .. }));
+    assert!(matches!(pyramid("unit = \"mm\""), DesignDefect::Missing { .. }));
     assert!(matches!(
         pyramid("unit = \"furlong\"\nbase_thickness = \"3 mm\""),
-        Complaint::UnknownName { .. }
+        DesignDefect::UnknownName { .. }
     ));
-    assert!(matches!(pyramid("base_thickness = \"3\""), Complaint::NoUnit { .. }));
-    assert!(matches!(pyramid("base_thickness = \"3 deg\""), Complaint::WrongDimension { .. }));
-    assert!(matches!(pyramid("center_of_rotation = 1"), Complaint::UnknownKey { elsewhere: Some(_), .. }));
-    assert!(matches!(pyramid("[alignment]\nfree = []"), Complaint::Empty { .. }));
+    assert!(matches!(pyramid("base_thickness = \"3\""), DesignDefect::NoUnit { .. }));
+    assert!(matches!(pyramid("base_thickness = \"3 deg\""), DesignDefect::WrongDimension { .. }));
+    assert!(matches!(pyramid("center_of_rotation = 1"), DesignDefect::UnknownKey { elsewhere: Some(_), .. }));
+    assert!(matches!(pyramid("[alignment]\nfree = []"), DesignDefect::Empty { .. }));
     assert!(matches!(
         pyramid("[alignment]\nfree = [\"yaw\"]\ndont_care = [\"yaw\"]"),
-        Complaint::FreeAndDontCare { dof: Dof::Yaw }
+        DesignDefect::FreeAndDontCare { dof: Dof::Yaw }
     ));
-    assert!(matches!(pyramid("[alignment]\ndont_care = [\"x\"]"), Complaint::DontCareTranslation { .. }));
-    assert!(matches!(pyramid("[errors]\npitch = \"91 deg\""), Complaint::PitchBeyondPole));
-    assert!(matches!(pyramid("[connector.fixed]"), Complaint::Contradiction { .. }));
+    assert!(matches!(pyramid("[alignment]\ndont_care = [\"x\"]"), DesignDefect::DontCareTranslation { .. }));
+    assert!(matches!(pyramid("[errors]\npitch = \"91 deg\""), DesignDefect::PitchBeyondPole));
+    assert!(matches!(pyramid("[connector.fixed]"), DesignDefect::Contradiction { .. }));
     assert!(matches!(
-        problem("errors = 3\n[connector]\nfamily = \"cone\"").complaint,
-        Complaint::WrongType { .. }
+        problem("errors = 3\n[connector]\nfamily = \"cone\"").defect,
+        DesignDefect::WrongType { .. }
     ));
-    assert!(matches!(problem("").complaint, Complaint::Missing { .. }));
-    assert!(matches!(problem("[connector]").complaint, Complaint::Missing { .. }));
+    assert!(matches!(problem("").defect, DesignDefect::Missing { .. }));
+    assert!(matches!(problem("[connector]").defect, DesignDefect::Missing { .. }));
     let planar = "[connector]\nfamily = \"s-face\"\n[alignment]\nfree = [\"x\", \"yaw\"]";
-    assert!(matches!(problem(planar).complaint, Complaint::OutOfPlane { dof: Dof::Yaw, .. }));
+    assert!(matches!(problem(planar).defect, DesignDefect::OutOfPlane { dof: Dof::Yaw, .. }));
     let name = format!("name = \"{}\"\n[connector]\nfamily = \"cone\"", "n".repeat(201));
-    assert!(matches!(problem(&name).complaint, Complaint::NotALine { .. }));
+    assert!(matches!(problem(&name).defect, DesignDefect::NotALine { .. }));
 }
 
 #[test]
@@ -199,31 +199,31 @@ fn each_rule_of_own_halves_has_its_complaint() {
     const GOOD: &str = "pieces = [[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]]";
     let own = |fixed: &str| {
         let text = format!("[connector]\nface_height = 0.5\nfixed = {{ {fixed} }}\nmoving = {{ {GOOD} }}");
-        problem(&text).complaint
+        problem(&text).defect
     };
-    assert!(matches!(own(""), Complaint::Missing { .. }));
-    assert!(matches!(own("pieces = []"), Complaint::Empty { .. }));
-    assert!(matches!(own("pieces = [[[0, 0, 0]]]"), Complaint::TooFewPoints { found: 1, .. }));
+    assert!(matches!(own(""), DesignDefect::Missing { .. }));
+    assert!(matches!(own("pieces = []"), DesignDefect::Empty { .. }));
+    assert!(matches!(own("pieces = [[[0, 0, 0]]]"), DesignDefect::TooFewPoints { found: 1, .. }));
     assert!(matches!(
         own("pieces = [[[0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]]"),
-        Complaint::NotAPoint { found: 2, .. }
+        DesignDefect::NotAPoint { found: 2, .. }
     ));
     assert!(matches!(
         own("pieces = [[[nan, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]]"),
-        Complaint::NotFinite { .. }
+        DesignDefect::NotFinite { .. }
     ));
     assert!(matches!(
         own("pieces = [[[5000, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]]"),
-        Complaint::OutOfRange { .. }
+        DesignDefect::OutOfRange { .. }
     ));
-    assert!(matches!(own("profile = [[0, 0]]"), Complaint::UnsupportedHalf { key: "profile" }));
-    assert!(matches!(own("mesh = \" \""), Complaint::Empty { .. }));
-    assert!(matches!(own(&format!("{GOOD}, mesh = \"half.stl\"")), Complaint::Contradiction { .. }));
-    assert!(matches!(own(&format!("{GOOD}, unit = \"mm\"")), Complaint::NotAParameter { .. }));
+    assert!(matches!(own("profile = [[0, 0]]"), DesignDefect::UnsupportedHalf { key: "profile" }));
+    assert!(matches!(own("mesh = \" \""), DesignDefect::Empty { .. }));
+    assert!(matches!(own(&format!("{GOOD}, mesh = \"half.stl\"")), DesignDefect::Contradiction { .. }));
+    assert!(matches!(own(&format!("{GOOD}, unit = \"mm\"")), DesignDefect::NotAParameter { .. }));
     let missing = problems("[connector]\n[connector.fixed]\npieces = 3");
-    let complaints: Vec<String> = missing.list.iter().map(|p| p.complaint.to_string()).collect();
+    let defects: Vec<String> = missing.list.iter().map(|p| p.defect.to_string()).collect();
     assert_eq!(
-        complaints,
+        defects,
         ["`connector.moving` is missing", "`connector.fixed.pieces` should be a list of pieces, not integer"]
     );
 }
@@ -232,17 +232,17 @@ fn each_rule_of_own_halves_has_its_complaint() {
 fn hopeless_text_is_refused_quickly_and_briefly() {
     for text in ["[".repeat(100_000), "a = ".to_owned() + &"[".repeat(100_000), "]\n".repeat(100_000)] {
         let problems = problems(&text);
-        assert!(problems.list.len() <= Problems::MOST);
+        assert!(problems.list.len() <= LocatedDefects::MOST);
     }
     let many = "key = 1\n".repeat(2000) + "[connector]\nfamily = \"cone\"";
     let found = problems(&many);
-    assert_eq!(found.list.len(), Problems::MOST);
+    assert_eq!(found.list.len(), LocatedDefects::MOST);
     assert_eq!(found.list.len() + found.omitted, 2000);
     let strange: Vec<String> = (0..2000).map(|k| format!("key{k} = 1\n")).collect();
     let found = problems(&(strange.concat() + "[connector]\nfamily = \"cone\""));
-    assert_eq!((found.list.len(), found.omitted), (Problems::MOST, 2000 - Problems::MOST));
+    assert_eq!((found.list.len(), found.omitted), (LocatedDefects::MOST, 2000 - LocatedDefects::MOST));
     let large = "#".repeat(LARGEST_FILE + 1);
-    assert!(matches!(problem(&large).complaint, Complaint::TooLarge { .. }));
+    assert!(matches!(problem(&large).defect, DesignDefect::TooLarge { .. }));
 }
 
 #[test]
@@ -258,24 +258,24 @@ fn overrides_follow_the_rules_of_the_file() {
     let flat = cone.clone().with_aspect_ratio(0.25).unwrap();
     assert_eq!(flat.connector, ConnectorSpec::Family(FamilySpec::new(Family::Cone).with_aspect_ratio(0.25)));
 
-    assert!(matches!(parse_dofs("x,x"), Err(Complaint::Repeated { dof: Dof::X })));
-    assert!(matches!(parse_dofs(""), Err(Complaint::Empty { .. })));
-    assert!(matches!(parse_dofs("x,"), Err(Complaint::UnknownName { .. })));
-    assert!(matches!(cone.clone().with_free(DofSet::EMPTY), Err(Complaint::Empty { .. })));
-    assert!(matches!(cone.clone().with_aspect_ratio(f64::NAN), Err(Complaint::OutOfRange { .. })));
+    assert!(matches!(parse_dofs("x,x"), Err(DesignDefect::Repeated { dof: Dof::X })));
+    assert!(matches!(parse_dofs(""), Err(DesignDefect::Empty { .. })));
+    assert!(matches!(parse_dofs("x,"), Err(DesignDefect::UnknownName { .. })));
+    assert!(matches!(cone.clone().with_free(DofSet::EMPTY), Err(DesignDefect::Empty { .. })));
+    assert!(matches!(cone.clone().with_aspect_ratio(f64::NAN), Err(DesignDefect::OutOfRange { .. })));
     assert!(matches!(
         cone.with_center_of_rotation("30 deg".parse().unwrap()),
-        Err(Complaint::WrongDimension { .. })
+        Err(DesignDefect::WrongDimension { .. })
     ));
     let planar = design("[connector]\nfamily = \"v-face\"");
-    assert!(matches!(planar.with_free(DofSet::ALL), Err(Complaint::OutOfPlane { layered: false, .. })));
+    assert!(matches!(planar.with_free(DofSet::ALL), Err(DesignDefect::OutOfPlane { layered: false, .. })));
     let layers = "[connector]\nfamily = \"x-face\"";
     let refused = design(layers).with_free(DofSet::ALL).unwrap_err();
     assert!(refused.help().is_some_and(|help| help.contains("write layer_thickness and layer_gap")));
     let deep = design(&format!("{layers}\nlayer_gap = 0.2\n[alignment]\nfree = [\"x\", \"y\", \"yaw\"]"));
     assert!(deep.with_free(DofSet::ALL).is_ok());
     let own = design(&format!("[connector]\n{TETRAHEDRA}").replace("\"1 cm\"", "10"));
-    assert!(matches!(own.with_aspect_ratio(1.0), Err(Complaint::NotAParameter { .. })));
+    assert!(matches!(own.with_aspect_ratio(1.0), Err(DesignDefect::NotAParameter { .. })));
 }
 
 proptest::proptest! {

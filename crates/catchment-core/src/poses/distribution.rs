@@ -2,7 +2,7 @@
 
 use super::terms::terms;
 use super::{Fault, Found};
-use crate::design::Findings;
+use crate::design::Diagnostics;
 use crate::design::{Design, Quantity};
 use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ impl Distribution {
     ///
     /// # Errors
     /// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
-    pub fn normal(sigmas: &str, design: &Design) -> Result<Self, Findings> {
+    pub fn normal(sigmas: &str, design: &Design) -> Result<Self, Diagnostics> {
         Ok(Self::Normal { mean: PoseError::default(), sigma: sizes(sigmas, design)? })
     }
 
@@ -54,13 +54,13 @@ impl Distribution {
     ///
     /// # Errors
     /// As [`Distribution::normal`].
-    pub fn uniform(half_widths: &str, design: &Design) -> Result<Self, Findings> {
+    pub fn uniform(half_widths: &str, design: &Design) -> Result<Self, Diagnostics> {
         Ok(Self::Uniform { mean: PoseError::default(), half_width: sizes(half_widths, design)? })
     }
 }
 
 /// A size of each error, in D and radians; 0 where none is named.
-fn sizes(text: &str, design: &Design) -> Result<PoseError, Findings> {
+fn sizes(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
     Ok(PoseError::from_array(parse_sizes(text, design)?.map(Option::unwrap_or_default)))
 }
 
@@ -68,7 +68,7 @@ fn sizes(text: &str, design: &Design) -> Result<PoseError, Findings> {
 ///
 /// # Errors
 /// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
-pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Findings> {
+pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diagnostics> {
     let mut found = Found::default();
     let (written, spans) = terms(text, &mut found);
     let mut values = [None; 5];

@@ -19,20 +19,20 @@
 //! Names with control characters, or with invisible characters (a byte order mark), are always rejected.
 
 use super::{Fault, is_hidden, shortened};
-use crate::design::{Design, LengthUnit, Unit, nearest};
+use crate::design::{Design, LengthUnit, QuantityUnit, nearest};
 use crate::pose::Dof;
 use crate::suggest::{as_it_looks, odd};
 
 /// Units that a column's name may give.
-const UNITS: [(&str, Unit); 8] = [
-    ("um", Unit::Length(LengthUnit::Um)),
-    ("mm", Unit::Length(LengthUnit::Mm)),
-    ("cm", Unit::Length(LengthUnit::Cm)),
-    ("m", Unit::Length(LengthUnit::M)),
-    ("in", Unit::Length(LengthUnit::In)),
-    ("D", Unit::D),
-    ("deg", Unit::Degrees),
-    ("rad", Unit::Radians),
+const UNITS: [(&str, QuantityUnit); 8] = [
+    ("um", QuantityUnit::Length(LengthUnit::Um)),
+    ("mm", QuantityUnit::Length(LengthUnit::Mm)),
+    ("cm", QuantityUnit::Length(LengthUnit::Cm)),
+    ("m", QuantityUnit::Length(LengthUnit::M)),
+    ("in", QuantityUnit::Length(LengthUnit::In)),
+    ("D", QuantityUnit::D),
+    ("deg", QuantityUnit::Degrees),
+    ("rad", QuantityUnit::Radians),
 ];
 /// What people put around the name of an error.
 const DECORATIONS: [&str; 12] =
@@ -49,7 +49,7 @@ const ADDED: [&str; 3] = ["outcome", "final_height", "contacts"];
 const LONGEST_NAME: usize = 200;
 
 /// The error and the unit that a column holds; `None` for one that is carried through.
-pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>, Fault> {
+pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, Fault> {
     if name.contains(is_hidden) {
         let message = format!("`{}` has a character that does not show", shortened(name));
         return Err(Fault::new(
@@ -76,11 +76,13 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>,
         });
     };
     let base = dof.name();
-    let Some(symbol) = symbol else { return Ok(Some((dof, Unit::Bare))) };
+    let Some(symbol) = symbol else { return Ok(Some((dof, QuantityUnit::Bare))) };
     match UNITS.iter().find(|(known, _)| *known == symbol).map(|(_, unit)| *unit) {
-        Some(unit @ (Unit::Degrees | Unit::Radians)) if dof.is_rotation() => Ok(Some((dof, unit))),
-        Some(Unit::D) if !dof.is_rotation() => Ok(Some((dof, Unit::D))),
-        Some(unit @ Unit::Length(_)) if !dof.is_rotation() => {
+        Some(unit @ (QuantityUnit::Degrees | QuantityUnit::Radians)) if dof.is_rotation() => {
+            Ok(Some((dof, unit)))
+        }
+        Some(QuantityUnit::D) if !dof.is_rotation() => Ok(Some((dof, QuantityUnit::D))),
+        Some(unit @ QuantityUnit::Length(_)) if !dof.is_rotation() => {
             if design.unit.is_some() {
                 return Ok(Some((dof, unit)));
             }
@@ -124,7 +126,9 @@ fn near(name: &str) -> Option<String> {
     let words = words(name);
     let unit = |word: &str| UNITS.iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(word));
     let fitting = |dof: Dof, word: &str| {
-        unit(word).filter(|(_, unit)| matches!(unit, Unit::Degrees | Unit::Radians) == dof.is_rotation())
+        unit(word).filter(|(_, unit)| {
+            matches!(unit, QuantityUnit::Degrees | QuantityUnit::Radians) == dof.is_rotation()
+        })
     };
     let turned = turn_in(&words).map(|dof| (dof, ""));
     let (dof, glued) = turned.or_else(|| words.iter().find_map(|word| error_in(word))).or_else(|| {
@@ -195,20 +199,20 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn read(name: &str) -> Result<Option<(Dof, Unit)>, Fault> {
+    fn read(name: &str) -> Result<Option<(Dof, QuantityUnit)>, Fault> {
         let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\n";
         column(name, &crate::design::read(text, Path::new("")).unwrap().design)
     }
 
     #[test]
     fn plain_forms_are_read() {
-        let mm = Unit::Length(LengthUnit::Mm);
+        let mm = QuantityUnit::Length(LengthUnit::Mm);
         for name in ["x_mm", "x [mm]", "x (mm)", "x[mm]", "x  ( mm )"] {
             assert_eq!(read(name), Ok(Some((Dof::X, mm))), "{name}");
         }
-        assert_eq!(read("pitch (deg)"), Ok(Some((Dof::Pitch, Unit::Degrees))));
-        assert_eq!(read("y [D]"), Ok(Some((Dof::Y, Unit::D))));
-        assert_eq!(read("yaw"), Ok(Some((Dof::Yaw, Unit::Bare))));
+        assert_eq!(read("pitch (deg)"), Ok(Some((Dof::Pitch, QuantityUnit::Degrees))));
+        assert_eq!(read("y [D]"), Ok(Some((Dof::Y, QuantityUnit::D))));
+        assert_eq!(read("yaw"), Ok(Some((Dof::Yaw, QuantityUnit::Bare))));
     }
 
     #[test]

@@ -9,7 +9,7 @@
 
 use super::terms::terms;
 use super::{Fault, Found, shortened};
-use crate::design::{Complaint, Design, Findings, Quantity, Unit};
+use crate::design::{Design, DesignDefect, Diagnostics, Quantity, QuantityUnit};
 use crate::pose::Dof;
 
 /// Most angles of a list.
@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// Everything that is wrong with the text, each with its bytes.
-pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], Findings> {
+pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], Diagnostics> {
     let mut found = Found::default();
     let (written, spans) = terms(text, &mut found);
     let mut counts = [None; 5];
@@ -34,7 +34,8 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], F
         if !design.alignment.free.contains(dof) {
             let help = format!("leave {name} out, or free it in [alignment] of the design");
             found.push(Fault::new(format!("{name} is locked, so it has one place"), help), span);
-        } else if unit != Unit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value) {
+        } else if unit != QuantityUnit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value)
+        {
             let help = "write how many points, such as 5: 2 or more";
             found.push(
                 Fault::new(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help),
@@ -55,13 +56,13 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], F
 ///
 /// # Examples
 /// ```
-/// # fn main() -> Result<(), catchment_core::design::Findings> {
+/// # fn main() -> Result<(), catchment_core::design::Diagnostics> {
 /// let angles = catchment_core::poses::parse_angles("0..45:2.25 deg")?;
 /// assert_eq!((angles.len(), angles[20]), (21, 45f64.to_radians()));
 /// # Ok(())
 /// # }
 /// ```
-pub fn parse_angles(text: &str) -> Result<Vec<f64>, Findings> {
+pub fn parse_angles(text: &str) -> Result<Vec<f64>, Diagnostics> {
     angles(text).map_err(|fault| one(text, fault))
 }
 
@@ -69,16 +70,16 @@ pub fn parse_angles(text: &str) -> Result<Vec<f64>, Findings> {
 ///
 /// # Errors
 /// What is wrong with the text.
-pub fn parse_length(text: &str, design: &Design) -> Result<f64, Findings> {
-    let told = |c: Complaint| one(text, Fault { message: c.to_string(), help: c.help() });
+pub fn parse_length(text: &str, design: &Design) -> Result<f64, Diagnostics> {
+    let told = |c: DesignDefect| one(text, Fault { message: c.to_string(), help: c.help() });
     let quantity: Quantity = text.parse().map_err(told)?;
     quantity.length_d(&design.scale()).map_err(told)
 }
 
-fn one(text: &str, fault: Fault) -> Findings {
+fn one(text: &str, fault: Fault) -> Diagnostics {
     let mut found = Found::default();
     found.push(fault, || Some(0..text.len()));
-    Findings { source: None, list: found.list, omitted: 0 }
+    Diagnostics { source: None, list: found.list, omitted: 0 }
 }
 
 fn angles(text: &str) -> Result<Vec<f64>, Fault> {
@@ -90,7 +91,7 @@ fn angles(text: &str) -> Result<Vec<f64>, Fault> {
     let read = |part: &str| -> Result<f64, Fault> {
         let quantity: Quantity = format!("{} {symbol}", part.trim())
             .parse()
-            .map_err(|c: Complaint| Fault { message: c.to_string(), help: Some(FORM.to_owned()) })?;
+            .map_err(|c: DesignDefect| Fault { message: c.to_string(), help: Some(FORM.to_owned()) })?;
         // An angle like those of any pose: within half a turn.
         quantity.angle_rad().map_err(|c| Fault { message: c.to_string(), help: c.help() })
     };

@@ -52,7 +52,7 @@ pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};
 pub use tried::{Observed, Tried, TriedTable};
 
-use crate::design::{Finding, Findings};
+use crate::design::{Diagnostic, Diagnostics};
 use std::ops::Range;
 
 /// Most objections that are spelled out.
@@ -74,7 +74,7 @@ impl Fault {
 /// Objections as they are found, of which only the first are kept.
 #[derive(Debug, Default)]
 struct Found {
-    list: Vec<Finding>,
+    list: Vec<Diagnostic>,
     omitted: usize,
 }
 
@@ -83,19 +83,19 @@ impl Found {
     fn push(&mut self, fault: Fault, span: impl FnOnce() -> Option<Range<usize>>) {
         if self.list.len() < MOST_OBJECTIONS {
             let Fault { message, help } = fault;
-            self.list.push(Finding { message, help, span: span() });
+            self.list.push(Diagnostic { message, help, span: span() });
         } else {
             self.omitted += 1;
         }
     }
 
     /// Refuses if anything was found.
-    fn refuse(mut self) -> Result<(), Findings> {
+    fn refuse(mut self) -> Result<(), Diagnostics> {
         if self.list.is_empty() {
             return Ok(());
         }
         self.list.sort_by_key(|objection| objection.span.as_ref().map(|span| span.start));
-        Err(Findings { source: None, list: self.list, omitted: self.omitted })
+        Err(Diagnostics { source: None, list: self.list, omitted: self.omitted })
     }
 }
 

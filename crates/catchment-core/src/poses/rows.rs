@@ -2,14 +2,14 @@
 
 use super::written::resolve;
 use super::{Fault, Found, OffsetsAt};
-use crate::design::{Design, Findings, Quantity, Unit};
+use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
 
 /// Refuses rows that cannot be tried, as a table of them would be: numbers that are none, out of range, or of errors that the design locks.
 /// Each row has the five errors in the order of [`Dof::ALL`](crate::pose::Dof::ALL), of the face centre, in D and radians.
 ///
 /// # Errors
 /// The first rows that are wrong, each by its number from 0, and how many more are.
-pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Findings> {
+pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Diagnostics> {
     let mut found = Found::default();
     for (number, row) in rows.iter().enumerate() {
         if row.iter().any(|value| !value.is_finite()) {
@@ -17,7 +17,7 @@ pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Findings> {
             found.push(fault, || None);
             continue;
         }
-        let written = row.map(|value| Some(Quantity { value, unit: Unit::Bare }));
+        let written = row.map(|value| Some(Quantity { value, unit: QuantityUnit::Bare }));
         if let Err(faults) = resolve(&written, OffsetsAt::Face, design) {
             for (_, Fault { message, help }) in faults {
                 found.push(Fault { message: format!("row {number}: {message}"), help }, || None);
@@ -47,7 +47,7 @@ mod tests {
             .unwrap_err()
             .list
             .into_iter()
-            .map(|finding| finding.message)
+            .map(|diagnostic| diagnostic.message)
             .collect();
         assert!(said[0].starts_with("row 1 holds a value that is no number"), "{said:?}");
         assert!(said[1].starts_with("row 2: yaw = 0.1, but yaw is locked"), "{said:?}");

@@ -3,8 +3,8 @@
 use super::fields::{records, spans};
 use super::written::{Written, from_d, resolve};
 use super::{Fault, Found, OffsetsAt, header, shortened};
-use crate::design::Findings;
-use crate::design::{Design, Quantity, Unit};
+use crate::design::Diagnostics;
+use crate::design::{Design, Quantity, QuantityUnit};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::number_help;
 use csv::StringRecord;
@@ -33,7 +33,7 @@ type Columns = [Option<Column>; 5];
 struct Column {
     index: usize,
     name: String,
-    unit: Unit,
+    unit: QuantityUnit,
 }
 
 impl<'a> PoseTable<'a> {
@@ -44,7 +44,7 @@ impl<'a> PoseTable<'a> {
     /// # Errors
     /// Everything that is wrong with the text, of which the first 20 objections are spelled out. More than 1000 columns or
     /// [`MOST_POSES`] rows are not read. A locked error that is not as the lock has it is named once.
-    pub fn parse(text: &'a str, design: &'a Design, at: OffsetsAt) -> Result<Self, Findings> {
+    pub fn parse(text: &'a str, design: &'a Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
         Self::parse_beside(text, design, at, &[])
     }
 
@@ -54,7 +54,7 @@ impl<'a> PoseTable<'a> {
         design: &'a Design,
         at: OffsetsAt,
         known: &[&str],
-    ) -> Result<Self, Findings> {
+    ) -> Result<Self, Diagnostics> {
         let mut found = Found::default();
         let mut rows = records(text);
         let Some((start, names)) = rows.next() else {
@@ -67,12 +67,12 @@ impl<'a> PoseTable<'a> {
                 format!("a table has at most {MOST_COLUMNS}; is it one of poses?"),
             );
             found.push(fault, || spans(text, start).into_iter().next());
-            return Err(Findings { source: None, list: found.list, omitted: 0 });
+            return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
         }
         if width == 1 && names[0].contains([';', '\t']) {
             let fault = Fault::new("one column alone", "separate the columns with commas");
             found.push(fault, || spans(text, start).into_iter().next());
-            return Err(Findings { source: None, list: found.list, omitted: 0 });
+            return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
         }
         let columns = columns(&names, &spans(text, start), design, known, &mut found);
         let mut errors = Vec::new();
@@ -155,8 +155,8 @@ impl<'a> PoseTable<'a> {
     pub fn in_units(&self, error: &PoseError) -> [f64; 5] {
         let mut values = self.at.measure(error, &self.design.alignment).to_array();
         for (value, column) in values.iter_mut().zip(&self.columns) {
-            match column.as_ref().map_or(Unit::Bare, |column| column.unit) {
-                Unit::Degrees => *value = value.to_degrees(),
+            match column.as_ref().map_or(QuantityUnit::Bare, |column| column.unit) {
+                QuantityUnit::Degrees => *value = value.to_degrees(),
                 unit => *value = from_d(*value, unit, self.design),
             }
         }
@@ -168,10 +168,10 @@ impl<'a> PoseTable<'a> {
     }
 }
 
-fn empty(message: &str) -> Findings {
+fn empty(message: &str) -> Diagnostics {
     let mut found = Found::default();
     found.push(Fault::new(message, "write a header such as x,pitch_deg and one row per pose"), || None);
-    Findings { source: None, list: found.list, omitted: 0 }
+    Diagnostics { source: None, list: found.list, omitted: 0 }
 }
 
 /// The bytes from the first field to the last.

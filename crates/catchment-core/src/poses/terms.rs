@@ -2,8 +2,8 @@
 
 use super::written::{Written, resolve};
 use super::{Fault, Found, OffsetsAt, shortened};
-use crate::design::Findings;
-use crate::design::{Complaint, Design, Quantity, nearest};
+use crate::design::Diagnostics;
+use crate::design::{Design, DesignDefect, Quantity, nearest};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::odd;
 use std::ops::Range;
@@ -24,7 +24,7 @@ use std::ops::Range;
 /// # Ok(())
 /// # }
 /// ```
-pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Findings> {
+pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
     let mut found = Found::default();
     let (written, spans) = terms(text, &mut found);
     let error = resolve(&written, OffsetsAt::Face, design).unwrap_or_else(|faults| {
@@ -74,8 +74,9 @@ fn term(part: &str) -> Result<(Dof, Quantity), Fault> {
         );
         return Err(Fault::new(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
     };
-    let quantity =
-        number.parse().map_err(|c: Complaint| Fault { message: format!("{name}: {c}"), help: c.help() })?;
+    let quantity = number
+        .parse()
+        .map_err(|c: DesignDefect| Fault { message: format!("{name}: {c}"), help: c.help() })?;
     Ok((dof, quantity))
 }
 
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn read(text: &str) -> Result<PoseError, Findings> {
+    fn read(text: &str) -> Result<PoseError, Diagnostics> {
         let design = crate::design::read("[connector]\nfamily = \"v-face\"\n", Path::new("")).unwrap().design;
         parse_pose(text, &design)
     }

@@ -11,7 +11,7 @@
 
 use super::fields::{records, spans};
 use super::{Fault, Found, OffsetsAt, PoseTable, shortened};
-use crate::design::{Design, Findings, nearest};
+use crate::design::{Design, Diagnostics, nearest};
 use crate::pose::PoseError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -82,14 +82,14 @@ impl TriedTable {
     /// # Errors
     /// Everything that is wrong with the text, each with its bytes: that of [`PoseTable::parse`], an error without a column, no column of outcomes,
     /// an outcome that is none, a number of a trial or line that is none, and a trial that is there twice.
-    pub fn parse(text: &str, design: &Design, at: OffsetsAt) -> Result<Self, Findings> {
+    pub fn parse(text: &str, design: &Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
         let mut found = Found::default();
         let errors = match PoseTable::parse_beside(text, design, at, &[OUTCOME]) {
             Ok(table) => {
                 head(&table, design, text, &mut found);
                 table.errors().to_vec()
             }
-            Err(Findings { list, omitted, .. }) => {
+            Err(Diagnostics { list, omitted, .. }) => {
                 (found.list, found.omitted) = (list, omitted);
                 Vec::new()
             }
@@ -153,8 +153,8 @@ impl TriedTable {
 }
 
 /// A refusal that has its reasons.
-fn refused(found: Found) -> Result<TriedTable, Findings> {
-    Err(Findings { source: None, list: found.list, omitted: found.omitted })
+fn refused(found: Found) -> Result<TriedTable, Diagnostics> {
+    Err(Diagnostics { source: None, list: found.list, omitted: found.omitted })
 }
 
 /// Every free error has a column.

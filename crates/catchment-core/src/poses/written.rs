@@ -1,7 +1,7 @@
 //! A pose error as written, with the checks of its units and of the design.
 
 use super::{Fault, OffsetsAt};
-use crate::design::{Design, Quantity, Unit};
+use crate::design::{Design, Quantity, QuantityUnit};
 use crate::pose::{Dof, PoseError, face_from_cor};
 use std::f64::consts::PI;
 
@@ -89,7 +89,7 @@ fn locked(dof: Dof, quantity: Quantity, stays: &str) -> Fault {
 }
 
 /// What a locked offset of the face centre is, in the unit it was written in.
-fn implied_by(implied: f64, unit: Unit, design: &Design) -> String {
+fn implied_by(implied: f64, unit: QuantityUnit, design: &Design) -> String {
     let quantity = Quantity { value: nine_digits(from_d(implied, unit, design)), unit };
     if quantity.value == 0.0 {
         return "it stays 0 at the centre of rotation, and at the face centre too at this rotation"
@@ -99,9 +99,9 @@ fn implied_by(implied: f64, unit: Unit, design: &Design) -> String {
 }
 
 /// A length in D, in another unit of the design.
-pub(super) fn from_d(value: f64, unit: Unit, design: &Design) -> f64 {
+pub(super) fn from_d(value: f64, unit: QuantityUnit, design: &Design) -> f64 {
     match (unit, design.unit) {
-        (Unit::Length(unit), Some(own)) => value * (design.width * own.metres() / unit.metres()),
+        (QuantityUnit::Length(unit), Some(own)) => value * (design.width * own.metres() / unit.metres()),
         _ => value,
     }
 }

@@ -7,8 +7,8 @@ use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
 use crate::design::{
-    Complaint, ConnectorSpec, Design, FilesInMemory, Finding, Findings, SourceText, Sources, Width, load,
-    read_as,
+    ConnectorSpec, Design, DesignDefect, Diagnostic, Diagnostics, FilesInMemory, SourceText, Sources, Width,
+    load, read_as,
 };
 use crate::exec::Exec;
 use std::path::Path;
@@ -79,13 +79,13 @@ impl Draft {
                 Ok((Self { design: file.design, places: file.sources, source: Some(source), files }, is_used))
             }
             Err(problems) => {
-                let place = |problem: crate::design::Problem| Finding {
-                    message: problem.complaint.to_string(),
-                    help: problem.complaint.help(),
+                let place = |problem: crate::design::LocatedDefect| Diagnostic {
+                    message: problem.defect.to_string(),
+                    help: problem.defect.help(),
                     span: Some(problem.span),
                 };
                 let list = problems.list.into_iter().map(place).collect();
-                Err(Findings { source: Some(source), list, omitted: problems.omitted }.into())
+                Err(Diagnostics { source: Some(source), list, omitted: problems.omitted }.into())
             }
         }
     }
@@ -113,29 +113,29 @@ impl Draft {
     pub fn change(
         mut self,
         what: &str,
-        change: impl FnOnce(Design) -> Result<Design, Complaint>,
+        change: impl FnOnce(Design) -> Result<Design, DesignDefect>,
     ) -> Result<Self, ProblemError> {
         match change(self.design.clone()) {
             Ok(design) => {
                 self.design = design;
                 Ok(self)
             }
-            Err(complaint) => {
-                let message = format!("{what}: {complaint}");
-                Err(self.refused(places::of_change(&complaint), message, complaint.help()).into())
+            Err(defect) => {
+                let message = format!("{what}: {defect}");
+                Err(self.refused(places::of_change(&defect), message, defect.help()).into())
             }
         }
     }
 
     /// This design, refused for one thing about the key at `place` (such as `connector.fixed.pieces[2]`), or about what the
     /// file mentions around it.
-    pub fn refused(self, place: &str, message: String, help: Option<String>) -> Findings {
-        let finding = self.finding(place, message, help);
-        Findings { source: self.source, list: vec![finding], omitted: 0 }
+    pub fn refused(self, place: &str, message: String, help: Option<String>) -> Diagnostics {
+        let diagnostic = self.diagnostic(place, message, help);
+        Diagnostics { source: self.source, list: vec![diagnostic], omitted: 0 }
     }
 
-    fn finding(&self, place: &str, message: String, help: Option<String>) -> Finding {
-        Finding::new(message, help).at(self.places.span(place))
+    fn diagnostic(&self, place: &str, message: String, help: Option<String>) -> Diagnostic {
+        Diagnostic::new(message, help).at(self.places.span(place))
     }
 
     /// Loads the meshes, builds the halves and asks whether the mated pose holds.
@@ -162,7 +162,7 @@ impl Draft {
     ///
     /// # Errors
     /// Everything that is wrong with the geometry.
-    pub fn judged_on(self, exec: &Exec) -> Result<(Problem, Option<Findings>), ProblemError> {
+    pub fn judged_on(self, exec: &Exec) -> Result<(Problem, Option<Diagnostics>), ProblemError> {
         exec.report(0.0, "halves");
         match Connector::build_on(&self.design, &self.files, exec) {
             Ok(connector) => {
@@ -184,7 +184,7 @@ impl Draft {
     }
 
     /// Halves that settle nowhere near.
-    fn run_off(mut self, connector: Connector) -> (Problem, Option<Findings>) {
+    fn run_off(mut self, connector: Connector) -> (Problem, Option<Diagnostics>) {
         self.design = self.design.with_contents(&connector.contents);
         let refusal = self.clone().unmated(&[MatedProblem::RunsOff], None);
         let pair = Pair::new(&connector, &self.design.alignment);
@@ -192,12 +192,12 @@ impl Draft {
     }
 
     /// What is wrong with the geometry, in its places.
-    pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Findings {
+    pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Diagnostics {
         let list = places::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
-            .map(|(place, message, help)| self.finding(&place, message, help))
+            .map(|(place, message, help)| self.diagnostic(&place, message, help))
             .collect();
-        Findings { source: self.source, list, omitted: 0 }
+        Diagnostics { source: self.source, list, omitted: 0 }
     }
 
     /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
@@ -214,7 +214,7 @@ impl Draft {
     }
 
     /// The problem of halves that were built, and why their mated pose is none.
-    fn judged(mut self, connector: Connector, exec: &Exec) -> (Problem, Option<Findings>) {
+    fn judged(mut self, connector: Connector, exec: &Exec) -> (Problem, Option<Diagnostics>) {
         exec.report(0.0, "contact");
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
@@ -230,14 +230,14 @@ impl Draft {
     }
 
     /// Refused for its mated pose; what helps beside what the problems say themselves stands with the first.
-    pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Findings {
+    pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Diagnostics {
         let told = DisplayUnit::of(&self.design);
-        let finding = |problem: &MatedProblem| {
+        let diagnostic = |problem: &MatedProblem| {
             let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.finding(places::of_mated(problem), problem.told(told), help)
+            self.diagnostic(places::of_mated(problem), problem.told(told), help)
         };
-        let list = problems.iter().map(finding).collect();
-        Findings { list, source: self.source, omitted: 0 }
+        let list = problems.iter().map(diagnostic).collect();
+        Diagnostics { list, source: self.source, omitted: 0 }
     }
 }

@@ -13,7 +13,7 @@ impl Problem {
     pub fn new(fixed: HalfSource, moving: HalfSource, alignment: Alignment) -> Result<Self, ProblemError> {
         const FACE_HEIGHT: f64 = 0.0;
         let connector = Connector::from_sources(&fixed, &moving, FACE_HEIGHT, alignment.mount)
-            .map_err(|problems| places::findings(&problems))?;
+            .map_err(|problems| places::diagnostics(&problems))?;
         let contents = connector.contents.clone();
         let own = OwnSpec::new(
             FACE_HEIGHT,

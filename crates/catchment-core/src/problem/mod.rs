@@ -27,12 +27,12 @@ mod places;
 mod tests;
 
 pub use draft::Draft;
-pub use places::findings;
+pub use places::diagnostics;
 
 use crate::connector::{Connector, HalfRole};
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
+use crate::design::{Alignment, ConnectorSpec, Design, Diagnostics, FamilySpec, LoadError, SourceText, hex};
 use crate::exec::Exec;
 use crate::pose::Dof;
 use glam::DVec3;
@@ -60,7 +60,7 @@ pub enum ProblemError {
     Load(#[from] LoadError),
     /// Something is wrong with what the design says, with its geometry, or with its mated pose.
     #[error(transparent)]
-    Findings(#[from] Findings),
+    Diagnostics(#[from] Diagnostics),
 }
 
 impl Problem {
@@ -166,7 +166,7 @@ impl Problem {
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.
-    pub fn refused(&self, place: &str, message: String, help: Option<String>) -> Findings {
+    pub fn refused(&self, place: &str, message: String, help: Option<String>) -> Diagnostics {
         self.0.draft.clone().refused(place, message, help)
     }
 }

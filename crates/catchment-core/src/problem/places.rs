@@ -3,15 +3,15 @@
 use crate::connector::{GeometryDefect, HalfRole, MeshProblem, PartGeometryError};
 use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::mated::MatedProblem;
-use crate::design::{Complaint, Finding, Findings, keys};
+use crate::design::{DesignDefect, Diagnostic, Diagnostics, keys};
 use std::mem::discriminant;
 
 /// The key that forbids a change.
-pub(super) const fn of_change(complaint: &Complaint) -> &'static str {
-    match complaint {
-        Complaint::OutOfPlane { .. } => "connector.family",
-        Complaint::NotAParameter { .. } => "connector",
-        Complaint::PitchBeyondPole => "errors.pitch",
+pub(super) const fn of_change(defect: &DesignDefect) -> &'static str {
+    match defect {
+        DesignDefect::OutOfPlane { .. } => "connector.family",
+        DesignDefect::NotAParameter { .. } => "connector",
+        DesignDefect::PitchBeyondPole => "errors.pitch",
         _ => "",
     }
 }
@@ -64,10 +64,10 @@ fn message(problem: &GeometryDefect, told: DisplayUnit) -> String {
 }
 
 /// Geometric problems of halves that no file describes.
-pub fn findings(problems: &[GeometryDefect]) -> Findings {
-    let finding = |(_, message, help)| Finding::new(message, help);
-    let list = of_geometry(problems, DisplayUnit::IN_D).into_iter().map(finding).collect();
-    Findings { source: None, list, omitted: 0 }
+pub fn diagnostics(problems: &[GeometryDefect]) -> Diagnostics {
+    let diagnostic = |(_, message, help)| Diagnostic::new(message, help);
+    let list = of_geometry(problems, DisplayUnit::IN_D).into_iter().map(diagnostic).collect();
+    Diagnostics { source: None, list, omitted: 0 }
 }
 
 /// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.

@@ -14,9 +14,9 @@ fn read(text: &str) -> Result<Problem, ProblemError> {
     Draft::read(SourceText::new("d.toml", text)).and_then(Draft::build)
 }
 
-fn findings(error: ProblemError) -> Findings {
+fn diagnostics(error: ProblemError) -> Diagnostics {
     match error {
-        ProblemError::Findings(findings) => findings,
+        ProblemError::Diagnostics(diagnostics) => diagnostics,
         ProblemError::Load(error) => panic!("{error}"),
     }
 }
@@ -78,7 +78,7 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
 #[test]
 fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
     let place = |text: &str| {
-        let found = findings(read(text).unwrap_err());
+        let found = diagnostics(read(text).unwrap_err());
         let source = found.source.unwrap();
         let span = found.list[0].span.clone().unwrap();
         source.text[span].to_owned()
@@ -109,7 +109,7 @@ fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
 fn a_refused_change_says_what_asked_for_it() {
     let draft = Draft::read(SourceText::new("d.toml", V_FACE)).unwrap();
     let all = DofSet::ALL;
-    let found = findings(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
+    let found = diagnostics(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
     assert!(found.list[0].message.starts_with("free: "), "{found}");
     assert_eq!(&found.source.unwrap().text[found.list[0].span.clone().unwrap()], "\"v-face\"");
     let changed = draft.change("aspect ratio", |design| design.with_aspect_ratio(0.5)).unwrap();
@@ -157,7 +157,7 @@ fn what_is_wrong_in_memory_is_said_without_a_file() {
     let mut open = soup(Family::Pyramid, true);
     open.pop();
     let fixed = HalfSource::Triangles(soup(Family::Pyramid, false));
-    let found = findings(Problem::new(fixed, HalfSource::Triangles(open), alignment).unwrap_err());
+    let found = diagnostics(Problem::new(fixed, HalfSource::Triangles(open), alignment).unwrap_err());
     assert!(found.source.is_none() && !found.list.is_empty());
     assert!(found.to_string().contains("moving half"), "{found}");
 }
@@ -217,8 +217,8 @@ fn a_measured_width_gives_the_digest_of_a_written_one() {
 #[test]
 fn what_is_wrong_beside_a_width_that_is_left_out_is_said() {
     let said = |text: &str| {
-        let findings = findings(Draft::read(SourceText::new("d.toml", text)).unwrap_err());
-        findings.list.iter().map(|finding| finding.message.clone()).collect::<Vec<_>>().join("; ")
+        let diagnostics = diagnostics(Draft::read(SourceText::new("d.toml", text)).unwrap_err());
+        diagnostics.list.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; ")
     };
     let pin = pin_on("", 40.0);
     // D depends on it.

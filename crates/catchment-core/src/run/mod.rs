@@ -46,7 +46,7 @@ pub use requirement::{Requirement, RequirementCheck, RequirementError};
 pub use seat::{Deeper, Residual, Seating};
 pub use upright::Upright;
 
-use crate::design::Findings;
+use crate::design::Diagnostics;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};
 use crate::merit::MeritError;
@@ -134,7 +134,7 @@ impl Default for Run {
 pub enum RunError {
     /// The mated pose does not hold.
     #[error(transparent)]
-    NotHeld(#[from] Findings),
+    NotHeld(#[from] Diagnostics),
     /// The method is not made for the design.
     #[error(transparent)]
     NotApplicable(#[from] NotApplicable),

@@ -9,7 +9,7 @@
 //! ```
 
 use super::report_schema::ReportSchema;
-use crate::design::{LengthUnit, Quantity, Scale, Unit, nearest};
+use crate::design::{LengthScale, LengthUnit, Quantity, QuantityUnit, nearest};
 use crate::pose::Dof;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
@@ -190,7 +190,7 @@ impl Requirement {
 
     /// The bound as the report counts: in D and radians.
     fn bound(&self, report: &Value) -> Result<f64, RequirementError> {
-        if self.bound.unit == Unit::Bare {
+        if self.bound.unit == QuantityUnit::Bare {
             return Ok(self.bound.value);
         }
         let refused = |reason: String| RequirementError::Unit {
@@ -209,9 +209,9 @@ impl Requirement {
         } else {
             let design = &report["design"];
             let unit = serde_json::from_value::<Option<LengthUnit>>(design["unit"].clone()).unwrap_or(None);
-            self.bound.length_d(&Scale { width: design["width"].as_f64().unwrap_or(1.0), unit })
+            self.bound.length_d(&LengthScale { width: design["width"].as_f64().unwrap_or(1.0), unit })
         };
-        read.map_err(|complaint| refused(complaint.to_string()))
+        read.map_err(|defect| refused(defect.to_string()))
     }
 
     /// The number that the requirement is about.

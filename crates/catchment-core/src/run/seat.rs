@@ -12,7 +12,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
 use crate::contact::{Pair, Play, Seat, play};
-use crate::design::{ConnectorSpec, Findings};
+use crate::design::{ConnectorSpec, Diagnostics};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower};
 use crate::method::{DecisionMethod, motions_in};
@@ -202,7 +202,7 @@ impl Problem {
     ///
     /// # Errors
     /// It does not hold, with how far away the half comes to rest.
-    pub fn ensure_held(&self) -> Result<(), Findings> {
+    pub fn ensure_held(&self) -> Result<(), Diagnostics> {
         let (message, advice) = match self.doubts().iter().find(|doubt| is_unstable(doubt)) {
             Some(doubt) => (self.sentence(doubt), self.advice(doubt)),
             None => match self.fallen() {

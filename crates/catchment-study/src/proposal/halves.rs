@@ -3,9 +3,11 @@
 use super::candidate::shown_unit;
 use super::{Beside, PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::connector::{Half, HalfRole, of_half};
-use catchment_core::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
+use catchment_core::design::{
+    ConnectorSpec, Diagnostics, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText,
+};
 use catchment_core::exec::Exec;
-use catchment_core::problem::{Draft, findings};
+use catchment_core::problem::{Draft, diagnostics};
 use glam::DVec3;
 use std::collections::HashSet;
 use std::path::Path;
@@ -22,7 +24,7 @@ pub(super) fn read(
         (Ok(fixed), Ok(moving)) => [fixed, moving],
         (fixed, moving) => {
             let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
-            return Err(ProposalError::Problem(said_once(findings(&all)).into()));
+            return Err(ProposalError::Problem(said_once(diagnostics(&all)).into()));
         }
     };
     if settings.unit.is_none() {
@@ -50,13 +52,14 @@ pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettin
 }
 
 /// What is wrong with both files alike is said of the first alone.
-fn said_once(mut findings: Findings) -> Findings {
+fn said_once(mut diagnostics: Diagnostics) -> Diagnostics {
     let mut said = HashSet::new();
-    findings.list.retain(|finding| {
-        let reason = finding.message.split_once(": ").map_or(finding.message.as_str(), |(_, reason)| reason);
+    diagnostics.list.retain(|diagnostic| {
+        let reason =
+            diagnostic.message.split_once(": ").map_or(diagnostic.message.as_str(), |(_, reason)| reason);
         said.insert(reason.to_owned())
     });
-    findings
+    diagnostics
 }
 
 fn no_unit(part: &PartFile, half: &Half) -> ProposalError {

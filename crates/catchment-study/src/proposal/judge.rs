@@ -18,7 +18,7 @@ use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::height_map::{broadest, plan_box};
 use catchment_core::contact::mated::{MatedProblem, problems_on, round_half};
 use catchment_core::contact::{Pair, face, play, play_on, settle, width};
-use catchment_core::design::{Alignment, Drawn, HalfSpec, OwnSpec};
+use catchment_core::design::{Alignment, DrawnFrames, HalfSpec, OwnSpec};
 use catchment_core::exec::Exec;
 use catchment_core::method::descent;
 use catchment_core::pose::{CorPose, Dof, DofSet, Mount, PoseError};
@@ -175,9 +175,9 @@ pub(super) fn judge(
     let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
     let drawn = match lie {
         PartLayout::Assembled { approach } => {
-            Drawn::Assembled { approach: approach.vector().to_array(), face_center: None }
+            DrawnFrames::Assembled { approach: approach.vector().to_array(), face_center: None }
         }
-        PartLayout::Facing { .. } => Drawn::Facing,
+        PartLayout::Facing { .. } => DrawnFrames::Facing,
     };
     let pair = Pair::new(&Connector::from_halves(fixed.clone(), moving.clone()), &nothing_free());
     let height = |pair: &Pair, lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });

@@ -23,7 +23,7 @@ mod report;
 use super::pose_bytes;
 use catchment_core::acceptance::{Acceptance, Domain, Outcome};
 use catchment_core::advice::Advice;
-use catchment_core::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
+use catchment_core::design::{ConnectorSpec, Design, DesignDefect, Quantity, QuantityUnit};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::sum::Sum;
 use catchment_core::method::correction::Z95;
@@ -157,7 +157,7 @@ pub struct Sensitivity {
 pub enum SensitivityError {
     /// The design does not allow a value that was to be tried.
     #[error("cannot try a value beside the design's: {0}")]
-    Value(#[from] Complaint),
+    Value(#[from] DesignDefect),
     /// A changed aspect ratio gives no halves.
     #[error("the halves at aspect ratio {aspect_ratio} cannot be built: {problem}")]
     Geometry {
@@ -269,8 +269,8 @@ impl VariedParameter {
         }
     }
 
-    fn set(self, design: Design, value: f64) -> Result<Design, Complaint> {
-        let quantity = Quantity { value, unit: Unit::Bare };
+    fn set(self, design: Design, value: f64) -> Result<Design, DesignDefect> {
+        let quantity = Quantity { value, unit: QuantityUnit::Bare };
         match self {
             Self::RotationLength => design.with_rotation_length(quantity),
             Self::CenterOfRotation => design.with_center_of_rotation(quantity),

@@ -1,6 +1,6 @@
 //! An axis of a sweep: a key of the design file and its values.
 
-use catchment_core::design::{Complaint, Quantity, key_path};
+use catchment_core::design::{DesignDefect, Quantity, key_path};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -26,10 +26,10 @@ pub enum SweepAxisError {
         text: String,
     },
     /// The key is none.
-    #[error("{complaint}{}", advice(complaint))]
+    #[error("{defect}{}", advice(defect))]
     Key {
         /// What is wrong with it.
-        complaint: Complaint,
+        defect: DesignDefect,
     },
     /// A value is empty or stands twice.
     #[error("`{key}` has the value `{value}` {how}")]
@@ -52,8 +52,8 @@ pub enum SweepAxisError {
     },
 }
 
-fn advice(complaint: &Complaint) -> String {
-    complaint.help().map_or_else(String::new, |help| format!("; {help}"))
+fn advice(defect: &DesignDefect) -> String {
+    defect.help().map_or_else(String::new, |help| format!("; {help}"))
 }
 
 impl SweepAxis {
@@ -73,8 +73,11 @@ impl SweepAxis {
         let same = quantities.iter().all(|quantity| quantity.unit == unit);
         let name = || quantities[0].to_string().trim_start_matches(|c: char| !c.is_alphabetic()).to_owned();
         // The number may have letters itself: 1e5.
-        let unit_name =
-            if unit == catchment_core::design::Unit::Bare { String::new() } else { last_word(&name()) };
+        let unit_name = if unit == catchment_core::design::QuantityUnit::Bare {
+            String::new()
+        } else {
+            last_word(&name())
+        };
         same.then(|| (quantities.iter().map(|quantity| quantity.value).collect(), unit_name))
     }
 }
@@ -98,7 +101,7 @@ impl FromStr for SweepAxis {
         if name.trim().is_empty() || list.trim().is_empty() {
             return Err(no_values());
         }
-        let key = key_path(name).map_err(|complaint| SweepAxisError::Key { complaint })?;
+        let key = key_path(name).map_err(|defect| SweepAxisError::Key { defect })?;
         let mut values: Vec<String> = Vec::new();
         for part in parts(list) {
             let found = if is_range(part) { range(part)? } else { vec![part.to_owned()] };
@@ -154,7 +157,7 @@ fn range(text: &str) -> Result<Vec<String>, SweepAxisError> {
     let number: usize = number.trim().parse().map_err(|_| wrong())?;
     let last: Quantity = last.parse().map_err(|_| wrong())?;
     let first: Quantity = first.parse().map_err(|_| wrong())?;
-    let unit_fits = first.unit == last.unit || first.unit == catchment_core::design::Unit::Bare;
+    let unit_fits = first.unit == last.unit || first.unit == catchment_core::design::QuantityUnit::Bare;
     if !(2..=SweepAxis::MOST).contains(&number) || first.value == last.value || !unit_fits {
         return Err(wrong());
     }

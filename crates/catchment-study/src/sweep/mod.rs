@@ -21,7 +21,7 @@ mod report;
 pub use axis::{SweepAxis, SweepAxisError};
 
 use catchment_core::acceptance::Outcome;
-use catchment_core::design::{Complaint, Design, Finding, Parameter, SourceText, with_key};
+use catchment_core::design::{Design, DesignDefect, DesignParameter, Diagnostic, SourceText, with_key};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::slice::GridSlice;
 use catchment_core::method::NotApplicable;
@@ -190,12 +190,12 @@ pub enum SweepError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// An axis cannot be set in the text of the design.
-    #[error("{key}: {complaint}")]
+    #[error("{key}: {defect}")]
     Key {
         /// The key.
         key: String,
         /// What is wrong.
-        complaint: Box<Complaint>,
+        defect: Box<DesignDefect>,
     },
     /// A key has two axes.
     #[error("{key} has two lists of values: write them as one")]
@@ -263,15 +263,13 @@ impl SweepPlan {
         }
         // The file itself must be a design, or messages would be about values that nobody doubts.
         let base = change(Draft::read(source.clone())?)?.design().clone();
-        let swept = axes.iter().filter_map(|axis| Parameter::of_key(&axis.key));
+        let swept = axes.iter().filter_map(|axis| DesignParameter::of_key(&axis.key));
         let base = swept.fold(base, Design::untitled);
         let drafts = (0..designs).map(|number| {
             let mut text = source.text.clone();
             for (axis, value) in axes.iter().zip(combination(axes, number)) {
-                text = with_key(&text, &axis.key, value).map_err(|complaint| SweepError::Key {
-                    key: axis.key.clone(),
-                    complaint: Box::new(complaint),
-                })?;
+                text = with_key(&text, &axis.key, value)
+                    .map_err(|defect| SweepError::Key { key: axis.key.clone(), defect: Box::new(defect) })?;
             }
             let values =
                 combination(axes, number).zip(axes).map(|(value, axis)| format!("{} = {value}", axis.name()));
@@ -403,12 +401,12 @@ fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<DesignR
 
 /// What is wrong with a design and what helps, in one line.
 fn reason(error: &ProblemError) -> String {
-    let said = |Finding { message, help, .. }: &Finding| match help {
+    let said = |Diagnostic { message, help, .. }: &Diagnostic| match help {
         Some(help) => format!("{message}; {help}"),
         None => message.clone(),
     };
     match error {
-        ProblemError::Findings(findings) => findings.list.first().map(said).unwrap_or_default(),
+        ProblemError::Diagnostics(diagnostics) => diagnostics.list.first().map(said).unwrap_or_default(),
         ProblemError::Load(error) => error.to_string(),
     }
 }

@@ -15,7 +15,7 @@
 use super::accumulation::Covariance;
 use super::kinematics::Body;
 use catchment::acceptance::Outcome;
-use catchment::design::{Complaint, Design, Quantity, Unit};
+use catchment::design::{Design, DesignDefect, Quantity, QuantityUnit};
 use catchment::exec::{Cancelled, Exec};
 use catchment::merit::sum::wilson95;
 use catchment::method::zraa::{Zraa, ZraaSettings, run as without_rotation};
@@ -32,8 +32,8 @@ pub fn as_chain_uses_it(
     design: Design,
     body: &Body,
     rotation_length: Option<f64>,
-) -> Result<Design, Complaint> {
-    let in_d = |value| Quantity { value, unit: Unit::D };
+) -> Result<Design, DesignDefect> {
+    let in_d = |value| Quantity { value, unit: QuantityUnit::D };
     let free: DofSet = [Dof::X, Dof::Pitch].into_iter().collect();
     let design = design.with_free(free)?.with_center_of_rotation(in_d(body.center_of_rotation()))?;
     match rotation_length {

@@ -17,7 +17,7 @@
 
 use super::kinematics::nearest_quarter;
 use super::shape::{Latch, Reading, Shape, latches};
-use catchment::design::{Finding, Findings, Found, SourceText};
+use catchment::design::{Diagnostic, DiagnosticCollector, Diagnostics, SourceText};
 use catchment::suggest::number_help;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -80,7 +80,7 @@ impl Sequence {
     ///
     /// # Errors
     /// None at present: the stored table is read in a test.
-    pub fn of(shape: Shape) -> Result<Self, Findings> {
+    pub fn of(shape: Shape) -> Result<Self, Diagnostics> {
         let steps = match shape {
             Shape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
             // The fold presses 5 against 2, and brings 6 to 1; joint 2 presses those.
@@ -183,32 +183,32 @@ fn ring(corners: &[usize]) -> Vec<Step> {
 ///
 /// # Errors
 /// Everything that is wrong with it, each in its place.
-pub fn table(source: &SourceText) -> Result<Vec<Step>, Findings> {
+pub fn table(source: &SourceText) -> Result<Vec<Step>, Diagnostics> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source.text.as_bytes());
-    let mut wrong = Found::default();
+    let mut wrong = DiagnosticCollector::default();
     let joints: Vec<Option<usize>> = match reader.headers() {
         Ok(names) => names.iter().skip(1).map(joint_of).collect(),
         Err(error) => {
-            wrong.push(Finding::new(error.to_string(), None));
+            wrong.push(Diagnostic::new(error.to_string(), None));
             return Err(wrong.of(source.clone()));
         }
     };
     if joints.is_empty() || joints.contains(&None) {
         let help = "the header is time_s and a column module_N for each joint".to_owned();
-        wrong.push(Finding::new("a column is of no module", Some(help)).at(Some(0..first_line(source))));
+        wrong.push(Diagnostic::new("a column is of no module", Some(help)).at(Some(0..first_line(source))));
     }
     let mut steps: Vec<Step> = Vec::new();
     for record in reader.records() {
         let record = match record {
             Ok(record) => record,
             Err(error) => {
-                wrong.push(Finding::new(error.to_string(), None));
+                wrong.push(Diagnostic::new(error.to_string(), None));
                 continue;
             }
         };
         let start = record.position().map_or(0, |p| p.byte() as usize);
         let end = source.text[start..].find('\n').map_or(source.text.len(), |at| start + at);
-        let mut refuse = |what: String, help| wrong.push(Finding::new(what, help).at(Some(start..end)));
+        let mut refuse = |what: String, help| wrong.push(Diagnostic::new(what, help).at(Some(start..end)));
         let time_s = match record.get(0).unwrap_or_default().parse::<f64>() {
             Ok(time) if time.is_finite() => time,
             _ => {

@@ -15,7 +15,7 @@ use super::file::ChainFile;
 use super::fold::{FoldError, FoldSettings, Folded, fold};
 use super::ring::{self, Corners};
 use super::shape::{Latch, Shape};
-use catchment::design::Findings;
+use catchment::design::Diagnostics;
 use catchment::exec::{Cancelled, Exec};
 use catchment::problem::{Draft, Problem, ProblemError};
 use serde::{Deserialize, Serialize};
@@ -132,7 +132,7 @@ pub struct Study {
 pub enum StudyError {
     /// Something in the file.
     #[error(transparent)]
-    Findings(#[from] Findings),
+    Diagnostics(#[from] Diagnostics),
     /// Something in its connector's design.
     #[error(transparent)]
     Problem(#[from] ProblemError),

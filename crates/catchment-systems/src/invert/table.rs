@@ -1,7 +1,7 @@
 //! Wanted heights as a table `x,y,height`, in D, over a grid; planes over triangles between its points.
 
 use super::Heights;
-use catchment::design::{Finding, Findings, Found, SourceText};
+use catchment::design::{Diagnostic, DiagnosticCollector, Diagnostics, SourceText};
 use catchment::method::zraa::HeightFacet;
 use catchment::suggest::number_help;
 use catchment::terminal::escaped;
@@ -16,19 +16,19 @@ const MOST: usize = 900;
 ///
 /// # Errors
 /// Everything that is wrong with the table, in its place.
-pub fn wanted_from_table(source: SourceText) -> Result<Heights, Findings> {
-    let mut found = Found::default();
+pub fn wanted_from_table(source: SourceText) -> Result<Heights, Diagnostics> {
+    let mut found = DiagnosticCollector::default();
     let (rows, count) = rows(&source.text, &mut found);
     if count > MOST {
         let help = format!("at most {MOST} are taken");
-        found.push(Finding::new(format!("the grid has {count} places"), Some(help)));
+        found.push(Diagnostic::new(format!("the grid has {count} places"), Some(help)));
     }
     let heights = if found.is_empty() { grid(&rows, &mut found) } else { Heights::default() };
     if found.is_empty() { Ok(heights) } else { Err(found.of(source)) }
 }
 
 /// The first rows, of which no more are kept than are taken, and how many there are.
-fn rows(text: &str, found: &mut Found) -> (Vec<(DVec3, Range<usize>)>, usize) {
+fn rows(text: &str, found: &mut DiagnosticCollector) -> (Vec<(DVec3, Range<usize>)>, usize) {
     const COLUMNS: [&str; 3] = ["x", "y", "height"];
     let (mut rows, mut count) = (Vec::new(), 0);
     let mut start = 0;
@@ -42,7 +42,7 @@ fn rows(text: &str, found: &mut Found) -> (Vec<(DVec3, Range<usize>)>, usize) {
             continue;
         }
         let mut refuse = |message: String, help: &str| {
-            found.push_with(|| Finding::new(message, Some(help.to_owned())).at(Some(span.clone())));
+            found.push_with(|| Diagnostic::new(message, Some(help.to_owned())).at(Some(span.clone())));
         };
         if !named {
             named = true;
@@ -73,7 +73,7 @@ fn rows(text: &str, found: &mut Found) -> (Vec<(DVec3, Range<usize>)>, usize) {
     (rows, count)
 }
 
-fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Found) -> Heights {
+fn grid(rows: &[(DVec3, Range<usize>)], found: &mut DiagnosticCollector) -> Heights {
     // Numbers of the same bits are the same place; −0 is 0.
     let key = |v: f64| (v + 0.0).to_bits();
     let mut places: BTreeMap<(u64, u64), f64> = BTreeMap::new();
@@ -81,7 +81,7 @@ fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Found) -> Heights {
     for (p, span) in rows {
         if places.insert((key(p.x), key(p.y)), p.z).is_some() {
             found.push(
-                Finding::new(format!("({}, {}) is there twice", p.x, p.y), None).at(Some(span.clone())),
+                Diagnostic::new(format!("({}, {}) is there twice", p.x, p.y), None).at(Some(span.clone())),
             );
         }
         xs.push(p.x);
@@ -96,7 +96,7 @@ fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Found) -> Heights {
             format!("{} places do not make a grid of {} x by {} y", places.len(), xs.len(), ys.len());
         let help =
             "give every x with every y, two of each at least; for a planar design y = -1 and y = 1 alike";
-        found.push(Finding::new(message, Some(help.to_owned())));
+        found.push(Diagnostic::new(message, Some(help.to_owned())));
     }
     if !found.is_empty() {
         return Heights::default();

@@ -3,7 +3,7 @@
 use super::outline::Geometry;
 use super::rules::{Verdict, WIDEST_SLIT, rules};
 use crate::form::{Form, Section};
-use catchment::design::{Findings, SourceText};
+use catchment::design::{Diagnostics, SourceText};
 use serde::Serialize;
 
 /// `MPa` in a `GPa`.
@@ -126,9 +126,9 @@ impl Latch {
     ///
     /// # Errors
     /// Everything that is wrong with it, in place, also the rules of the outline that it breaks.
-    pub fn read(source: SourceText) -> Result<(Self, Geometry), Findings> {
+    pub fn read(source: SourceText) -> Result<(Self, Geometry), Diagnostics> {
         // The geometry is there whenever nothing was refused.
-        let none = |source: SourceText| Findings { source: Some(source), list: Vec::new(), omitted: 0 };
+        let none = |source: SourceText| Diagnostics { source: Some(source), list: Vec::new(), omitted: 0 };
         let kept = source.clone();
         let (latch, geometry) = Form::read(source, |form, root| {
             let latch = filled(form, root);

@@ -1,6 +1,6 @@
 //! What must hold of the readers of this crate, whatever they read: for the tests beside, and for the fuzzer.
 
-use catchment::design::{Findings, SourceText};
+use catchment::design::{Diagnostics, SourceText};
 use catchment::exec::Exec;
 use catchment_systems::chain::{ChainFile, sequence};
 use catchment_systems::compose::read::{ReadError, read};
@@ -22,17 +22,17 @@ pub(crate) fn file(bytes: &[u8]) {
         // A connector is another reader's, and takes as long as its geometry.
         "toml" if text.contains("connector") => None,
         kind @ ("csv" | "svg" | "toml") => match read(source(kind), &exec) {
-            Err(ReadError::Findings(findings)) => Some(findings),
+            Err(ReadError::Diagnostics(diagnostics)) => Some(diagnostics),
             Ok(_) | Err(_) => None,
         },
         _ => None,
     };
-    if let Some(Findings { list, .. }) = refused {
+    if let Some(Diagnostics { list, .. }) = refused {
         assert!(!list.is_empty());
-        for finding in &list {
-            assert!(!finding.message.is_empty());
-            let in_text = finding.span.clone().is_none_or(|span| text.get(span).is_some());
-            assert!(in_text, "{finding:?} is not a piece of the text");
+        for diagnostic in &list {
+            assert!(!diagnostic.message.is_empty());
+            let in_text = diagnostic.span.clone().is_none_or(|span| text.get(span).is_some());
+            assert!(in_text, "{diagnostic:?} is not a piece of the text");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use catchment::connector::{Connector, FileBytes, HalfSource, bodies_of_answer, stl};
 use catchment::design::{
-    Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, SourceText, Treatment,
+    Design, FileSpec, LocatedDefects, MeshPreparation, OutlineSpec, PartSpec, Quantity, ShapeSpec, SourceText,
 };
 use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
@@ -33,7 +33,7 @@ pub(crate) fn design_file(bytes: &[u8]) {
             assert!(design.width > 0.0 && design.width.is_finite());
             assert!(!design.alignment.free.is_empty());
             for (half_range, key) in design.alignment.half_ranges.iter().zip(&keys::ERROR_KEYS) {
-                let (keys::Kind::Length(range) | keys::Kind::Angle(range)) = key.kind else {
+                let (keys::ValueKind::Length(range) | keys::ValueKind::Angle(range)) = key.kind else {
                     panic!("an error is a length or an angle")
                 };
                 assert!(range.contains(*half_range));
@@ -43,12 +43,12 @@ pub(crate) fn design_file(bytes: &[u8]) {
             assert_eq!(again, design);
         }
         Err(problems) => {
-            assert!(!problems.list.is_empty() && problems.list.len() <= Problems::MOST);
+            assert!(!problems.list.is_empty() && problems.list.len() <= LocatedDefects::MOST);
             for problem in &problems.list {
                 assert!(problem.line >= 1 && problem.column >= 1);
                 assert!(text.get(problem.span.clone()).is_some(), "{problem:?} is not a piece of the text");
-                assert!(!problem.complaint.to_string().is_empty());
-                assert!(problem.complaint.help().is_none_or(|help| !help.is_empty()));
+                assert!(!problem.defect.to_string().is_empty());
+                assert!(problem.defect.help().is_none_or(|help| !help.is_empty()));
             }
         }
     }
@@ -124,8 +124,9 @@ pub(crate) fn drawing(bytes: &[u8]) {
 
 fn mesh_file(name: &str, bytes: &[u8]) {
     // As it is, repaired, and simplified: what is accepted of any is a closed solid.
-    let treated =
-        |repair, simplify| mesh_treated(name, bytes, Treatment { repair, simplify, ..Treatment::DEFAULT });
+    let treated = |repair, simplify| {
+        mesh_treated(name, bytes, MeshPreparation { repair, simplify, ..MeshPreparation::DEFAULT })
+    };
     let as_it_is = treated(false, None);
     let repaired = treated(true, None);
     assert!(!as_it_is || repaired, "repair refuses what needs none");
@@ -133,7 +134,7 @@ fn mesh_file(name: &str, bytes: &[u8]) {
 }
 
 /// Whether a mesh file is accepted.
-fn mesh_treated(name: &str, bytes: &[u8], treatment: Treatment) -> bool {
+fn mesh_treated(name: &str, bytes: &[u8], treatment: MeshPreparation) -> bool {
     let spec = FileSpec { treatment, ..FileSpec::new(name, 1.0) };
     let mesh = || HalfSource::Mesh { spec: spec.clone(), file: FileBytes::whole(bytes.to_vec()) };
     match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
@@ -166,9 +167,9 @@ pub(crate) fn pose_table(bytes: &[u8]) {
                     assert!(table.in_units(error).iter().all(|v| v.is_finite()));
                 }
             }
-            Err(findings) => {
-                assert!(!findings.list.is_empty());
-                for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+            Err(diagnostics) => {
+                assert!(!diagnostics.list.is_empty());
+                for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
                     assert!(text.get(span).is_some(), "an objection is not a piece of the text");
                 }
             }
@@ -180,9 +181,9 @@ pub(crate) fn pose_table(bytes: &[u8]) {
                 assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]), "a trial is there twice");
                 assert!(table.rows.iter().all(|row| row.error.to_array().iter().all(|v| v.is_finite())));
             }
-            Err(findings) => {
-                assert!(!findings.list.is_empty());
-                for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+            Err(diagnostics) => {
+                assert!(!diagnostics.list.is_empty());
+                for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
                     assert!(text.get(span).is_some(), "an objection is not a piece of the text");
                 }
             }
@@ -214,10 +215,10 @@ pub(crate) fn robots(bytes: &[u8]) {
                 }
             }
         }
-        Err(findings) => {
-            assert!(!findings.list.is_empty());
-            let source = findings.source.as_ref().expect("a refusal names its text");
-            for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+        Err(diagnostics) => {
+            assert!(!diagnostics.list.is_empty());
+            let source = diagnostics.source.as_ref().expect("a refusal names its text");
+            for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
                 assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
             }
         }
@@ -238,10 +239,10 @@ pub(crate) fn dynamics(bytes: &[u8]) {
                 }
             }
         }
-        Err(findings) => {
-            assert!(!findings.list.is_empty());
-            let source = findings.source.as_ref().expect("a refusal names its text");
-            for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+        Err(diagnostics) => {
+            assert!(!diagnostics.list.is_empty());
+            let source = diagnostics.source.as_ref().expect("a refusal names its text");
+            for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
                 assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
             }
         }
@@ -255,9 +256,9 @@ pub(crate) fn line(bytes: &[u8]) {
     if let Ok(error) = parse_pose(&text, &design) {
         assert!(error.to_array().iter().all(|v| v.is_finite()));
     }
-    if let Err(findings) = parse_draw(&text, &design) {
-        assert!(!findings.list.is_empty());
-        for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+    if let Err(diagnostics) = parse_draw(&text, &design) {
+        assert!(!diagnostics.list.is_empty());
+        for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
             assert!(text.get(span).is_some(), "an objection is not a piece of the text");
         }
     }

@@ -8,7 +8,7 @@ mod peg;
 use catchment::acceptance::Domain;
 use catchment::contact::mated::MatedProblem;
 use catchment::contact::play;
-use catchment::design::Finding;
+use catchment::design::Diagnostic;
 use catchment::method::descent::{self, Follower};
 use catchment::method::drop;
 use catchment::method::zraa::{self, Zraa};
@@ -151,8 +151,8 @@ fn limits_decide_where_the_seat_leaves_play() {
 /// What keeps a problem from being built, as text.
 fn refused(problem: Result<Problem, ProblemError>) -> String {
     match problem {
-        Err(ProblemError::Findings(found)) => {
-            let said = |f: &Finding| format!("{} ({})", f.message, f.help.clone().unwrap_or_default());
+        Err(ProblemError::Diagnostics(found)) => {
+            let said = |f: &Diagnostic| format!("{} ({})", f.message, f.help.clone().unwrap_or_default());
             found.list.iter().map(said).collect::<Vec<_>>().join("\n")
         }
         other => panic!("{other:?}"),

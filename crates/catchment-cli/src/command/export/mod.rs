@@ -96,7 +96,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     write::check_folder(&args.output, KIND, &exec)?;
     let problem = args.design.halves()?;
     let (design, pair) = (problem.design(), problem.pair());
-    let error = parse_pose(pose, design).map_err(|findings| Failure::of_option("--pose", pose, findings))?;
+    let error =
+        parse_pose(pose, design).map_err(|diagnostics| Failure::of_option("--pose", pose, diagnostics))?;
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;

@@ -36,9 +36,8 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     let path = group(&args.design.path);
     let (report, acceptance) = zarr::read(&path, exec)?;
     let at = match &args.at {
-        Some(text) => {
-            parse_pose(text, &report.design).map_err(|findings| Failure::of_option("--at", text, findings))?
-        }
+        Some(text) => parse_pose(text, &report.design)
+            .map_err(|diagnostics| Failure::of_option("--at", text, diagnostics))?,
         None => PoseError::default(),
     };
     let heights = match acceptance.grid() {

@@ -188,7 +188,7 @@ pub(super) fn time(seconds: f64) -> String {
 /// Why there is no answer, at the key of the design or the option that it is about.
 pub(super) fn refused(problem: &Problem, error: RunError) -> Failure {
     match error {
-        RunError::NotHeld(findings) => findings.into(),
+        RunError::NotHeld(diagnostics) => diagnostics.into(),
         RunError::NotApplicable(refusal) => {
             problem.refused("connector.family", format!("--method {refusal}"), None).into()
         }

@@ -38,7 +38,7 @@ pub use problem::{FileOffset, MeshProblem, TriangleLocation};
 
 use super::{Half, Surface};
 use crate::budget::{Budget, Limit, Overspent};
-use crate::design::{Repairs, Treatment};
+use crate::design::{MeshPreparation, Repairs};
 use crate::exec::{Bytes, Exec};
 use crate::tolerance;
 use glam::DVec3;
@@ -69,12 +69,12 @@ pub(super) struct Triangle {
 }
 
 /// Most triangles that are read.
-pub(super) const fn most_read(treatment: Treatment) -> usize {
+pub(super) const fn most_read(treatment: MeshPreparation) -> usize {
     if treatment.simplify.is_some() { MOST_READ } else { MAX_TRIANGLES }
 }
 
 /// What there is to say of more.
-pub(super) const fn too_many(treatment: Treatment, count: u64) -> MeshProblem {
+pub(super) const fn too_many(treatment: MeshPreparation, count: u64) -> MeshProblem {
     if treatment.simplify.is_some() {
         MeshProblem::TooManyToSimplify { count }
     } else {
@@ -83,7 +83,7 @@ pub(super) const fn too_many(treatment: Treatment, count: u64) -> MeshProblem {
 }
 
 /// Most vertices of a file: three for every triangle, where none are shared.
-pub(super) const fn vertex_limit(treatment: Treatment) -> Limit {
+pub(super) const fn vertex_limit(treatment: MeshPreparation) -> Limit {
     let most = 3 * most_read(treatment) as u64;
     Limit { most, of: "vertices", remedy: "export the mesh with a coarser tolerance" }
 }
@@ -106,14 +106,14 @@ pub(super) struct Ready {
 #[derive(Debug)]
 pub(super) struct Triangles {
     pub(super) list: Vec<Triangle>,
-    treatment: Treatment,
+    treatment: MeshPreparation,
     /// For cutting faces.
     steps: Budget,
 }
 
 impl Triangles {
     /// None yet.
-    pub(super) const fn new(treatment: Treatment) -> Self {
+    pub(super) const fn new(treatment: MeshPreparation) -> Self {
         Self { list: Vec::new(), treatment, steps: Budget::new(cut::STEPS) }
     }
 
@@ -153,18 +153,18 @@ pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Half, Vec<MeshProblem>
         place: TriangleLocation { triangle, start: FileOffset::Memory },
     };
     let triangles: Vec<Triangle> = triangles.iter().enumerate().map(placed).collect();
-    half(vec![triangles], 1.0, Treatment::AS_IT_IS).map(|ready| ready.half)
+    half(vec![triangles], 1.0, MeshPreparation::AS_IT_IS).map(|ready| ready.half)
 }
 
 /// A half from the triangles of a file, body by body, treated as it is said; `scale` turns its coordinates into D.
 pub(super) fn half(
     bodies: Vec<Vec<Triangle>>,
     scale: f64,
-    treatment: Treatment,
+    treatment: MeshPreparation,
 ) -> Result<Ready, Vec<MeshProblem>> {
     check_scale(scale)?;
     let bodies = bodies::chosen(bodies, treatment.body)?;
-    let treatment = Treatment { body: None, ..treatment };
+    let treatment = MeshPreparation { body: None, ..treatment };
     let corners = bodies.iter().flatten().flat_map(|triangle| triangle.corners);
     let width = implausible_width(corners.map(|c| c * scale));
     let (ready, mut problems) = match part(bodies, scale, treatment) {
@@ -184,7 +184,7 @@ pub(super) fn half(
 pub(super) fn part(
     bodies: Vec<Vec<Triangle>>,
     scale: f64,
-    treatment: Treatment,
+    treatment: MeshPreparation,
 ) -> Result<Ready, Vec<MeshProblem>> {
     check_scale(scale)?;
     let bodies = bodies::chosen(bodies, treatment.body)?;
@@ -228,7 +228,11 @@ struct Solid {
 }
 
 /// The solid that triangles bound.
-fn solid(triangles: Vec<Triangle>, scale: f64, treatment: Treatment) -> Result<Solid, Vec<MeshProblem>> {
+fn solid(
+    triangles: Vec<Triangle>,
+    scale: f64,
+    treatment: MeshPreparation,
+) -> Result<Solid, Vec<MeshProblem>> {
     fits(triangles.len())?;
     let (mut mesh, sides) = Indexed::of(triangles);
     let mut problems = check::problems(&mesh, &sides);

@@ -24,24 +24,24 @@ fn block(lo: [f64; 3], hi: [f64; 3]) -> Soup {
 }
 
 /// What became of one body.
-fn treated(soup: &Soup, treatment: Treatment) -> Result<Solid, Vec<MeshProblem>> {
+fn treated(soup: &Soup, treatment: MeshPreparation) -> Result<Solid, Vec<MeshProblem>> {
     let place = |triangle| TriangleLocation { triangle, start: FileOffset::Memory };
     let list = soup.iter().enumerate().map(|(k, corners)| Triangle { corners: *corners, place: place(k) });
     solid(list.collect(), 1.0, treatment)
 }
 
 fn repaired(soup: &Soup) -> Solid {
-    treated(soup, Treatment::DEFAULT).unwrap_or_else(|problems| panic!("{problems:?}"))
+    treated(soup, MeshPreparation::DEFAULT).unwrap_or_else(|problems| panic!("{problems:?}"))
 }
 
 fn refused(soup: &Soup) -> Vec<MeshProblem> {
-    treated(soup, Treatment::DEFAULT).map(|ready| ready.repairs).unwrap_err()
+    treated(soup, MeshPreparation::DEFAULT).map(|ready| ready.repairs).unwrap_err()
 }
 
 #[test]
 fn what_is_sound_stays_as_it_is() {
     let cube = block([0.0; 3], [1.0; 3]);
-    let (kept, ready) = (treated(&cube, Treatment::AS_IT_IS).unwrap(), repaired(&cube));
+    let (kept, ready) = (treated(&cube, MeshPreparation::AS_IT_IS).unwrap(), repaired(&cube));
     assert_eq!(kept.surface, ready.surface);
     assert!(ready.repairs.is_none() && kept.repairs.is_none());
     assert_eq!(from_triangles(&cube).unwrap().surfaces, [ready.surface]);
@@ -56,7 +56,7 @@ fn a_triangle_without_area_goes_and_its_neighbour_is_divided() {
     cube[2] = [a, middle, c];
     cube.push([middle, b, c]);
     cube.push([b, middle, a]);
-    let problems = treated(&cube, Treatment::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
+    let problems = treated(&cube, MeshPreparation::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
     assert!(matches!(problems[0], MeshProblem::ZeroArea { .. }), "{problems:?}");
     let ready = repaired(&cube);
     assert!(ready.repairs.without_area == 1 && ready.repairs.deviation < 1e-15, "{:?}", ready.repairs);
@@ -135,7 +135,7 @@ fn windings_are_made_one() {
     // Beside a sound one, a solid that is inside out takes volume away; it is told apart from a cavity.
     let beside: Soup = block([1.5, 0.0, 0.0], [2.0, 0.5, 0.5]).iter().map(|t| [t[0], t[2], t[1]]).collect();
     let both = [block([0.0; 3], [1.0; 3]), beside].concat();
-    let problems = treated(&both, Treatment::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
+    let problems = treated(&both, MeshPreparation::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
     assert!(matches!(problems[..], [MeshProblem::InsideOut { .. }]), "{problems:?}");
     assert!((repaired(&both).surface.volume() - 1.125).abs() < 1e-15);
 }
@@ -147,7 +147,7 @@ fn shells_that_cross_are_united() {
     assert!(ready.repairs.united > 0 && ready.repairs.deviation < 1e-12, "{:?}", ready.repairs);
     // 1 + 0.5 · 1 · 1.5 − 0.5 · 0.5 · 0.5
     assert!((ready.surface.volume() - 1.625).abs() < 1e-12, "{}", ready.surface.volume());
-    assert!(treated(&cross, Treatment::AS_IT_IS).is_err());
+    assert!(treated(&cross, MeshPreparation::AS_IT_IS).is_err());
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn dome(rings: usize) -> Soup {
 fn a_simplified_surface_keeps_to_its_tolerance() {
     let dome = dome(40);
     for tolerance in [1e-4, 1e-3, 1e-2] {
-        let ready = treated(&dome, Treatment { simplify: Some(tolerance), ..Treatment::DEFAULT })
+        let ready = treated(&dome, MeshPreparation { simplify: Some(tolerance), ..MeshPreparation::DEFAULT })
             .unwrap_or_else(|p| panic!("{p:?}"));
         let [before, after] = ready.repairs.simplified.unwrap();
         assert!(before == dome.len() && after == ready.triangles && after < before, "{after}");
@@ -202,12 +202,17 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
     }
     // Who lets the surface move farther gets no more triangles.
     let left = |tolerance: f64| {
-        treated(&dome, Treatment { simplify: Some(tolerance), ..Treatment::DEFAULT }).unwrap().triangles
+        treated(&dome, MeshPreparation { simplify: Some(tolerance), ..MeshPreparation::DEFAULT })
+            .unwrap()
+            .triangles
     };
     let left: Vec<usize> = (0..24).map(|k| left(2e-4 * 1.25f64.powi(k))).collect();
     assert!(left.is_sorted_by(|a, b| a >= b) && left[0] > 4 * left[23], "{left:?}");
-    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { simplify: Some(1e-3), ..Treatment::DEFAULT })
-        .unwrap();
+    let none = treated(
+        &block([0.0; 3], [1.0; 3]),
+        MeshPreparation { simplify: Some(1e-3), ..MeshPreparation::DEFAULT },
+    )
+    .unwrap();
     assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);
 }
 
@@ -224,7 +229,7 @@ proptest! {
         prop_assume!((0..sphere.len()).all(|i| (0..i).all(|j| sphere[i].distance(sphere[j]) > 0.2)));
         let Ok(hull) = convex_hull(&sphere) else { return Ok(()) };
         let mut spoilt = soup(&hull);
-        let Ok(sound) = treated(&spoilt, Treatment::AS_IT_IS) else { return Ok(()) };
+        let Ok(sound) = treated(&spoilt, MeshPreparation::AS_IT_IS) else { return Ok(()) };
         for (k, side, part) in flat {
             // A side is divided for one neighbour, and a triangle on a line fills the gap.
             let count = spoilt.len();
@@ -243,7 +248,7 @@ proptest! {
         for k in doubled {
             spoilt.push(spoilt[k % count]);
         }
-        let ready = match treated(&spoilt, Treatment::DEFAULT) {
+        let ready = match treated(&spoilt, MeshPreparation::DEFAULT) {
             Ok(ready) => ready,
             Err(problems) => return Err(TestCaseError::fail(format!("{problems:?}"))),
         };
@@ -294,7 +299,7 @@ proptest! {
             all += six.abs() / 6.0;
         }
         prop_assume!(!soup.is_empty());
-        if let Ok(ready) = treated(&soup, Treatment::DEFAULT) {
+        if let Ok(ready) = treated(&soup, MeshPreparation::DEFAULT) {
             let volume = ready.surface.volume();
             prop_assert!(volume > largest - 1e-9 && volume < all + 1e-9, "{} of {} to {}", volume, largest, all);
         }
@@ -312,7 +317,7 @@ fn what_the_union_panics_on_is_refused() {
         let (b, c) = if (b - a).cross(c - a).dot(d - a) > 0.0 { (c, b) } else { (b, c) };
         soup.extend([[a, b, c], [a, c, d], [c, b, d], [b, a, d]]);
     }
-    assert!(treated(&soup, Treatment::DEFAULT).is_err());
+    assert!(treated(&soup, MeshPreparation::DEFAULT).is_err());
 }
 
 /// Facets, edges and corners of what a half is made of.
@@ -328,7 +333,7 @@ fn faces_are_polygons_again_however_they_were_cut() {
     let ring =
         [[0.3, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
     cube.extend((1..4).map(|k| [ring[0], ring[k], ring[k + 1]]));
-    let ready = treated(&cube, Treatment::AS_IT_IS).unwrap();
+    let ready = treated(&cube, MeshPreparation::AS_IT_IS).unwrap();
     assert_eq!(counts(&ready.surface), [6, 12, 8]);
     assert_eq!(ready.triangles, 14);
     assert!((ready.surface.volume() - 1.0).abs() < 1e-15);
@@ -356,7 +361,7 @@ fn a_plate_with_a_hole_keeps_convex_facets() {
         soup.extend(quad([at(k, false, 1.0), at(k + 1, false, 1.0), at(k + 1, true, 1.0), at(k, true, 1.0)]));
         soup.extend(quad([at(k + 1, false, 0.0), at(k, false, 0.0), at(k, true, 0.0), at(k + 1, true, 0.0)]));
     }
-    let surface = treated(&soup, Treatment::AS_IT_IS).unwrap().surface;
+    let surface = treated(&soup, MeshPreparation::AS_IT_IS).unwrap().surface;
     // Four pieces on either side, as there must be; outside, all edges but the four of the hole's walls are convex.
     assert_eq!(counts(&surface), [16, 20, 16]);
     assert!((surface.volume() - 0.36).abs() < 1e-15);
@@ -376,7 +381,7 @@ fn what_is_hardly_bent_stays_bent() {
         for corner in cube.iter_mut().flatten().filter(|p| p.x == 1.0 && p.z == 1.0 && p.y == 1.0) {
             corner.z += rise;
         }
-        let surface = treated(&cube, Treatment::AS_IT_IS).unwrap().surface;
+        let surface = treated(&cube, MeshPreparation::AS_IT_IS).unwrap().surface;
         assert_eq!(surface.facets.iter().filter(|f| f.normal.z > 0.5).count(), facets, "{rise}");
     }
 }

@@ -5,7 +5,7 @@
 //! `viewBox`.
 
 use super::{OutlineProblem, Stroke, Within, line_of};
-use crate::design::{LengthUnit, Quantity, Unit};
+use crate::design::{LengthUnit, Quantity, QuantityUnit};
 use crate::xml::svg::{self, Refusal};
 use crate::xml::{Tag, XmlAttribute};
 use glam::DVec2;
@@ -37,7 +37,7 @@ pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
     let of = |name: &str, across: Option<&f64>| {
         let (written, at) = head.get(name)?;
         match (written.parse::<Quantity>(), across) {
-            (Ok(Quantity { value, unit: Unit::Length(unit) }), Some(&across))
+            (Ok(Quantity { value, unit: QuantityUnit::Length(unit) }), Some(&across))
                 if value > 0.0 && across > 0.0 =>
             {
                 Some((value * LengthUnit::metres(unit) / across, at.clone()))

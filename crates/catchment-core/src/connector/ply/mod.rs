@@ -16,13 +16,13 @@ mod header;
 
 use super::mesh::{self, MeshProblem, Triangle};
 use super::source::{FileBytes, Held};
-use crate::design::Treatment;
+use crate::design::MeshPreparation;
 use body::Body;
 use glam::DVec3;
 use header::{Element, Header};
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
     parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 
@@ -30,7 +30,7 @@ fn refused(message: impl Into<String>) -> Vec<MeshProblem> {
     vec![MeshProblem::NotPly { message: message.into() }]
 }
 
-fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], treatment: MeshPreparation) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let header = Header::read(bytes).map_err(refused)?;
     let mut body = Body::new(bytes, &header);
     let (mut points, mut faces) = (None, None);
@@ -63,7 +63,7 @@ fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshPr
 fn vertices(
     element: &Element,
     body: &mut Body<'_>,
-    treatment: Treatment,
+    treatment: MeshPreparation,
 ) -> Result<Vec<DVec3>, Vec<MeshProblem>> {
     let axis = |name: &str| {
         element
@@ -96,7 +96,7 @@ struct Faces {
 fn read_faces(
     element: &Element,
     body: &mut Body<'_>,
-    treatment: Treatment,
+    treatment: MeshPreparation,
 ) -> Result<Faces, Vec<MeshProblem>> {
     let is_corners = |own: &header::Property| {
         own.count.is_some() && ["vertex_indices", "vertex_index"].contains(&own.name.as_str())
@@ -141,7 +141,7 @@ mod tests {
                         4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
     fn read(bytes: &[u8]) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
-        let as_it_is = Treatment::AS_IT_IS;
+        let as_it_is = MeshPreparation::AS_IT_IS;
         let held = super::read(&FileBytes::whole(bytes.to_vec()), as_it_is)?;
         mesh::half(held.bodies, 0.5, as_it_is).map(|mut ready| ready.half.surfaces.swap_remove(0))
     }

@@ -23,7 +23,7 @@ use super::{
     GeometryDefect, Half, HalfRole, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf,
 };
 use crate::design::{
-    FamilySpec, FileSpec, FilesInMemory, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment,
+    FamilySpec, FileSpec, FilesInMemory, HalfSpec, MeshContent, MeshPreparation, Meshed, PartSpec, ShapeSpec,
 };
 use crate::exec::Exec;
 use glam::DVec3;
@@ -89,7 +89,7 @@ struct Format {
     /// What the bytes of a file hold.
     read: fn(&FileBytes, &FileSpec, &Exec) -> Result<Held, Vec<MeshProblem>>,
     /// What the first bytes of a file say of it as a whole.
-    refuse_early: fn(&FileBytes, Treatment) -> Result<(), Vec<MeshProblem>>,
+    refuse_early: fn(&FileBytes, MeshPreparation) -> Result<(), Vec<MeshProblem>>,
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
@@ -114,12 +114,12 @@ const FORMATS: [Format; 5] = [
 ];
 
 /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
-pub(super) const fn most_bytes(treatment: Treatment) -> u64 {
+pub(super) const fn most_bytes(treatment: MeshPreparation) -> u64 {
     if treatment.simplify.is_some() { stl::MOST_BYTES } else { stl::MAX_BYTES }
 }
 
 /// Refuses a file that is longer than any acceptable mesh.
-fn refuse_long(file: &FileBytes, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+fn refuse_long(file: &FileBytes, treatment: MeshPreparation) -> Result<(), Vec<MeshProblem>> {
     let most = most_bytes(treatment);
     if file.size > most { Err(vec![MeshProblem::TooLong { bytes: file.size, most }]) } else { Ok(()) }
 }
@@ -153,7 +153,7 @@ impl Built {
 }
 
 /// A half, or a part of one, from the triangles of every body and their scale.
-type BuildMesh = fn(Vec<Vec<Triangle>>, f64, Treatment) -> Result<Ready, Vec<MeshProblem>>;
+type BuildMesh = fn(Vec<Vec<Triangle>>, f64, MeshPreparation) -> Result<Ready, Vec<MeshProblem>>;
 
 /// A mesh file as a half or a part of one, what it held, and its scale.
 pub(super) fn read_mesh(

@@ -44,33 +44,33 @@ fn a_pair_in_memory_is_the_family_without_any_file() {
 fn triangles_in_memory_are_complained_about_by_number() {
     let hull = convex_hull(&cube()[0]).unwrap();
     let good = soup(&hull);
-    let complaint =
-        |triangles: Vec<[DVec3; 3]>| match &build(&HalfSource::Triangles(triangles)).unwrap_err()[0] {
-            GeometryDefect::Triangles { side: HalfRole::Fixed, error } => error.clone(),
-            other => panic!("{other}"),
-        };
+    let defect = |triangles: Vec<[DVec3; 3]>| match &build(&HalfSource::Triangles(triangles)).unwrap_err()[0]
+    {
+        GeometryDefect::Triangles { side: HalfRole::Fixed, error } => error.clone(),
+        other => panic!("{other}"),
+    };
     let mut bad = good.clone();
     bad[3][1].y = f64::NAN;
     let place = TriangleLocation { triangle: 3, start: FileOffset::Memory };
-    let problem = complaint(bad);
+    let problem = defect(bad);
     assert!(
         matches!(problem, MeshProblem::NotFinite { place: of, at } if of == place && at.at.y.is_nan()),
         "{problem}"
     );
     assert_eq!(place.to_string(), "triangle 3");
-    assert_eq!(complaint(Vec::new()), MeshProblem::NoTriangles);
-    assert!(matches!(complaint(good[1..].to_vec()), MeshProblem::Open { .. }));
+    assert_eq!(defect(Vec::new()), MeshProblem::NoTriangles);
+    assert!(matches!(defect(good[1..].to_vec()), MeshProblem::Open { .. }));
     let many = vec![good[0]; mesh::MAX_TRIANGLES + 1];
-    assert!(matches!(complaint(many), MeshProblem::TooMany { .. }));
+    assert!(matches!(defect(many), MeshProblem::TooMany { .. }));
     let mut inside_out = good.clone();
     for triangle in &mut inside_out {
         triangle.swap(0, 1);
     }
-    assert!(matches!(complaint(inside_out), MeshProblem::InsideOut { .. }));
+    assert!(matches!(defect(inside_out), MeshProblem::InsideOut { .. }));
     // Triangles in memory are taken as they are: nothing unites what overlaps.
     let shifted = good.iter().map(|t| t.map(|p| p + DVec3::new(0.3, 0.4, 0.5)));
     let crossing: Vec<_> = good.iter().copied().chain(shifted).collect();
-    assert!(matches!(complaint(crossing), MeshProblem::SelfIntersection { .. }));
+    assert!(matches!(defect(crossing), MeshProblem::SelfIntersection { .. }));
 }
 
 /// A design of two meshes of the same cube under the given names, read from memory.

@@ -211,7 +211,7 @@ fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<H
 /// What the answer refuses, or that it is broken.
 #[doc(hidden)]
 pub fn bodies_of_answer(answer: &[u8]) -> Result<Vec<Vec<[glam::DVec3; 3]>>, Vec<MeshProblem>> {
-    let held = reply::read(answer, "python3", crate::design::Treatment::DEFAULT)?;
+    let held = reply::read(answer, "python3", crate::design::MeshPreparation::DEFAULT)?;
     Ok(held.bodies.iter().map(|body| body.iter().map(|triangle| triangle.corners).collect()).collect())
 }
 

@@ -4,7 +4,7 @@
 use super::{FromCurves, StepProblem};
 use crate::connector::mesh::{self, FileOffset, MeshProblem, Triangle, TriangleLocation, most_read};
 use crate::connector::source::Held;
-use crate::design::{LengthUnit, Treatment, hex};
+use crate::design::{LengthUnit, MeshPreparation, hex};
 use glam::DVec3;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -40,7 +40,11 @@ pub(super) const fn most_bytes(triangles: usize) -> u64 {
 }
 
 /// The bodies of an answer, or what it refuses.
-pub(super) fn read(answer: &[u8], program: &str, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(
+    answer: &[u8],
+    program: &str,
+    treatment: MeshPreparation,
+) -> Result<Held, Vec<MeshProblem>> {
     let broken = || {
         let message = "its answer is broken".to_owned();
         vec![StepProblem::Died { program: program.to_owned(), message }.into()]
@@ -92,7 +96,7 @@ fn corner(bytes: &[u8]) -> DVec3 {
     DVec3::new(number(0), number(1), number(2))
 }
 
-fn refusal(kind: &str, message: &str, program: &str, treatment: Treatment) -> MeshProblem {
+fn refusal(kind: &str, message: &str, program: &str, treatment: MeshPreparation) -> MeshProblem {
     let message: String = message.chars().filter(|c| !c.is_control()).collect();
     let program = program.to_owned();
     match kind {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::design::Treatment;
+use crate::design::MeshPreparation;
 
 fn answer(head: &str, doubles: &[f64], corners: &[u32]) -> Vec<u8> {
     let mut bytes = format!("{head}\n").into_bytes();
@@ -12,7 +12,7 @@ const HEAD: &str = r#"{"bodies": [[3, 1]], "deflection": 0.01, "reached": 0.009,
 const POINTS: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5];
 
 fn read_answer(bytes: &[u8]) -> Result<Held, Vec<MeshProblem>> {
-    reply::read(bytes, "python3", Treatment::DEFAULT)
+    reply::read(bytes, "python3", MeshPreparation::DEFAULT)
 }
 
 #[test]

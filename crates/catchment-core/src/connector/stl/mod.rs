@@ -19,7 +19,7 @@ pub use write::{StlEncoding, write};
 use super::Half;
 use super::mesh::{self, MOST_READ, MeshProblem};
 use super::source::{FileBytes, Held};
-use crate::design::Treatment;
+use crate::design::MeshPreparation;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
 pub const MAX_BYTES: u64 = 128 << 20;
@@ -27,12 +27,12 @@ pub const MAX_BYTES: u64 = 128 << 20;
 pub const MOST_BYTES: u64 = 84 + 50 * MOST_READ as u64;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
     parse::parse(&file.bytes, file.size, treatment).map(Held::of_triangles)
 }
 
 /// What the first bytes of a file say of it as a whole: a binary file with too many triangles is refused before they are read.
-pub(super) fn refuse_early(file: &FileBytes, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+pub(super) fn refuse_early(file: &FileBytes, treatment: MeshPreparation) -> Result<(), Vec<MeshProblem>> {
     parse::refuse_early(&file.bytes, file.size, treatment)
 }
 
@@ -42,8 +42,8 @@ pub(super) fn refuse_early(file: &FileBytes, treatment: Treatment) -> Result<(),
 /// # Errors
 /// Everything that is wrong with the file, at most a few problems of each kind.
 pub fn from_bytes(bytes: &[u8], size: u64, scale: f64) -> Result<Half, Vec<MeshProblem>> {
-    let triangles = parse::parse(bytes, size, Treatment::AS_IT_IS)?;
-    mesh::half(vec![triangles], scale, Treatment::AS_IT_IS).map(|ready| ready.half)
+    let triangles = parse::parse(bytes, size, MeshPreparation::AS_IT_IS)?;
+    mesh::half(vec![triangles], scale, MeshPreparation::AS_IT_IS).map(|ready| ready.half)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::connector::mesh::{self, FileOffset, MeshProblem, Triangle, TriangleLocation};
 use crate::connector::source::most_bytes;
-use crate::design::Treatment;
+use crate::design::MeshPreparation;
 use glam::DVec3;
 
 /// Header and triangle count of a binary file.
@@ -16,7 +16,7 @@ const SHOWN: usize = 24;
 pub(super) fn parse(
     bytes: &[u8],
     size: u64,
-    treatment: Treatment,
+    treatment: MeshPreparation,
 ) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     if bytes.is_empty() {
         return Err(vec![MeshProblem::Empty]);
@@ -34,7 +34,11 @@ pub(super) fn parse(
 }
 
 /// Refuses a binary file by its header: the first `bytes` hold it.
-pub(super) fn refuse_early(bytes: &[u8], size: u64, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+pub(super) fn refuse_early(
+    bytes: &[u8],
+    size: u64,
+    treatment: MeshPreparation,
+) -> Result<(), Vec<MeshProblem>> {
     if is_binary(bytes, size) { refuse_binary(bytes, size, treatment) } else { Ok(()) }
 }
 
@@ -53,7 +57,7 @@ fn is_binary(bytes: &[u8], size: u64) -> bool {
     announced(bytes).is_some_and(|count| length(count) == size) || !looks_like_text(bytes)
 }
 
-fn refuse_binary(bytes: &[u8], size: u64, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+fn refuse_binary(bytes: &[u8], size: u64, treatment: MeshPreparation) -> Result<(), Vec<MeshProblem>> {
     let problem = match announced(bytes) {
         None => MeshProblem::NotStl { found: size },
         Some(triangles) if length(triangles) != size => {
@@ -140,7 +144,7 @@ fn shown(words: &[&[u8]]) -> String {
     format!("`{}`", text.escape_debug())
 }
 
-fn ascii(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, MeshProblem> {
+fn ascii(bytes: &[u8], treatment: MeshPreparation) -> Result<Vec<Triangle>, MeshProblem> {
     let is_newline: fn(&u8) -> bool = |b| *b == b'\n';
     let mut lines = Lines { lines: bytes.split(is_newline).enumerate(), last: 1 };
     let mut triangles = Vec::new();

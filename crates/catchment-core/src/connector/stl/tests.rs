@@ -45,7 +45,7 @@ fn text(triangles: &[[[f64; 3]; 3]]) -> String {
     out + "endsolid cube\n"
 }
 
-fn complaints(triangles: &[[[f64; 3]; 3]]) -> Vec<MeshProblem> {
+fn defects(triangles: &[[[f64; 3]; 3]]) -> Vec<MeshProblem> {
     parse(text(triangles).as_bytes()).unwrap_err()
 }
 
@@ -127,7 +127,7 @@ fn more_triangles_than_the_limit_are_refused_before_they_are_read() {
     let problems = from_bytes(&header, 84 + 50 * u64::from(count), 1.0).unwrap_err();
     assert_eq!(problems, [MeshProblem::TooMany { count: 3_000_000 }]);
     let many = vec![cube()[0]; MAX_TRIANGLES + 5];
-    assert_eq!(complaints(&many), [MeshProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
+    assert_eq!(defects(&many), [MeshProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
     let problems = from_bytes(b"solid x", 1 << 40, 1.0).unwrap_err();
     assert_eq!(problems, [MeshProblem::TooLong { bytes: 1 << 40, most: MAX_BYTES }]);
 }
@@ -138,7 +138,7 @@ fn a_corner_that_is_not_finite_is_located() {
         let mut triangles = cube();
         triangles[3][1][2] = bad;
         let place = TriangleLocation { triangle: 3, start: FileOffset::Line(2 + 3 * 7) };
-        let problems = complaints(&triangles);
+        let problems = defects(&triangles);
         assert!(
             matches!(problems[..], [MeshProblem::NotFinite { place: of, .. }] if of == place),
             "{problems:?}"
@@ -150,14 +150,14 @@ fn a_corner_that_is_not_finite_is_located() {
 fn a_hole_is_reported_edge_by_edge() {
     let mut triangles = cube();
     triangles.remove(5);
-    let problems = complaints(&triangles);
+    let problems = defects(&triangles);
     assert_eq!(problems.len(), 3);
     assert!(problems.iter().all(|p| matches!(p, MeshProblem::Open { .. })), "{problems:?}");
 }
 
 #[test]
 fn many_problems_of_a_kind_are_counted() {
-    let problems = complaints(&cube().into_iter().step_by(2).collect::<Vec<_>>());
+    let problems = defects(&cube().into_iter().step_by(2).collect::<Vec<_>>());
     assert_eq!(problems.len(), MAX_REPORTED + 1);
     // Six separate triangles are open along 18 sides.
     assert_eq!(problems.last(), Some(&MeshProblem::More { count: 13 }));
@@ -167,7 +167,7 @@ fn many_problems_of_a_kind_are_counted() {
 fn a_triangle_without_area_is_located_not_dropped() {
     let mut triangles = cube();
     triangles.push([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
-    let problems = complaints(&triangles);
+    let problems = defects(&triangles);
     let place = TriangleLocation { triangle: 12, start: FileOffset::Line(2 + 12 * 7) };
     assert!(problems.contains(&MeshProblem::ZeroArea { place, at: DVec3::ZERO.into() }), "{problems:?}");
 }
@@ -175,7 +175,7 @@ fn a_triangle_without_area_is_located_not_dropped() {
 #[test]
 fn solids_that_touch_along_an_edge_are_non_manifold() {
     let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 1.0, y + 1.0, z]));
-    let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
+    let problems = defects(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
     assert!(matches!(problems[..], [MeshProblem::NonManifold { count: 4, .. }]), "{problems:?}");
 }
 
@@ -183,14 +183,14 @@ fn solids_that_touch_along_an_edge_are_non_manifold() {
 fn inside_out_and_mixed_windings_are_told_apart() {
     let mut triangles = cube();
     triangles[7].swap(0, 1);
-    let problems = complaints(&triangles);
+    let problems = defects(&triangles);
     assert_eq!(problems.len(), 3);
     assert!(problems.iter().all(|p| matches!(p, MeshProblem::Winding { .. })), "{problems:?}");
     for t in &mut triangles {
         t.swap(0, 1);
     }
     triangles[7].swap(0, 1);
-    assert!(matches!(complaints(&triangles)[..], [MeshProblem::InsideOut { .. }]));
+    assert!(matches!(defects(&triangles)[..], [MeshProblem::InsideOut { .. }]));
 }
 
 /// A tall box on a square of half the side of a cube's.
@@ -233,7 +233,7 @@ fn a_shell_that_crosses_itself_is_located() {
     box_.retain(|t| !lid.contains(t));
     let rim = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]];
     box_.extend((0..4).map(|k| [rim[k], rim[(k + 1) % 4], tip]));
-    let problems = complaints(&box_);
+    let problems = defects(&box_);
     assert!(problems.iter().any(|p| matches!(p, MeshProblem::SelfIntersection { .. })), "{problems:?}");
 }
 

@@ -283,13 +283,13 @@ impl FamilySpec {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::keys::{Applies, Table};
+    use crate::design::keys::{Applies, DesignTable};
 
     #[test]
     fn the_table_of_keys_says_which_family_has_what() {
         for family in Family::ALL {
             let has: Vec<_> = FamilySpec::new(family).parameters().iter().map(|(key, _)| key.name).collect();
-            let said: Vec<_> = Table::Connector
+            let said: Vec<_> = DesignTable::Connector
                 .keys()
                 .filter(|key| matches!(key.applies, Applies::AnyFamily | Applies::Families(_)))
                 .filter(|key| key.applies.to(Some(family)))

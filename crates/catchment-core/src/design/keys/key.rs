@@ -1,9 +1,9 @@
 //! Description of a key of the design file: its place, its type, its range and its meaning.
 
 use super::KEYS;
-use crate::design::complaint::Complaint;
+use crate::design::defect::DesignDefect;
 use crate::design::family::Family;
-use crate::design::quantity::{Quantity, Scale, Unit};
+use crate::design::quantity::{LengthScale, Quantity, QuantityUnit};
 use std::fmt;
 
 /// A closed interval.
@@ -42,7 +42,7 @@ impl fmt::Display for Range {
 
 /// What a value may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum ValueKind {
     /// A line of text for people.
     Line,
     /// A number without a unit.
@@ -91,12 +91,12 @@ pub enum Kind {
     /// Read by a later version.
     Later,
     /// A table with keys of its own.
-    Table(Table),
+    Table(DesignTable),
 }
 
 /// A table of the design file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Table {
+pub enum DesignTable {
     /// The file itself.
     Root,
     /// `[connector]`.
@@ -119,7 +119,7 @@ pub enum Table {
     Docked,
 }
 
-impl Table {
+impl DesignTable {
     /// Every table.
     pub const ALL: [Self; 10] = [
         Self::Root,
@@ -198,11 +198,11 @@ impl fmt::Display for Applies {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
     /// The table it stands in.
-    pub table: Table,
+    pub table: DesignTable,
     /// Its name.
     pub name: &'static str,
     /// What its value may be.
-    pub kind: Kind,
+    pub kind: ValueKind,
     /// Who has it.
     pub applies: Applies,
     /// What it means, for a person.
@@ -214,8 +214,8 @@ impl Key {
     #[must_use]
     pub const fn element(self) -> Self {
         let kind = match self.kind {
-            Kind::Point(range) | Kind::Outline(range) => Kind::DrawnLength(range),
-            Kind::Turns(range) => Kind::Angle(range),
+            ValueKind::Point(range) | ValueKind::Outline(range) => ValueKind::DrawnLength(range),
+            ValueKind::Turns(range) => ValueKind::Angle(range),
             kind => kind,
         };
         Self { kind, ..self }
@@ -224,17 +224,21 @@ impl Key {
     /// Whether what a quantity means for this key depends on D.
     pub(in crate::design) const fn depends_on_width(&self, quantity: Quantity) -> bool {
         match self.kind {
-            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
-            Kind::DrawnLength(_) => !matches!(quantity.unit, Unit::D),
+            ValueKind::Length(_) => !matches!(quantity.unit, QuantityUnit::Bare | QuantityUnit::D),
+            ValueKind::DrawnLength(_) => !matches!(quantity.unit, QuantityUnit::D),
             _ => false,
         }
     }
 
     /// The length in D, whatever the range; `None` of what is none.
-    pub(in crate::design) fn unchecked(&self, quantity: Quantity, scale: Option<&Scale>) -> Option<f64> {
+    pub(in crate::design) fn unchecked(
+        &self,
+        quantity: Quantity,
+        scale: Option<&LengthScale>,
+    ) -> Option<f64> {
         match self.kind {
-            Kind::Length(_) => quantity.length_d(scale?).ok(),
-            Kind::DrawnLength(_) => quantity.drawn_length_d(scale?).ok(),
+            ValueKind::Length(_) => quantity.length_d(scale?).ok(),
+            ValueKind::DrawnLength(_) => quantity.drawn_length_d(scale?).ok(),
             _ => None,
         }
     }
@@ -244,32 +248,38 @@ impl Key {
     ///
     /// # Errors
     /// Out of range, a unit of the wrong dimension, or a unit in a dimensionless design.
-    pub fn checked(&self, quantity: Quantity, scale: Option<&Scale>) -> Result<Option<f64>, Complaint> {
+    pub fn checked(
+        &self,
+        quantity: Quantity,
+        scale: Option<&LengthScale>,
+    ) -> Result<Option<f64>, DesignDefect> {
         let needs_scale = self.depends_on_width(quantity);
         let scale = match scale {
             Some(scale) => *scale,
             None if needs_scale => return Ok(None),
-            None => Scale { width: 1.0, unit: None },
+            None => LengthScale { width: 1.0, unit: None },
         };
         let (number, range) = match self.kind {
-            Kind::Length(range) => (quantity.length_d(&scale)?, range),
-            Kind::DrawnLength(range) => (quantity.drawn_length_d(&scale)?, range),
-            Kind::Angle(range) => (quantity.angle_rad()?, range),
-            Kind::Width(range) => (quantity.width(scale.unit)?, range),
-            Kind::Ratio(range) if quantity.unit == Unit::Bare => (quantity.value, range),
-            _ => return Err(Complaint::NotARatio { key: self.name, text: quantity.to_string() }),
+            ValueKind::Length(range) => (quantity.length_d(&scale)?, range),
+            ValueKind::DrawnLength(range) => (quantity.drawn_length_d(&scale)?, range),
+            ValueKind::Angle(range) => (quantity.angle_rad()?, range),
+            ValueKind::Width(range) => (quantity.width(scale.unit)?, range),
+            ValueKind::Ratio(range) if quantity.unit == QuantityUnit::Bare => (quantity.value, range),
+            _ => return Err(DesignDefect::NotARatio { key: self.name, text: quantity.to_string() }),
         };
         if range.contains(number) {
             return Ok(Some(number));
         }
         let found = match quantity.unit {
             _ if range.unit.is_empty() => quantity.to_string(),
-            Unit::Bare if matches!(self.kind, Kind::DrawnLength(_)) => format!("{quantity} = {number} D"),
-            Unit::Bare | Unit::D => format!("{} {}", quantity.value, range.unit),
-            Unit::Length(_) => format!("{quantity} = {number} D"),
-            Unit::Degrees | Unit::Radians => quantity.to_string(),
+            QuantityUnit::Bare if matches!(self.kind, ValueKind::DrawnLength(_)) => {
+                format!("{quantity} = {number} D")
+            }
+            QuantityUnit::Bare | QuantityUnit::D => format!("{} {}", quantity.value, range.unit),
+            QuantityUnit::Length(_) => format!("{quantity} = {number} D"),
+            QuantityUnit::Degrees | QuantityUnit::Radians => quantity.to_string(),
         };
-        Err(Complaint::OutOfRange { key: self.name.to_owned(), found, range, doc: self.doc })
+        Err(DesignDefect::OutOfRange { key: self.name.to_owned(), found, range, doc: self.doc })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::{Fault, Found, shortened};
 use super::{Circumstance, Dynamics, ScalarDistribution};
-use crate::design::{Design, Findings, Quantity, SourceText, nearest};
+use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
 use crate::suggest::{number_help, value_help};
 use std::ops::Range;
 use toml::Spanned;
@@ -21,7 +21,7 @@ const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { mea
 ///
 /// # Errors
 /// What is wrong with the text, with its bytes.
-pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Findings> {
+pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Diagnostics> {
     let mut found = Found::default();
     let read = draw(text, design);
     match read {
@@ -29,7 +29,7 @@ pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDi
         Err((span, fault)) => {
             found.push(fault, || Some(span));
             found.refuse()?;
-            Err(Findings { source: None, list: Vec::new(), omitted: 0 })
+            Err(Diagnostics { source: None, list: Vec::new(), omitted: 0 })
         }
     }
 }
@@ -48,7 +48,7 @@ fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution
 ///
 /// # Errors
 /// Everything that is wrong with the file, each in its place.
-pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Findings> {
+pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
     let mut found = Found::default();
     let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
@@ -60,7 +60,7 @@ pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, F
     let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
     reader.file(document.get_ref());
     let Reader { found, dynamics, .. } = reader;
-    found.refuse().map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+    found.refuse().map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
     Ok(dynamics)
 }
 
@@ -258,7 +258,8 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
     if number.is_empty() {
         return Err(Fault::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
     }
-    let told = |c: crate::design::Complaint| Fault { message: format!("{}: {c}", of.name()), help: c.help() };
+    let told =
+        |c: crate::design::DesignDefect| Fault { message: format!("{}: {c}", of.name()), help: c.help() };
     match of {
         Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),
         Circumstance::Friction | Circumstance::Restitution => {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::design::{Design, Findings, SourceText};
+use crate::design::{Design, Diagnostics, SourceText};
 use std::path::Path;
 
 fn design() -> Design {
@@ -7,15 +7,15 @@ fn design() -> Design {
     crate::design::read(text, Path::new("")).unwrap().design
 }
 
-fn read(text: &str) -> Result<Dynamics, Findings> {
+fn read(text: &str) -> Result<Dynamics, Diagnostics> {
     read_dynamics(&SourceText::new("dynamics.toml", text.to_owned()), &design())
 }
 
 /// What is said of a file, with the text that it is said of.
 fn wrong(text: &str) -> Vec<(String, String)> {
-    let of = |finding: &crate::design::Finding| {
-        let place = finding.span.clone().map_or_else(String::new, |span| text[span].to_owned());
-        (place, finding.message.clone())
+    let of = |diagnostic: &crate::design::Diagnostic| {
+        let place = diagnostic.span.clone().map_or_else(String::new, |span| text[span].to_owned());
+        (place, diagnostic.message.clone())
     };
     read(text).unwrap_err().list.iter().map(of).collect()
 }

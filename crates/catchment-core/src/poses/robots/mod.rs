@@ -38,7 +38,7 @@ pub use read::{MOST_ROBOTS, read_robots};
 
 use super::Distribution;
 use super::covariance::{self, IDENTITY, Matrix};
-use crate::design::{Design, Findings, SourceText};
+use crate::design::{Design, Diagnostics, SourceText};
 use crate::pose::{Dof, PoseError};
 use serde::Serialize;
 
@@ -131,7 +131,7 @@ impl Spread {
     ///
     /// # Errors
     /// Everything that is wrong with the table, each in its place, or that it is too short.
-    pub fn measured(table: SourceText, design: &Design) -> Result<Self, Findings> {
+    pub fn measured(table: SourceText, design: &Design) -> Result<Self, Diagnostics> {
         read::measured(table, design)
     }
 

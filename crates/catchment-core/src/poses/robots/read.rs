@@ -5,7 +5,7 @@ use super::super::distribution::size;
 use super::super::written::in_range;
 use super::super::{Fault, Found, OffsetsAt, PoseTable, shortened};
 use super::{Robot, Spread};
-use crate::design::{Design, Findings, Quantity, SourceText, nearest};
+use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::value_help;
 use std::ops::Range;
@@ -30,7 +30,7 @@ pub fn read_robots(
     source: &SourceText,
     design: &Design,
     table: &mut dyn FnMut(&str) -> Result<SourceText, String>,
-) -> Result<Vec<Robot>, Findings> {
+) -> Result<Vec<Robot>, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
     let mut reader = Reader { found: Found::default(), broken: Vec::new(), foreign: None, design, table };
     for error in syntax {
@@ -41,7 +41,7 @@ pub fn read_robots(
     }
     let robots = reader.robots(document.get_ref());
     let Reader { found, foreign, .. } = reader;
-    let refused = |findings: Findings| Findings { source: Some(source.clone()), ..findings };
+    let refused = |diagnostics: Diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics };
     found.refuse().map_err(refused)?;
     foreign.map_or(Ok(robots), Err)
 }
@@ -55,7 +55,7 @@ pub(super) struct Reader<'a> {
     /// Where the text is no TOML: what is wrong there is an echo.
     broken: Vec<Range<usize>>,
     /// What is wrong with a table.
-    foreign: Option<Findings>,
+    foreign: Option<Diagnostics>,
     pub(super) design: &'a Design,
     table: &'a mut dyn FnMut(&str) -> Result<SourceText, String>,
 }
@@ -258,8 +258,8 @@ impl Reader<'_> {
         };
         match measured(source, self.design) {
             Ok(spread) => Some(spread),
-            Err(findings) => {
-                self.foreign.get_or_insert(findings);
+            Err(diagnostics) => {
+                self.foreign.get_or_insert(diagnostics);
                 None
             }
         }
@@ -284,7 +284,7 @@ impl Reader<'_> {
 ///
 /// # Errors
 /// Everything that is wrong with the table, or that it is too short.
-pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Findings> {
+pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Diagnostics> {
     let read = PoseTable::parse(&source.text, design, OffsetsAt::Face);
     let poses = read.map(|table| table.errors().to_vec()).and_then(|poses| {
         let mut found = Found::default();
@@ -302,6 +302,6 @@ pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Fi
     });
     match poses {
         Ok(poses) => Ok(Spread::Measured { source: source.path.display().to_string(), poses }),
-        Err(findings) => Err(Findings { source: Some(source), ..findings }),
+        Err(diagnostics) => Err(Diagnostics { source: Some(source), ..diagnostics }),
     }
 }

@@ -8,7 +8,7 @@ fn design() -> Design {
     crate::design::read(text, Path::new("")).unwrap().design
 }
 
-fn read(text: &str) -> Result<Vec<Robot>, Findings> {
+fn read(text: &str) -> Result<Vec<Robot>, Diagnostics> {
     let table = |path: &str| match path {
         "good.csv" => Ok(SourceText::new(path, "x_mm,yaw_deg\n1,0\n-1,2\n3,1\n")),
         "bad.csv" => Ok(SourceText::new(path, "x_mm,yaw_deg\n1,0\n-1\n?,1\n")),
@@ -23,7 +23,7 @@ fn wrong(text: &str) -> Vec<(String, String)> {
     let refused = read(text).unwrap_err();
     assert_eq!(refused.path(), Some(Path::new("r.toml")));
     let place = |span: Option<std::ops::Range<usize>>| text[span.unwrap_or(0..0)].to_owned();
-    refused.list.into_iter().map(|finding| (place(finding.span), finding.message)).collect()
+    refused.list.into_iter().map(|diagnostic| (place(diagnostic.span), diagnostic.message)).collect()
 }
 
 fn one(body: &str) -> Vec<(String, String)> {

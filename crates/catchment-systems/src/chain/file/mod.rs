@@ -25,7 +25,7 @@ use super::kinematics::{Body, nearest_quarter};
 use super::sequence::{Command, Sequence, Step};
 use super::shape::{FIRST_CORNERS, Latch, Reading, Shape, latches};
 use crate::form::{Form, Section};
-use catchment::design::{Finding, Findings, SourceText};
+use catchment::design::{Diagnostic, Diagnostics, SourceText};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -87,7 +87,7 @@ impl ChainFile {
     ///
     /// # Errors
     /// Everything that is wrong with it, each in its place.
-    pub fn read(source: SourceText) -> Result<Self, Findings> {
+    pub fn read(source: SourceText) -> Result<Self, Diagnostics> {
         let folder = source.path.parent().map_or_else(PathBuf::new, std::path::Path::to_path_buf);
         let kept = source.clone();
         Form::read(source, |form, root| {
@@ -115,20 +115,20 @@ impl ChainFile {
     }
 
     /// The file, refused for what a later room found about a step.
-    pub fn refuse_step(&self, step: usize, message: String) -> Findings {
+    pub fn refuse_step(&self, step: usize, message: String) -> Diagnostics {
         let place = self.folding.as_ref().and_then(|folding| folding.places.get(step).cloned());
         let help = "change the order of the steps, or their angles".to_owned();
         self.refused(place, message, Some(help))
     }
 
     /// The file, refused for what a later room found about its connector.
-    pub fn refuse_connector(&self, message: String, help: Option<String>) -> Findings {
+    pub fn refuse_connector(&self, message: String, help: Option<String>) -> Diagnostics {
         self.refused(self.connector.as_ref().map(|line| line.place.clone()), message, help)
     }
 
-    fn refused(&self, place: Option<Range<usize>>, message: String, help: Option<String>) -> Findings {
-        let list = vec![Finding::new(message, help).at(place)];
-        Findings { source: Some(self.source.clone()), list, omitted: 0 }
+    fn refused(&self, place: Option<Range<usize>>, message: String, help: Option<String>) -> Diagnostics {
+        let list = vec![Diagnostic::new(message, help).at(place)];
+        Diagnostics { source: Some(self.source.clone()), list, omitted: 0 }
     }
 }
 
@@ -247,8 +247,8 @@ fn folding(
         Some(shape) => match Sequence::of(shape) {
             Ok(known) if own => Sequence { steps, latches: known.latches, source: OWN },
             Ok(known) => known,
-            Err(findings) => {
-                form.refuse(named.span(), findings.to_string(), None);
+            Err(diagnostics) => {
+                form.refuse(named.span(), diagnostics.to_string(), None);
                 return None;
             }
         },

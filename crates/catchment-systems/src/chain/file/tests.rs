@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn read(text: &str) -> Result<ChainFile, Findings> {
+fn read(text: &str) -> Result<ChainFile, Diagnostics> {
     ChainFile::read(SourceText::new("folder/c.toml", text))
 }
 

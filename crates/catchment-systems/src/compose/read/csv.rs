@@ -2,7 +2,9 @@
 
 use super::rings::{MOST_CORNERS, Ring, region, too_many};
 use super::{Measure, Read, ReadError};
-use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit, nearest};
+use catchment::design::{
+    Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText, nearest,
+};
 use catchment::suggest::{number_help, odd};
 use glam::DVec2;
 use std::collections::HashSet;
@@ -18,7 +20,7 @@ struct Record {
 const MOST_COLUMNS: usize = 100;
 
 /// The records of a text: the names of the columns and, if there are so many, one corner more than are taken.
-fn records(text: &str) -> Result<Vec<Record>, Finding> {
+fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
     let mut reader = ::csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -27,7 +29,7 @@ fn records(text: &str) -> Result<Vec<Record>, Finding> {
         .from_reader(text.as_bytes());
     let mut records = Vec::new();
     for record in reader.records().take(MOST_CORNERS + 2) {
-        let record = record.map_err(|error| Finding::new(error.to_string(), None))?;
+        let record = record.map_err(|error| Diagnostic::new(error.to_string(), None))?;
         let start = record.position().map_or(0, |p| p.byte() as usize);
         // The reader may say where the line before ended.
         let start = start + text[start..].len() - text[start..].trim_start_matches(['\r', '\n']).len();
@@ -66,10 +68,10 @@ struct Columns {
     x: usize,
     y: usize,
     ring: Option<usize>,
-    unit: Unit,
+    unit: QuantityUnit,
 }
 
-fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
+fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> {
     const HELP: &str = "the first line names the columns: x,y or x,y,ring; units in brackets: x [cm], y [cm]";
     let mut places: [Option<(usize, Option<String>)>; 3] = [const { None }; 3];
     let before = found.len();
@@ -79,7 +81,7 @@ fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
             Some(which) if places[which].is_none() => places[which] = Some((k, unit)),
             Some(_) => {
                 found.push(
-                    Finding::new(format!("`{name}` is a second column of {base}"), None)
+                    Diagnostic::new(format!("`{name}` is a second column of {base}"), None)
                         .at(Some(span.clone())),
                 );
             }
@@ -87,7 +89,7 @@ fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
                 let help = nearest(&base, ["x", "y", "ring"])
                     .map_or_else(|| HELP.to_owned(), |meant| format!("did you mean `{meant}`?"));
                 found.push(
-                    Finding::new(format!("unknown column `{name}`{}", odd(name)), Some(help))
+                    Diagnostic::new(format!("unknown column `{name}`{}", odd(name)), Some(help))
                         .at(Some(span.clone())),
                 );
             }
@@ -98,55 +100,55 @@ fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
     }
     let [Some((x, first)), Some((y, second)), ring] = places else {
         let message = "the table has no columns x and y";
-        found.push(Finding::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        found.push(Diagnostic::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
         return None;
     };
     let named = |unit: &Option<String>| match unit {
-        None => Some(Unit::Bare),
+        None => Some(QuantityUnit::Bare),
         Some(text) => format!("1 {text}").parse::<Quantity>().ok().map(|q| q.unit),
     };
     let (Some(of_x), Some(of_y)) = (named(&first), named(&second)) else {
         let message = "the unit of a column is none of mm, cm, m, um, in, D";
-        found.push(Finding::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        found.push(Diagnostic::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
         return None;
     };
-    if matches!(of_x, Unit::Degrees | Unit::Radians) || of_x != of_y {
+    if matches!(of_x, QuantityUnit::Degrees | QuantityUnit::Radians) || of_x != of_y {
         let text = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "mm".to_owned());
         let message = format!("the units are mixed: x is in {} and y in {}", text(&first), text(&second));
         let help = "give both in one unit of length".to_owned();
-        found.push(Finding::new(message, Some(help)).at(Some(header.span.clone())));
+        found.push(Diagnostic::new(message, Some(help)).at(Some(header.span.clone())));
         return None;
     }
     Some(Columns { x, y, ring: ring.map(|(k, _)| k), unit: of_x })
 }
 
 pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
-    let mut found = Found::default();
+    let mut found = DiagnosticCollector::default();
     let mut rings: Vec<Ring> = Vec::new();
     let mut measure = Measure::Millimetres;
-    let all = records(&source.text).unwrap_or_else(|finding| {
-        found.push(finding);
+    let all = records(&source.text).unwrap_or_else(|diagnostic| {
+        found.push(diagnostic);
         Vec::new()
     });
     if let Some((header, rows)) = all.split_first() {
         if rows.len() > MOST_CORNERS {
             found.push(too_many());
         } else if let Some(columns) = columns(header, &mut found) {
-            if columns.unit == Unit::D {
+            if columns.unit == QuantityUnit::D {
                 measure = Measure::Widths;
             }
             fill(rows, &columns, &mut rings, &mut found);
         }
     } else if found.is_empty() {
         let help = Some("it has a line for the names of the columns and one for each corner".to_owned());
-        found.push(Finding::new("the table is empty", help));
+        found.push(Diagnostic::new("the table is empty", help));
     }
     region(source, stem, measure, rings, found, Vec::new())
 }
 
-fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut Found) {
+fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut DiagnosticCollector) {
     let factor = match columns.unit {
-        Unit::Length(unit) => unit.metres() / LengthUnit::Mm.metres(),
+        QuantityUnit::Length(unit) => unit.metres() / LengthUnit::Mm.metres(),
         _ => 1.0,
     };
     // The rings so far by their labels, of which the last is still open.
@@ -157,10 +159,10 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut F
         let coordinates = [columns.x, columns.y].map(|k| {
             let Some((text, span)) = row.fields.get(k) else {
                 let message = "a coordinate is missing in this line";
-                found.push_with(|| Finding::new(message, None).at(Some(row.span.clone())));
+                found.push_with(|| Diagnostic::new(message, None).at(Some(row.span.clone())));
                 return None;
             };
-            number(text, span).map_err(|finding| found.push(finding)).ok()
+            number(text, span).map_err(|diagnostic| found.push(diagnostic)).ok()
         });
         let [Some(x), Some(y)] = coordinates else { continue };
         if open != Some(label) {
@@ -168,7 +170,7 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut F
                 let message =
                     format!("ring `{label}` was left open: another ring began before it went on here");
                 let help = "the corners of a ring follow each other".to_owned();
-                found.push(Finding::new(message, Some(help)).at(Some(row.span.clone())));
+                found.push(Diagnostic::new(message, Some(help)).at(Some(row.span.clone())));
                 continue;
             }
             open = Some(label);
@@ -179,22 +181,22 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut F
         }
     }
     if found.is_empty() && rings.is_empty() {
-        found.push(Finding::new("the table has no corners", None));
+        found.push(Diagnostic::new("the table has no corners", None));
     }
 }
 
-fn number(text: &str, span: &Range<usize>) -> Result<f64, Finding> {
-    let finding =
-        |message: String, help: &str| Finding::new(message, Some(help.to_owned())).at(Some(span.clone()));
+fn number(text: &str, span: &Range<usize>) -> Result<f64, Diagnostic> {
+    let diagnostic =
+        |message: String, help: &str| Diagnostic::new(message, Some(help.to_owned())).at(Some(span.clone()));
     match text.parse::<Quantity>() {
-        Ok(Quantity { value, unit: Unit::Bare }) => Ok(value),
-        Ok(_) => Err(finding(
+        Ok(Quantity { value, unit: QuantityUnit::Bare }) => Ok(value),
+        Ok(_) => Err(diagnostic(
             format!("the units are mixed: `{text}` has one of its own"),
             "give the unit once, in the names of the columns: x [cm], y [cm]",
         )),
-        Err(complaint) => {
+        Err(defect) => {
             let help = number_help(text).unwrap_or_else(|| "a coordinate is a finite number".to_owned());
-            Err(finding(complaint.to_string(), &help))
+            Err(diagnostic(defect.to_string(), &help))
         }
     }
 }

@@ -19,7 +19,7 @@ use super::region::Region;
 use super::sum::SumError;
 use super::sweep::Bracket;
 use crate::form::{Form, Section};
-use catchment::design::{Finding, Findings, LengthUnit, SourceText};
+use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
 use catchment::exec::Exec;
 use catchment::method::zraa::{self, Zraa, ZraaError};
 use catchment::problem::{Draft, ProblemError};
@@ -67,7 +67,7 @@ pub struct Read {
 pub enum ReadError {
     /// What is wrong with the text.
     #[error(transparent)]
-    Findings(#[from] Findings),
+    Diagnostics(#[from] Diagnostics),
     /// What is wrong with the connector.
     #[error(transparent)]
     Problem(#[from] ProblemError),
@@ -111,7 +111,8 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<Read, ReadError> {
         _ => {
             let help = "a region is read from .csv, .svg or .toml".to_owned();
             let message = format!("cannot tell what is in {}", shown(&source.path));
-            Err(Findings { source: None, list: vec![Finding::new(message, Some(help))], omitted: 0 }.into())
+            Err(Diagnostics { source: None, list: vec![Diagnostic::new(message, Some(help))], omitted: 0 }
+                .into())
         }
     }
 }

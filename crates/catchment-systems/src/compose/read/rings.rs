@@ -4,7 +4,7 @@ use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;
 use super::{Measure, Read, ReadError};
 use catchment::budget::Limit;
-use catchment::design::{Finding, Found, SourceText};
+use catchment::design::{Diagnostic, DiagnosticCollector, SourceText};
 use glam::DVec2;
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub(super) fn region(
     name: String,
     measure: Measure,
     mut rings: Vec<Ring>,
-    mut found: Found,
+    mut found: DiagnosticCollector,
     notes: Vec<String>,
 ) -> Result<Read, ReadError> {
     if found.is_empty() {
@@ -51,7 +51,7 @@ pub(super) fn region(
         if region.is_empty() {
             let place = rings.first().and_then(|ring| ring.corners.first()).map(|(_, span)| span.clone());
             let help = "give at least one ring around an area".to_owned();
-            found.push(Finding::new("the region has no area", Some(help)).at(place));
+            found.push(Diagnostic::new("the region has no area", Some(help)).at(place));
         }
     }
     if found.is_empty() {
@@ -65,13 +65,13 @@ fn shown(p: DVec2) -> String {
 }
 
 /// What is said of a file with more corners than are taken.
-pub(super) fn too_many() -> Finding {
+pub(super) fn too_many() -> Diagnostic {
     let message = format!("the outline has more than {MOST_CORNERS} corners");
-    Finding::new(message, Some(CORNERS.remedy.to_owned()))
+    Diagnostic::new(message, Some(CORNERS.remedy.to_owned()))
 }
 
-fn wrong(rings: &[Ring], measure: Measure) -> Found {
-    let mut found = Found::default();
+fn wrong(rings: &[Ring], measure: Measure) -> DiagnosticCollector {
+    let mut found = DiagnosticCollector::default();
     let unit = measure.symbol();
     let corners: usize = rings.iter().map(|ring| ring.corners.len()).sum();
     if corners > MOST_CORNERS {
@@ -82,21 +82,22 @@ fn wrong(rings: &[Ring], measure: Measure) -> Found {
         for (p, span) in &ring.corners {
             if p.abs().max_element() > REACH {
                 let message = format!("{} {unit} is farther from the origin than {REACH} {unit}", shown(*p));
-                found.push(Finding::new(message, Some("check the unit".to_owned())).at(Some(span.clone())));
+                found
+                    .push(Diagnostic::new(message, Some("check the unit".to_owned())).at(Some(span.clone())));
             }
         }
         if ring.corners.len() < 3 {
             let place = ring.corners.first().map(|(_, span)| span.clone());
             let message = format!("the ring is open: it has {} different corners", ring.corners.len());
-            found.push(Finding::new(message, Some("a ring has at least three".to_owned())).at(place));
+            found.push(Diagnostic::new(message, Some("a ring has at least three".to_owned())).at(place));
         }
     }
     if found.is_empty() { crossings(rings) } else { found }
 }
 
 /// Sides of which one passes through another, or a side that runs back along the one before it.
-fn crossings(rings: &[Ring]) -> Found {
-    let mut found = Found::default();
+fn crossings(rings: &[Ring]) -> DiagnosticCollector {
+    let mut found = DiagnosticCollector::default();
     let side = |ring: &Ring, k: usize| {
         let next = (k + 1) % ring.corners.len();
         [ring.corners[k].0, ring.corners[next].0]
@@ -117,7 +118,7 @@ fn crossings(rings: &[Ring]) -> Found {
         };
         if turn(before[0], p, q) == 0 && dot(before, [p, q]) < 0 {
             let message = format!("the outline runs back along itself at {}", shown(ends[0]));
-            found.push(Finding::new(message, Some("leave the corner out".to_owned())).at(at.clone()));
+            found.push(Diagnostic::new(message, Some("leave the corner out".to_owned())).at(at.clone()));
         }
         for &(s, j) in &all[..later] {
             let others = side(&rings[s], j);
@@ -138,7 +139,7 @@ fn crossings(rings: &[Ring]) -> Found {
                         shown(others[1])
                     );
                     let help = "rings may touch but not cross; give the parts of a set as rings of their own";
-                    Finding::new(message, Some(help.to_owned())).at(at.clone())
+                    Diagnostic::new(message, Some(help.to_owned())).at(at.clone())
                 });
             }
         }

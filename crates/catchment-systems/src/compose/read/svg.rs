@@ -4,7 +4,7 @@ use super::super::region::REACH;
 use super::rings::{CORNERS, Ring, region};
 use super::{Measure, Read, ReadError};
 use catchment::budget::{Budget, Overspent};
-use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit};
+use catchment::design::{Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText};
 use catchment::xml::svg::{self, Refusal, SvgShape};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
@@ -15,11 +15,12 @@ use std::ops::{ControlFlow, Range};
 const CHORD_ERROR: f64 = 0.01;
 
 pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
-    let (mut found, mut rings, mut curved, mut hidden) = (Found::default(), Vec::new(), false, 0);
+    let (mut found, mut rings, mut curved, mut hidden) =
+        (DiagnosticCollector::default(), Vec::new(), false, 0);
     let mut measure = Measure::Millimetres;
     let mut corners = Budget::new(CORNERS);
     match svg::head(&source.text) {
-        Err(refusal) => found.push(finding(&source.text, refusal)),
+        Err(refusal) => found.push(diagnostic(&source.text, refusal)),
         Ok(head) => {
             if head.get("data-unit").is_some_and(|(unit, _)| unit == "D") {
                 measure = Measure::Widths;
@@ -27,13 +28,14 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
             let factor = scale(&head, &mut found);
             hidden = svg::shapes(&source.text, |drawn| {
                 match drawn {
-                    Err(refusal) => found.push(finding(&source.text, refusal)),
+                    Err(refusal) => found.push(diagnostic(&source.text, refusal)),
                     Ok(shape) => {
                         let read = element(&shape, factor, &mut corners, &mut rings, &mut found);
                         match read {
                             Ok(is_curved) => curved |= is_curved,
                             Err(over) => {
-                                found.push(Finding::new(over.to_string(), None).at(Some(shape.tag.head())));
+                                found
+                                    .push(Diagnostic::new(over.to_string(), None).at(Some(shape.tag.head())));
                                 return ControlFlow::Break(());
                             }
                         }
@@ -43,7 +45,7 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
             });
             if found.is_empty() && rings.is_empty() {
                 let help = "it needs at least one <path d=\"…\"> that is shown".to_owned();
-                found.push(Finding::new("the picture has no path", Some(help)));
+                found.push(Diagnostic::new("the picture has no path", Some(help)));
             }
         }
     }
@@ -59,30 +61,32 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
 }
 
 /// What is said of a part of a picture.
-fn finding(text: &str, refusal: Refusal) -> Finding {
+fn diagnostic(text: &str, refusal: Refusal) -> Diagnostic {
     let Refusal { at, message, help } = refusal;
     // A broken document has a place, but nothing there that is to be shown as a whole.
     let inside = |at: usize| (0..=at.min(text.len())).rev().find(|k| text.is_char_boundary(*k)).unwrap_or(0);
-    Finding::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
+    Diagnostic::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
 }
 
 /// Lengths of one user unit: a mm, unless the picture says its width.
-fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut Found) -> f64 {
+fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut DiagnosticCollector) -> f64 {
     let (Some((width, at)), Some((view, _))) = (head.get("width"), head.get("viewBox")) else {
         return 1.0;
     };
     let across: Option<f64> =
         view.split([' ', ',']).filter(|t| !t.is_empty()).nth(2).and_then(|t| t.parse().ok());
     match (width.parse::<Quantity>(), across) {
-        (Ok(Quantity { value, unit: Unit::Length(unit) }), Some(across)) if value > 0.0 && across > 0.0 => {
+        (Ok(Quantity { value, unit: QuantityUnit::Length(unit) }), Some(across))
+            if value > 0.0 && across > 0.0 =>
+        {
             value * (unit.metres() / LengthUnit::Mm.metres()) / across
         }
-        (Ok(Quantity { unit: Unit::Bare, .. }), _) => 1.0,
+        (Ok(Quantity { unit: QuantityUnit::Bare, .. }), _) => 1.0,
         _ if width.ends_with("px") || width.ends_with('%') => 1.0,
         _ => {
             let message = format!("the width of the picture, `{width}`, has no meaning here");
             let help = "write it in mm, with a viewBox".to_owned();
-            found.push(Finding::new(message, Some(help)).at(Some(at.clone())));
+            found.push(Diagnostic::new(message, Some(help)).at(Some(at.clone())));
             1.0
         }
     }
@@ -94,30 +98,30 @@ fn element(
     factor: f64,
     corners: &mut Budget,
     rings: &mut Vec<Ring>,
-    found: &mut Found,
+    found: &mut DiagnosticCollector,
 ) -> Result<bool, Overspent> {
     let name = shape.tag.name();
     if name != "path" {
         let help = "turn shapes into paths in the drawing program".to_owned();
-        found.push(Finding::new(format!("<{name}> is not read"), Some(help)).at(Some(shape.tag.head())));
+        found.push(Diagnostic::new(format!("<{name}> is not read"), Some(help)).at(Some(shape.tag.head())));
         return Ok(false);
     }
     if let Some(at) = shape.moved.clone() {
         let help = "apply the transforms to the paths in the drawing program".to_owned();
-        found.push(Finding::new("a transform is not read", Some(help)).at(Some(at)));
+        found.push(Diagnostic::new("a transform is not read", Some(help)).at(Some(at)));
     }
     let Some(data) = shape.tag.attribute("d") else { return Ok(false) };
     if has_huge_numbers(&data.value) {
         let message = "the path has a number that is far too large";
         let help = "check the unit of the picture".to_owned();
-        found.push(Finding::new(message, Some(help)).at(Some(data.span)));
+        found.push(Diagnostic::new(message, Some(help)).at(Some(data.span)));
         return Ok(false);
     }
     match BezPath::from_svg(&data.value) {
         Ok(path) if !within_reach(&path, factor) => {
             let message = format!("the path goes farther from the origin than {REACH} mm");
             let help = "check the width and the viewBox of the picture".to_owned();
-            found.push(Finding::new(message, Some(help)).at(Some(data.span)));
+            found.push(Diagnostic::new(message, Some(help)).at(Some(data.span)));
             Ok(false)
         }
         Ok(path) => {
@@ -126,7 +130,7 @@ fn element(
         }
         Err(error) => {
             let message = format!("the path cannot be read: {error}");
-            found.push(Finding::new(message, None).at(Some(data.span)));
+            found.push(Diagnostic::new(message, None).at(Some(data.span)));
             Ok(false)
         }
     }
@@ -164,7 +168,7 @@ fn path_rings(
     span: &Range<usize>,
     corners: &mut Budget,
     rings: &mut Vec<Ring>,
-    found: &mut Found,
+    found: &mut DiagnosticCollector,
 ) -> Result<(), Overspent> {
     let mut ring = Ring::default();
     let mut ended = |ring: &mut Ring, closed: bool| {
@@ -173,7 +177,7 @@ fn path_rings(
         if !closed && first != last {
             let message = format!("the ring that begins at ({}, {}) is open", first.x, first.y);
             let help = "end it with Z, or where it begins".to_owned();
-            found.push(Finding::new(message, Some(help)).at(Some(span.clone())));
+            found.push(Diagnostic::new(message, Some(help)).at(Some(span.clone())));
         } else {
             rings.push(ring);
         }

@@ -91,8 +91,8 @@ pub fn list_of_angles(text: &str) -> Result<Vec<f64>, String> {
         )
     })?;
     let angle = |value: &String| {
-        let quantity: Quantity = value.parse().map_err(|complaint| format!("{complaint}"))?;
-        quantity.angle_rad().map_err(|complaint| format!("{complaint}"))
+        let quantity: Quantity = value.parse().map_err(|defect| format!("{defect}"))?;
+        quantity.angle_rad().map_err(|defect| format!("{defect}"))
     };
     axis.values.iter().map(angle).collect()
 }

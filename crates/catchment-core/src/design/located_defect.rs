@@ -1,16 +1,16 @@
 //! Errors with their places in the file.
 
-use super::complaint::Complaint;
-use super::finding::Findings;
+use super::defect::DesignDefect;
+use super::diagnostic::Diagnostics;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 
-/// A complaint and where it belongs.
+/// A defect and where it belongs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
+pub struct LocatedDefect {
     /// What is wrong.
-    pub complaint: Complaint,
+    pub defect: DesignDefect,
     /// Bytes of the file it is about; empty at the end of what comes before where something is missing.
     pub span: Range<usize>,
     /// Line of the first of them, from 1.
@@ -19,17 +19,17 @@ pub struct Problem {
     pub column: usize,
 }
 
-impl Problem {
-    /// Places `complaint` at the bytes `span` of `text`.
-    pub fn new(complaint: Complaint, span: Range<usize>, text: &str) -> Self {
+impl LocatedDefect {
+    /// Places `defect` at the bytes `span` of `text`.
+    pub fn new(defect: DesignDefect, span: Range<usize>, text: &str) -> Self {
         let (line, column) = line_column(text, span.start);
-        Self { complaint, span, line, column }
+        Self { defect, span, line, column }
     }
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for LocatedDefect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.line, self.column, self.complaint)
+        write!(f, "{}:{}: {}", self.line, self.column, self.defect)
     }
 }
 
@@ -45,28 +45,28 @@ pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
 
 /// All problems of a file in the order of their places; never empty.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problems {
+pub struct LocatedDefects {
     /// The first of them.
-    pub list: Vec<Problem>,
-    /// How many more there are beyond [`Problems::MOST`].
+    pub list: Vec<LocatedDefect>,
+    /// How many more there are beyond [`LocatedDefects::MOST`].
     pub omitted: usize,
 }
 
-impl Problems {
+impl LocatedDefects {
     /// Problems that are listed.
-    pub const MOST: usize = Findings::MOST;
+    pub const MOST: usize = Diagnostics::MOST;
 
-    /// Sorts and shortens a list, of which `omitted` complaints were dropped before.
-    pub(super) fn new(mut found: Vec<(Complaint, Range<usize>)>, omitted: usize, text: &str) -> Self {
+    /// Sorts and shortens a list, of which `omitted` defects were dropped before.
+    pub(super) fn new(mut found: Vec<(DesignDefect, Range<usize>)>, omitted: usize, text: &str) -> Self {
         found.sort_by_key(|(_, span)| (span.start, span.end));
         let omitted = omitted + found.len().saturating_sub(Self::MOST);
         found.truncate(Self::MOST);
-        let list = found.into_iter().map(|(complaint, span)| Problem::new(complaint, span, text)).collect();
+        let list = found.into_iter().map(|(defect, span)| LocatedDefect::new(defect, span, text)).collect();
         Self { list, omitted }
     }
 }
 
-impl fmt::Display for Problems {
+impl fmt::Display for LocatedDefects {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, problem) in self.list.iter().enumerate() {
             let separator = if index == 0 { "" } else { "\n" };
@@ -79,7 +79,7 @@ impl fmt::Display for Problems {
     }
 }
 
-impl std::error::Error for Problems {}
+impl std::error::Error for LocatedDefects {}
 
 /// Where each key of a design stands in its file, so that later rooms can point at what they complain about.
 ///

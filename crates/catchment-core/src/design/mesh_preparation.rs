@@ -11,7 +11,7 @@ use std::fmt;
 /// Permitted changes to a mesh before use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Treatment {
+pub struct MeshPreparation {
     /// Whether a mesh may be repaired, if it clearly bounds a solid. A mesh without defects is not changed.
     #[serde(default = "yes")]
     pub repair: bool,
@@ -33,7 +33,7 @@ const fn yes() -> bool {
     true
 }
 
-impl Treatment {
+impl MeshPreparation {
     /// Repaired where needed, not simplified.
     pub const DEFAULT: Self = Self { repair: true, simplify: None, deflection: None, body: None };
     /// Taken as it is, or refused.
@@ -45,7 +45,7 @@ impl Treatment {
     }
 }
 
-impl Default for Treatment {
+impl Default for MeshPreparation {
     fn default() -> Self {
         Self::DEFAULT
     }
@@ -267,6 +267,6 @@ mod tests {
     fn only_what_was_done_is_written() {
         let json = serde_json::to_string(&Repairs { turned: 2, ..Repairs::default() }).unwrap();
         assert_eq!(json, r#"{"turned":2,"deviation":0.0}"#);
-        assert_eq!(serde_json::from_str::<Treatment>("{}").unwrap(), Treatment::DEFAULT);
+        assert_eq!(serde_json::from_str::<MeshPreparation>("{}").unwrap(), MeshPreparation::DEFAULT);
     }
 }

@@ -33,7 +33,7 @@ impl Dimension {
 /// One thing that is wrong with a design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Complaint {
+pub enum DesignDefect {
     /// Not TOML.
     #[error("{message}")]
     Syntax {
@@ -311,7 +311,7 @@ pub enum Complaint {
     },
 }
 
-impl Complaint {
+impl DesignDefect {
     pub(super) fn nothing_free(key: String) -> Self {
         Self::Empty {
             key,

@@ -44,7 +44,7 @@ impl SourceText {
 
 /// Something wrong with what a person gave, whichever room found it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
+pub struct Diagnostic {
     /// What is wrong.
     pub message: String,
     /// What to do about it.
@@ -53,8 +53,8 @@ pub struct Finding {
     pub span: Option<Range<usize>>,
 }
 
-impl Finding {
-    /// A finding without a place.
+impl Diagnostic {
+    /// A diagnostic without a place.
     pub fn new(message: impl Into<String>, help: Option<String>) -> Self {
         Self { message: message.into(), help, span: None }
     }
@@ -69,17 +69,17 @@ impl Finding {
 
 /// Everything that is wrong with one text, in the order of its places; never empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Findings {
+pub struct Diagnostics {
     /// The text, where what was given has one.
     pub source: Option<SourceText>,
     /// What is wrong with it.
-    pub list: Vec<Finding>,
+    pub list: Vec<Diagnostic>,
     /// How many more there are.
     pub omitted: usize,
 }
 
-impl Findings {
-    /// Findings that are kept and shown: who has more will not read them.
+impl Diagnostics {
+    /// Diagnostics that are kept and shown: who has more will not read them.
     pub const MOST: usize = 20;
 
     /// The file, where there is one.
@@ -88,23 +88,23 @@ impl Findings {
     }
 }
 
-/// Findings as they come: the first [`Findings::MOST`] are kept, the others are counted and cost nothing.
+/// Diagnostics as they come: the first [`Diagnostics::MOST`] are kept, the others are counted and cost nothing.
 #[derive(Debug, Default)]
-pub struct Found {
-    list: Vec<Finding>,
+pub struct DiagnosticCollector {
+    list: Vec<Diagnostic>,
     omitted: usize,
 }
 
-impl Found {
+impl DiagnosticCollector {
     /// Adds one.
-    pub fn push(&mut self, finding: Finding) {
-        self.push_with(|| finding);
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.push_with(|| diagnostic);
     }
 
     /// Adds one, which is spelled out only if it is kept.
-    pub fn push_with(&mut self, finding: impl FnOnce() -> Finding) {
-        if self.list.len() < Findings::MOST {
-            self.list.push(finding());
+    pub fn push_with(&mut self, diagnostic: impl FnOnce() -> Diagnostic) {
+        if self.list.len() < Diagnostics::MOST {
+            self.list.push(diagnostic());
         } else {
             self.omitted += 1;
         }
@@ -121,27 +121,27 @@ impl Found {
     }
 
     /// What was found in a text, in the order of its places.
-    pub fn of(mut self, source: SourceText) -> Findings {
-        self.list.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
-        Findings { source: Some(source), list: self.list, omitted: self.omitted }
+    pub fn of(mut self, source: SourceText) -> Diagnostics {
+        self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
+        Diagnostics { source: Some(source), list: self.list, omitted: self.omitted }
     }
 }
 
 /// `file:line:column: message; help`, a line each.
-impl fmt::Display for Findings {
+impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, finding) in self.list.iter().enumerate() {
+        for (k, diagnostic) in self.list.iter().enumerate() {
             f.write_str(if k == 0 { "" } else { "\n" })?;
             if let Some(source) = &self.source {
                 write!(f, "{}:", shown(&source.path))?;
-                if let Some(span) = &finding.span {
+                if let Some(span) = &diagnostic.span {
                     let (line, column) = source.line_column(span.start);
                     write!(f, "{line}:{column}:")?;
                 }
                 f.write_str(" ")?;
             }
-            f.write_str(&finding.message)?;
-            if let Some(help) = &finding.help {
+            f.write_str(&diagnostic.message)?;
+            if let Some(help) = &diagnostic.help {
                 write!(f, "; {help}")?;
             }
         }
@@ -152,7 +152,7 @@ impl fmt::Display for Findings {
     }
 }
 
-impl std::error::Error for Findings {}
+impl std::error::Error for Diagnostics {}
 
 #[cfg(test)]
 mod tests {
@@ -160,28 +160,30 @@ mod tests {
 
     #[test]
     fn the_first_findings_are_kept_and_the_others_counted() {
-        let mut found = Found::default();
+        let mut found = DiagnosticCollector::default();
         assert!(found.is_empty());
         for k in (0..30).rev() {
-            found.push(Finding::new(k.to_string(), None).at(Some(k..k + 1)));
+            found.push(Diagnostic::new(k.to_string(), None).at(Some(k..k + 1)));
         }
         found.push_with(|| panic!("nobody reads it"));
         assert_eq!(found.len(), 31);
-        let findings = found.of(SourceText::new("d.toml", ""));
-        assert_eq!((findings.list.len(), findings.omitted), (Findings::MOST, 11));
-        assert!(findings.list.is_sorted_by_key(|finding| finding.span.clone().map(|span| span.start)));
+        let diagnostics = found.of(SourceText::new("d.toml", ""));
+        assert_eq!((diagnostics.list.len(), diagnostics.omitted), (Diagnostics::MOST, 11));
+        assert!(
+            diagnostics.list.is_sorted_by_key(|diagnostic| diagnostic.span.clone().map(|span| span.start))
+        );
     }
 
     #[test]
     fn a_finding_is_told_with_its_place() {
         let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\n"));
         let list = vec![
-            Finding::new("wrong", Some("write 3".to_owned())).at(Some(10..11)),
-            Finding::new("all of it", None).at(Some(3..3)),
+            Diagnostic::new("wrong", Some("write 3".to_owned())).at(Some(10..11)),
+            Diagnostic::new("all of it", None).at(Some(3..3)),
         ];
-        let findings = Findings { source, list, omitted: 2 };
-        assert_eq!(findings.to_string(), "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more");
-        let bare = Findings { source: None, list: vec![Finding::new("wrong", None)], omitted: 0 };
+        let diagnostics = Diagnostics { source, list, omitted: 2 };
+        assert_eq!(diagnostics.to_string(), "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more");
+        let bare = Diagnostics { source: None, list: vec![Diagnostic::new("wrong", None)], omitted: 0 };
         assert_eq!(bare.to_string(), "wrong");
     }
 }
