@@ -4,7 +4,7 @@ use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::{Axis, Report};
 use catchment_core::acceptance::Outcome;
-use catchment_core::document::{Cell, Column, Document, Format, Table, grouped, percent, significant};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, grouped, percent, significant};
 use catchment_core::merit::comparison::{Comparison, Distances};
 use serde::Serialize;
 use std::borrow::Cow;
@@ -91,12 +91,12 @@ impl ComparisonBody {
             Column::new("second / first"),
         ]);
         let mut add = |name: String, [first, second]: [String; 2], ratio: Option<f64>| {
-            let ratio = ratio.map_or_else(|| "–".to_owned(), |ratio| Format::Fixed(4).of(ratio));
+            let ratio = ratio.map_or_else(|| "–".to_owned(), |ratio| ColumnFormat::Fixed(4).of(ratio));
             table.push([name, first, second, ratio].map(Cell::from));
         };
         add(format!("Sum [{}]", c.unit), c.sums.map(significant), c.sum_ratio);
         if let Some(edges) = c.onaa_edges {
-            add("ONAA edge".to_owned(), edges.map(|edge| Format::Fixed(4).of(edge)), c.onaa_ratio);
+            add("ONAA edge".to_owned(), edges.map(|edge| ColumnFormat::Fixed(4).of(edge)), c.onaa_ratio);
         }
         table
     }
@@ -130,7 +130,7 @@ impl ComparisonBody {
 }
 
 fn table_of(distances: &Distances) -> Table {
-    let number = |title| Column::new(title).format(Format::Significant);
+    let number = |title| Column::new(title).format(ColumnFormat::Significant);
     let mut table = Table::new([Column::new("").left(), number("median"), number("95 %"), number("max")]);
     for (name, q) in [("in cells", distances.cells), ("of the error box", distances.error_box)] {
         table.push([name.into(), q.median.into(), q.p95.into(), q.max.into()]);

@@ -2,7 +2,7 @@
 
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Format, Subject, Table, fixed};
+use catchment_core::document::{Column, ColumnFormat, Document, Subject, Table, fixed};
 use catchment_core::method::kinematic::stepping::Halt;
 use catchment_core::method::kinematic::{KinematicSettings, Lever, LeverBody, LeverPose};
 use catchment_core::pose::PoseError;
@@ -153,7 +153,7 @@ impl CornerContact {
         if self.theta_2 < 0.0 {
             document.more("theta_2 is negative: the corner's body turns away, a failed mate");
         }
-        let value = |title: &str| Column::new(title).format(Format::Fixed(4));
+        let value = |title: &str| Column::new(title).format(ColumnFormat::Fixed(4));
         let mut places = Table::new([Column::new("place").left(), value("x [D]"), value("z [D]")]);
         for (name, [x, z]) in [
             ("P_M  rotation point, moving half", self.moving_pivot_d),

@@ -4,7 +4,7 @@ use super::schema::{AcceptanceReport, Axis, OnaaReport, WarningReport, axes};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
-    Cell, Column, Document, Format, Subject, Table, grouped, percent, significant,
+    Cell, Column, ColumnFormat, Document, Subject, Table, grouped, percent, significant,
 };
 use catchment_core::merit::estimate::Estimate;
 use catchment_study::slices::{Slice, Slices, SlicesSettings};
@@ -79,7 +79,7 @@ impl SlicesFound {
                 doubt.into(),
                 from.to_string().into(),
                 to.to_string().into(),
-                shown(Format::Fixed(4).of(slice.onaa.edge), slice.onaa.edge),
+                shown(ColumnFormat::Fixed(4).of(slice.onaa.edge), slice.onaa.edge),
             ]);
         }
         table

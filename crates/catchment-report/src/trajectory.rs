@@ -5,7 +5,7 @@ use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Format, Table, decimals};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
@@ -171,18 +171,18 @@ impl TraceBody {
         let design = &self.design;
         let (width, symbol) = design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()));
         // A digit more than figures of merit have: neighbouring waypoints are to differ.
-        let length = Format::Fixed(decimals(width) + 1);
+        let length = ColumnFormat::Fixed(decimals(width) + 1);
         let moves = |dof: &Dof| {
             design.alignment.free.contains(*dof)
                 || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
         };
         let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(moves).collect();
         let timed = self.is_timed();
-        let mut columns = vec![Column::new("path [D]").format(Format::Fixed(4))];
-        columns.extend(timed.then(|| Column::new("time [s]").format(Format::Fixed(4))));
+        let mut columns = vec![Column::new("path [D]").format(ColumnFormat::Fixed(4))];
+        columns.extend(timed.then(|| Column::new("time [s]").format(ColumnFormat::Fixed(4))));
         columns.extend(dofs.iter().map(|dof| {
             let unit = if dof.is_rotation() { "deg" } else { symbol };
-            let format = if dof.is_rotation() { Format::Fixed(3) } else { length };
+            let format = if dof.is_rotation() { ColumnFormat::Fixed(3) } else { length };
             Column::new(format!("{} [{unit}]", dof.name())).format(format)
         }));
         columns.extend([Column::new(format!("height [{symbol}]")).format(length), Column::new("contacts")]);

@@ -20,8 +20,8 @@ pub use number::{
     decimals, fixed, grouped, length, number, percent, rounded, rounded_down, significant, tenths,
     tenths_between, with_error,
 };
-pub use table::{Cell, Column, Format, Table};
-pub use units::Units;
+pub use table::{Cell, Column, ColumnFormat, Table};
+pub use units::DesignUnits;
 
 use crate::acceptance::Warning;
 use crate::design::Design;
@@ -58,14 +58,14 @@ pub struct Section {
     /// Its heading, where it has one.
     pub title: Option<String>,
     /// Its parts, from top to bottom.
-    pub parts: Vec<Part>,
+    pub parts: Vec<SectionPart>,
     /// Whether it answers a second question: terminals show it with `--verbose`, files always.
     pub is_detail: bool,
 }
 
 /// A part of a section.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Part {
+pub enum SectionPart {
     /// A name and its value; an empty name continues the row above.
     Row {
         /// The name.
@@ -82,7 +82,7 @@ pub enum Part {
 impl Section {
     /// Whether people see something of it.
     pub fn is_shown(&self) -> bool {
-        let shown = |part: &Part| !matches!(part, Part::Table(table) if !table.is_shown());
+        let shown = |part: &SectionPart| !matches!(part, SectionPart::Table(table) if !table.is_shown());
         self.title.is_some() || self.parts.iter().any(shown)
     }
 }
@@ -107,7 +107,7 @@ impl Document {
 
     /// Adds a row: a name and its value.
     pub fn row(&mut self, name: impl Into<String>, value: impl Into<String>) -> &mut Self {
-        self.part(Part::Row { name: name.into(), value: value.into() })
+        self.part(SectionPart::Row { name: name.into(), value: value.into() })
     }
 
     /// Continues the last row on a line of its own.
@@ -117,12 +117,12 @@ impl Document {
 
     /// Adds a table.
     pub fn table(&mut self, table: Table) -> &mut Self {
-        self.part(Part::Table(table))
+        self.part(SectionPart::Table(table))
     }
 
     /// Adds a paragraph.
     pub fn paragraph(&mut self, text: impl Into<String>) -> &mut Self {
-        self.part(Part::Paragraph(text.into()))
+        self.part(SectionPart::Paragraph(text.into()))
     }
 
     /// Appends the sections of another document.
@@ -131,7 +131,7 @@ impl Document {
         self
     }
 
-    fn part(&mut self, part: Part) -> &mut Self {
+    fn part(&mut self, part: SectionPart) -> &mut Self {
         if self.sections.is_empty() {
             self.sections.push(Section::default());
         }
@@ -146,7 +146,7 @@ impl Document {
         let parts = self.sections.iter().flat_map(|section| &section.parts);
         parts
             .filter_map(|part| match part {
-                Part::Table(table) => Some(table),
+                SectionPart::Table(table) => Some(table),
                 _ => None,
             })
             .find(|table| table.has_keys())

@@ -10,7 +10,7 @@ use super::number::{fixed, grouped, number, percent, significant, tenths};
 
 /// How people read the numbers of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Format {
+pub enum ColumnFormat {
     /// Every digit.
     #[default]
     Plain,
@@ -32,7 +32,7 @@ pub struct Column {
     /// The names of its values for programs: one, three for intervals (value, lower end, upper end), none for people alone.
     pub keys: Vec<String>,
     /// How its numbers are shown.
-    pub format: Format,
+    pub format: ColumnFormat,
     /// Whether its text is aligned to the left; numbers are aligned to the right.
     pub left: bool,
 }
@@ -93,7 +93,7 @@ impl Column {
 
     /// With a format for its numbers.
     #[must_use]
-    pub const fn format(mut self, format: Format) -> Self {
+    pub const fn format(mut self, format: ColumnFormat) -> Self {
         self.format = format;
         self
     }
@@ -113,7 +113,7 @@ impl Column {
             Cell::Count(count) => grouped(*count),
             Cell::Flag(flag) => if *flag { "yes" } else { "no" }.to_owned(),
             Cell::Text(text) | Cell::Shown(text, _) => text.clone(),
-            Cell::Interval(value, [lo, hi]) if self.format == Format::Tenths => {
+            Cell::Interval(value, [lo, hi]) if self.format == ColumnFormat::Tenths => {
                 format!("{} ({:.1} … {:.1})", tenths(*value), 100.0 * lo, 100.0 * hi)
             }
             Cell::Interval(value, [lo, hi]) => {
@@ -123,7 +123,7 @@ impl Column {
     }
 }
 
-impl Format {
+impl ColumnFormat {
     /// A number in this format.
     pub fn of(self, value: f64) -> String {
         match self {
@@ -251,7 +251,7 @@ mod tests {
     fn people_read_formats_and_programs_every_digit() {
         let mut table = Table::new([
             Column::new("friction").key("mu"),
-            Column::new("docks").interval("aligned").format(Format::Tenths),
+            Column::new("docks").interval("aligned").format(ColumnFormat::Tenths),
             Column::data("seed"),
             Column::new("at").left(),
         ]);

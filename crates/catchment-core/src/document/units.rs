@@ -9,11 +9,11 @@ const NOTHING: f64 = 1e-8;
 
 /// The unit of a design: its own, or D where it has none.
 #[derive(Debug, Clone, Copy)]
-pub struct Units<'a> {
+pub struct DesignUnits<'a> {
     design: &'a Design,
 }
 
-impl<'a> Units<'a> {
+impl<'a> DesignUnits<'a> {
     /// Those of a design.
     pub const fn of(design: &'a Design) -> Self {
         Self { design }
@@ -100,11 +100,11 @@ mod tests {
         };
         let (bare, sized) = (design(""), design("unit = \"mm\"\nwidth = 50.0\n"));
         let error = PoseError { x: 0.25, pitch: -1e-9, ..PoseError::default() };
-        assert_eq!(Units::of(&bare).pose(&error), "x 0.250 D, pitch 0.00°");
-        assert_eq!(Units::of(&sized).pose(&error), "x 12.500 mm, pitch 0.00°");
-        assert_eq!(Units::of(&sized).half_width(Dof::X, 0.019_999), "±0.999 mm");
-        assert_eq!(Units::of(&sized).half_width(Dof::Pitch, 0.1), "±5.72°");
-        assert_eq!(Units::of(&sized).fine(1e-10), "0 mm");
-        assert_eq!(Units::of(&sized).point([0.0, 0.1, -0.02]), "(0.000, 5.000, -1.000) mm");
+        assert_eq!(DesignUnits::of(&bare).pose(&error), "x 0.250 D, pitch 0.00°");
+        assert_eq!(DesignUnits::of(&sized).pose(&error), "x 12.500 mm, pitch 0.00°");
+        assert_eq!(DesignUnits::of(&sized).half_width(Dof::X, 0.019_999), "±0.999 mm");
+        assert_eq!(DesignUnits::of(&sized).half_width(Dof::Pitch, 0.1), "±5.72°");
+        assert_eq!(DesignUnits::of(&sized).fine(1e-10), "0 mm");
+        assert_eq!(DesignUnits::of(&sized).point([0.0, 0.1, -0.02]), "(0.000, 5.000, -1.000) mm");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Described;
 use crate::html::Html;
-use catchment_core::document::{Part, Section, Table};
+use catchment_core::document::{Section, SectionPart, Table};
 
 /// The page up to its title.
 const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><style>\
@@ -30,19 +30,19 @@ pub fn html(described: &Described<'_>) -> String {
 fn parts(mut page: Html, section: &Section) -> Html {
     let mut in_rows = false;
     for part in &section.parts {
-        let is_row = matches!(part, Part::Row { .. });
+        let is_row = matches!(part, SectionPart::Row { .. });
         if is_row != in_rows {
             page = page.fixed(if is_row { "<table>\n" } else { "</table>\n" });
             in_rows = is_row;
         }
         page = match part {
-            Part::Row { name, value } => {
+            SectionPart::Row { name, value } => {
                 let named = page.fixed("<tr><th>").text(name.trim());
                 named.fixed("</th><td>").text(value).fixed("</td></tr>\n")
             }
-            Part::Table(shown) if shown.is_shown() => table(page, shown),
-            Part::Table(_) => page,
-            Part::Paragraph(words) => page.fixed("<p>").text(words).fixed("</p>\n"),
+            SectionPart::Table(shown) if shown.is_shown() => table(page, shown),
+            SectionPart::Table(_) => page,
+            SectionPart::Paragraph(words) => page.fixed("<p>").text(words).fixed("</p>\n"),
         };
     }
     if in_rows { page.fixed("</table>\n") } else { page }

@@ -1,7 +1,7 @@
 //! A document as Markdown, for notes, issues and pages.
 
 use super::Described;
-use catchment_core::document::{Part, Section, Table};
+use catchment_core::document::{Section, SectionPart, Table};
 use catchment_core::terminal::printable;
 use std::fmt::Write;
 
@@ -24,17 +24,17 @@ pub fn markdown(described: &Described<'_>) -> String {
 fn parts(text: &mut String, section: &Section) {
     let mut in_rows = false;
     for part in &section.parts {
-        if let Part::Row { name, value } = part {
+        if let SectionPart::Row { name, value } = part {
             if !in_rows {
                 text.push_str("\n| | |\n|---|---|\n");
             }
             let name = if name.is_empty() { String::new() } else { format!(" {}", escaped(name.trim())) };
             let _ = writeln!(text, "|{name} | {} |", escaped(value));
         }
-        in_rows = matches!(part, Part::Row { .. });
+        in_rows = matches!(part, SectionPart::Row { .. });
         match part {
-            Part::Table(shown) if shown.is_shown() => table(text, shown),
-            Part::Paragraph(words) => {
+            SectionPart::Table(shown) if shown.is_shown() => table(text, shown),
+            SectionPart::Paragraph(words) => {
                 let _ = write!(text, "\n{}\n", escaped(words));
             }
             _ => {}

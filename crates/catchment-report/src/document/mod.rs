@@ -237,7 +237,7 @@ fn own_length(design: &Design, value: f64) -> String {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use catchment_core::document::{Cell, Column, Format};
+    use catchment_core::document::{Cell, Column, ColumnFormat};
 
     /// A document with every kind of part.
     pub(crate) fn sample() -> Described<'static> {
@@ -247,8 +247,8 @@ pub(crate) mod tests {
         document.section("limits");
         let mut table = Table::new([
             Column::new("error").key("axis").left(),
-            Column::new("limit").key("limit").format(Format::Fixed(2)),
-            Column::new("docks").interval("aligned").format(Format::Tenths),
+            Column::new("limit").key("limit").format(ColumnFormat::Fixed(2)),
+            Column::new("docks").interval("aligned").format(ColumnFormat::Tenths),
             Column::data("seed"),
         ]);
         table.push(["x".into(), 1.234.into(), Cell::Interval(0.991, [0.98, 0.996]), 1usize.into()]);

@@ -1,7 +1,7 @@
 //! A document as text, for terminals.
 
 use super::Described;
-use catchment_core::document::{Cell, Column, Document, Part, Section, Table};
+use catchment_core::document::{Cell, Column, Document, SectionPart, Section, Table};
 use catchment_core::terminal::printable;
 
 /// The names of rows take at least so many columns; names that are longer than the most stand out.
@@ -83,7 +83,7 @@ impl Page {
     fn document(&mut self, document: &Document) {
         let rows =
             document.sections.iter().flat_map(|section| &section.parts).filter_map(|part| match part {
-                Part::Row { name, .. } => Some(name.chars().count()),
+                SectionPart::Row { name, .. } => Some(name.chars().count()),
                 _ => None,
             });
         self.names = rows.filter(|name| *name <= LONGEST_NAME).max().unwrap_or(0).max(NAMES);
@@ -99,9 +99,9 @@ impl Page {
             }
             for part in &section.parts {
                 match part {
-                    Part::Row { name, value } => self.row(name, value),
-                    Part::Table(table) => self.table(table),
-                    Part::Paragraph(text) => self.wrapped(INDENT, text),
+                    SectionPart::Row { name, value } => self.row(name, value),
+                    SectionPart::Table(table) => self.table(table),
+                    SectionPart::Paragraph(text) => self.wrapped(INDENT, text),
                 }
             }
         }

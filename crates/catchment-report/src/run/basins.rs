@@ -1,7 +1,9 @@
 //! The basins: the largest of them, and the effect of the depth tolerance.
 
 use crate::schema::{BasinsReport, RunBody};
-use catchment_core::document::{Column, Document, Format, Table, grouped, percent, rounded, significant};
+use catchment_core::document::{
+    Column, ColumnFormat, Document, Table, grouped, percent, rounded, significant,
+};
 use catchment_core::method::flood::ToleranceReason;
 
 /// Basins that are shown.
@@ -15,7 +17,7 @@ pub(super) fn describe(document: &mut Document, basins: &BasinsReport, run: &Run
     let names: Vec<&str> = axes.iter().map(|dof| dof.name()).collect();
     let mut table = Table::new([
         Column::new("basin").left(),
-        Column::new("of the error box").format(Format::Percent),
+        Column::new("of the error box").format(ColumnFormat::Percent),
         Column::new("depth"),
         Column::new("escape"),
         Column::new(format!("lowest at {} [D, °]", names.join(", "))).left(),

@@ -8,7 +8,7 @@ use super::document::{Printed, Style, heading, lines};
 use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, RunBody, ToleranceReport, UprightReport};
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{
-    Cell, Column, Document, Table, Units, decimals, grouped, percent, significant, tenths, with_error,
+    Cell, Column, DesignUnits, Document, Table, decimals, grouped, percent, significant, tenths, with_error,
 };
 use catchment_core::pose::Dof;
 use catchment_core::run::Upright;
@@ -280,7 +280,7 @@ fn describe_jams(document: &mut Document, found: &Jams, design: &Design) {
     for (number, jam) in (1..).zip(found.jams.iter().take(JAMS)) {
         let touching = contacts_in_words(&jam.contacts).join("; ");
         let [of_box, of_failures] = [jam.of_box.share, jam.of_failures].map(tenths);
-        let place = Units::of(design).pose(&jam.pose);
+        let place = DesignUnits::of(design).pose(&jam.pose);
         document.row(
             format!("jam {number}"),
             format!("{of_box} of the error box, {of_failures} of failures, at {place}: {touching}"),
@@ -328,7 +328,7 @@ fn limits(
             box_ends || limit.is_some_and(|limit| limit.minus_reaches_border || limit.plus_reaches_border);
         let star = if box_ends { "*" } else { "" };
         let half_width = side.map(|side| {
-            Cell::shown(format!("{}{star}", Units::of(design).half_width(axis, side.hi)), side.hi)
+            Cell::shown(format!("{}{star}", DesignUnits::of(design).half_width(axis, side.hi)), side.hi)
         });
         let shown = |words: fn(&ToleranceReport, &Design) -> String| limit.map(|limit| words(limit, design));
         table.push([

@@ -1,7 +1,7 @@
 //! The seat: its depth, its play, and the residual misalignment of docked halves.
 
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Table, Units};
+use catchment_core::document::{Cell, Column, DesignUnits, Document, Table};
 use catchment_core::pose::Dof;
 use catchment_core::run::Seating;
 
@@ -10,7 +10,7 @@ const NONE: f64 = 5e-4;
 
 /// A sharp seat takes a row, one with play a table.
 pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design) {
-    let units = Units::of(design);
+    let units = DesignUnits::of(design);
     let depth = if design.unit.is_some() { units.length(found.depth) } else { format!("{} D", found.depth) };
     let most = found.residual.iter().map(|residual| residual.most).fold(0.0, f64::max);
     if found.play.iter().all(|play| play.most() < NONE) && most < NONE {
@@ -56,7 +56,7 @@ pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design
 fn amount(dof: Dof, value: f64, design: &Design) -> String {
     match (dof.is_rotation(), design.unit) {
         (true, _) => format!("{:.3}°", value.to_degrees()),
-        (false, Some(_)) => Units::of(design).length(value),
+        (false, Some(_)) => DesignUnits::of(design).length(value),
         (false, None) => format!("{value:.4} D"),
     }
 }

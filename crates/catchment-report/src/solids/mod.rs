@@ -18,7 +18,7 @@ use super::document::Printed;
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Format, Table, grouped};
+use catchment_core::document::{Column, ColumnFormat, Document, Table, grouped};
 use catchment_core::method::partition::{PartitionSettings, Solid, SolidShape, Solids};
 use glam::DVec3;
 use serde::Serialize;
@@ -103,8 +103,8 @@ impl Printed for SolidsBody {
             .row("bodies", format!("{} convex {kind}, {} faces", grouped(self.bodies), grouped(self.faces)));
         let mut table = Table::new([
             Column::new("axis").key("axis").left(),
-            Column::new("from").key("low").format(Format::Significant),
-            Column::new("to").key("high").format(Format::Significant),
+            Column::new("from").key("low").format(ColumnFormat::Significant),
+            Column::new("to").key("high").format(ColumnFormat::Significant),
             Column::new("unit").key("unit").left(),
         ]);
         for (k, axis) in self.axes.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::{Agreement, PairAgreement};
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Format, Subject, Table, grouped, significant};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Table, grouped, significant};
 
 impl Subject for Agreement {
     const KIND: &'static str = "methods";
@@ -18,10 +18,10 @@ impl Subject for Agreement {
         if self.agreement.len() > 1 {
             document
                 .section("agreement: share of the cells that both accept or both reject, in %")
-                .table(self.matrix(|pair| Format::Fixed(2).of(100.0 * pair.agreement)));
+                .table(self.matrix(|pair| ColumnFormat::Fixed(2).of(100.0 * pair.agreement)));
             document
                 .section("Jaccard: accepted by both, of all that one accepts")
-                .table(self.matrix(|pair| Format::Fixed(4).of(pair.jaccard)));
+                .table(self.matrix(|pair| ColumnFormat::Fixed(4).of(pair.jaccard)));
         }
         let left_out = self.methods.iter().filter_map(|decided| Some((decided, decided.left_out.as_ref()?)));
         for (k, (decided, reason)) in left_out.enumerate() {
@@ -61,7 +61,7 @@ impl Agreement {
                 result.sum_ci95.map(|[lo, hi]| format!("{} … {}", significant(lo), significant(hi)));
             let edge = result.onaa_edge.map_or_else(
                 || Cell::shown("–", Cell::Empty),
-                |edge| Cell::shown(Format::Fixed(4).of(edge), plain(edge)),
+                |edge| Cell::shown(ColumnFormat::Fixed(4).of(edge), plain(edge)),
             );
             let first = [
                 Cell::shown(numbered(k, name), name),
@@ -71,7 +71,7 @@ impl Agreement {
                 result.sum_ci95.map(|[lo, _]| plain(lo)).unwrap_or_default(),
                 result.sum_ci95.map(|[_, hi]| plain(hi)).unwrap_or_default(),
                 edge,
-                Cell::shown(Format::Fixed(2).of(result.seconds), plain(result.seconds)),
+                Cell::shown(ColumnFormat::Fixed(2).of(result.seconds), plain(result.seconds)),
             ];
             let agreements = pairs.iter().map(|pair| plain(pair.agreement));
             let overlaps = pairs.iter().map(|pair| plain(pair.jaccard));

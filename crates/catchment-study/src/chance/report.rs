@@ -5,7 +5,7 @@ use super::{Chance, ChanceMap, Overall, PoseChance};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
 use catchment_core::document::{
-    Cell, Column, Document, Subject, Table, Units, grouped, percent, significant,
+    Cell, Column, DesignUnits, Document, Subject, Table, grouped, percent, significant,
 };
 use catchment_core::method::drop::Push;
 use catchment_core::pose::{Dof, PoseError};
@@ -145,7 +145,7 @@ impl Chance {
         document.row("damping", format!("{moving}, of turning {turning}"));
         let push = match drop.push {
             _ if self.settings.held => {
-                let units = Units::of(design);
+                let units = DesignUnits::of(design);
                 let coasts = self.coasting_d.map_or_else(String::new, |coasting| {
                     let length = without_zeros(coasting * units.scale());
                     format!(
@@ -270,7 +270,7 @@ fn law_in_words(design: &Design, of: Circumstance, law: &ScalarDistribution) -> 
 
 /// The factor by which a number of a circumstance is multiplied to be shown, and its unit then.
 pub fn unit_of(design: &Design, of: Circumstance) -> (f64, String) {
-    let units = Units::of(design);
+    let units = DesignUnits::of(design);
     match of.unit() {
         "D/s" => (units.scale(), format!("{}/s", units.unit())),
         "D" => (units.scale(), units.unit().to_owned()),
@@ -281,7 +281,7 @@ pub fn unit_of(design: &Design, of: Circumstance) -> (f64, String) {
 
 /// The free errors that are not 0.
 fn pose_in_words(design: &Design, error: &PoseError) -> String {
-    let (units, error) = (Units::of(design), error.to_array());
+    let (units, error) = (DesignUnits::of(design), error.to_array());
     let free = design.alignment.free.iter().map(|axis| (axis, error[axis.index()]));
     let parts: Vec<String> = free
         .filter(|(_, value)| *value != 0.0)

@@ -2,7 +2,7 @@
 
 use super::{Convergence, CorrectedSum, RefinementSequence, StopReason};
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Format, Subject, Table, grouped, significant};
+use catchment_core::document::{Column, ColumnFormat, Document, Subject, Table, grouped, significant};
 
 impl Subject for Convergence {
     const KIND: &'static str = "convergence";
@@ -45,10 +45,10 @@ impl Convergence {
         let mut table = Table::new([
             Column::new("per axis"),
             Column::new("cells"),
-            Column::new("seconds").format(Format::Fixed(2)),
-            Column::new(format!("Sum [{}]", self.unit)).format(Format::Significant),
+            Column::new("seconds").format(ColumnFormat::Fixed(2)),
+            Column::new(format!("Sum [{}]", self.unit)).format(ColumnFormat::Significant),
             Column::new("one cell of doubt").left(),
-            Column::new("ONAA edge").format(Format::Fixed(4)),
+            Column::new("ONAA edge").format(ColumnFormat::Fixed(4)),
         ]);
         for trial in &sequence.trials {
             let [lo, hi] = trial.bracket.map(significant);

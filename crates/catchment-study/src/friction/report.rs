@@ -3,7 +3,7 @@
 use super::{Friction, Kept, Rung, SticksFirst};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Format, Subject, Table, grouped, tenths};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Table, grouped, tenths};
 use catchment_core::run::jams::contact_in_words;
 use serde::Serializer;
 
@@ -74,7 +74,7 @@ impl Friction {
         let mut table = Table::new([
             Column::new("µ").key("friction"),
             Column::data("motions"),
-            Column::new("docks (95 % CI)").interval("aligned").format(Format::Tenths),
+            Column::new("docks (95 % CI)").interval("aligned").format(ColumnFormat::Tenths),
             Column::data("jammed"),
             Column::data("missed"),
             Column::data("undecided"),

@@ -3,7 +3,7 @@
 use super::{Both, COLUMNS, HoldingForces};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Subject, Table, Units, significant};
+use catchment_core::document::{Cell, Column, DesignUnits, Document, Subject, Table, significant};
 
 /// Directions that people see.
 const SHOWN: usize = 8;
@@ -15,7 +15,7 @@ impl Subject for HoldingForces {
     const SAMPLES_ERRORS: bool = false;
 
     fn document(&self, design: &Design) -> Document {
-        let units = Units::of(design);
+        let units = DesignUnits::of(design);
         let mut document = Document::default();
         self.describe_rest(units, &mut document);
         document.table(self.records());
@@ -49,7 +49,7 @@ impl Subject for HoldingForces {
 }
 
 impl HoldingForces {
-    fn describe_rest(&self, units: Units<'_>, document: &mut Document) {
+    fn describe_rest(&self, units: DesignUnits<'_>, document: &mut Document) {
         let preload = self.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
         document.row(
             "preload",
@@ -112,7 +112,7 @@ impl HoldingForces {
         table
     }
 
-    fn moments(&self, units: Units<'_>) -> Table {
+    fn moments(&self, units: DesignUnits<'_>) -> Table {
         let mut table = self.table("about");
         let scale = self.preload_n.unwrap_or(1.0) * units.scale();
         for torque in &self.torques {

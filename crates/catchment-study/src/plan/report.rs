@@ -4,7 +4,7 @@ use super::{Pattern, PoseColumns, Prediction, TrialPlan, TrialPlanCounts, accura
 use crate::validate::{FEWEST, LIMIT};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Subject, Table, Units, grouped};
+use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, grouped};
 use catchment_core::pose::{Dof, PoseError};
 
 /// Trials that are shown.
@@ -52,7 +52,7 @@ impl Subject for TrialPlan {
     }
 
     fn document(&self, design: &Design) -> Document {
-        let units = Units::of(design);
+        let units = DesignUnits::of(design);
         let settings = &self.settings;
         let mut document = Document::default();
         document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
@@ -86,7 +86,7 @@ impl Subject for TrialPlan {
 }
 
 impl TrialPlan {
-    fn describe_counts(&self, document: &mut Document, units: Units<'_>) {
+    fn describe_counts(&self, document: &mut Document, units: DesignUnits<'_>) {
         let TrialPlanCounts { trials, poses, lines, docking, failing, either, deciding, .. } = self.counts;
         let settings = &self.settings;
         let times =
@@ -112,7 +112,7 @@ impl TrialPlan {
         }
     }
 
-    fn pattern(&self, units: Units<'_>) -> String {
+    fn pattern(&self, units: DesignUnits<'_>) -> String {
         let named = |values: &[Option<f64>; 5]| {
             let words =
                 |axis: Dof| Some(format!("{} {}", axis.name(), units.amount(axis, values[axis.index()]?)));

@@ -2,13 +2,13 @@
 
 use super::Prediction;
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Units};
+use catchment_core::document::{Cell, Column, DesignUnits};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::OffsetsAt;
 
 /// The row of an accuracy: `x 1 mm, yaw 0.5° (one standard deviation)`. Errors without one are left out.
 pub(crate) fn accuracy_words(design: &Design, accuracy: &PoseError) -> String {
-    let units = Units::of(design);
+    let units = DesignUnits::of(design);
     let value = |axis: Dof| accuracy.to_array()[axis.index()] * scale(units, axis);
     let words = |axis: Dof| {
         let unit = if axis.is_rotation() { "°" } else { &format!(" {}", units.unit()) };
@@ -22,7 +22,7 @@ pub(crate) fn accuracy_words(design: &Design, accuracy: &PoseError) -> String {
 /// The columns of pose errors and margins in a table for a robot: units of the design, degrees, nine digits.
 pub(crate) struct PoseColumns<'a> {
     design: &'a Design,
-    units: Units<'a>,
+    units: DesignUnits<'a>,
     at: OffsetsAt,
     axes: Vec<Dof>,
 }
@@ -36,7 +36,7 @@ impl<'a> PoseColumns<'a> {
         };
         let wanted = |axis: &Dof| alignment.free.contains(*axis) || occurs(*axis);
         let axes = Dof::ALL.into_iter().filter(wanted).collect();
-        Self { design, units: Units::of(design), at, axes }
+        Self { design, units: DesignUnits::of(design), at, axes }
     }
 
     /// The columns of the errors.
@@ -77,7 +77,7 @@ impl<'a> PoseColumns<'a> {
     }
 }
 
-fn scale(units: Units<'_>, axis: Dof) -> f64 {
+fn scale(units: DesignUnits<'_>, axis: Dof) -> f64 {
     if axis.is_rotation() { 1f64.to_degrees() } else { units.scale() }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{AtRho, Sensitivity, VariedParameter};
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Format, Subject, Table, grouped, significant};
+use catchment_core::document::{Column, ColumnFormat, Document, Subject, Table, grouped, significant};
 
 impl Subject for Sensitivity {
     const KIND: &'static str = "sensitivity";
@@ -41,7 +41,7 @@ impl Sensitivity {
     fn slopes(&self) -> Table {
         let mut table = Table::new([
             Column::new("parameter").left(),
-            Column::new("value").format(Format::Significant),
+            Column::new("value").format(ColumnFormat::Significant),
             Column::new("between").left(),
             Column::new("dSum/dp"),
             Column::new("95 % interval").left(),
@@ -61,8 +61,8 @@ impl Sensitivity {
 
     fn sums(&self) -> Table {
         let mut table = Table::new([
-            Column::new("ρ [D]").format(Format::Fixed(3)),
-            Column::new("Sum").format(Format::Significant),
+            Column::new("ρ [D]").format(ColumnFormat::Fixed(3)),
+            Column::new("Sum").format(ColumnFormat::Significant),
             Column::new("95 % interval").left(),
         ]);
         for point in &self.over_rho {

@@ -4,7 +4,7 @@ use super::{Factor, First, NormalFit, RobotDocking, Success};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
-    Cell, Column, Document, Subject, Table, Units, grouped, percent, significant,
+    Cell, Column, DesignUnits, Document, Subject, Table, grouped, percent, significant,
 };
 use catchment_core::pose::{Dof, PoseError};
 
@@ -310,7 +310,7 @@ impl NormalFit {
 /// An error, in D or radians: `1.250 mm`, `0.0250 D` or `3.00°`.
 fn amount(design: &Design, axis: Dof, value: f64) -> String {
     if axis.is_rotation() || design.unit.is_some() {
-        return Units::of(design).amount(axis, value);
+        return DesignUnits::of(design).amount(axis, value);
     }
     format!("{value:.4} D")
 }

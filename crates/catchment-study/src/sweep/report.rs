@@ -3,7 +3,7 @@
 use super::{DesignResult, Figures, Sweep, SweepDesign};
 use catchment_core::design::Design;
 use catchment_core::document::{
-    Cell, Column, Document, Format, Subject, Table, grouped, percent, significant, with_error,
+    Cell, Column, ColumnFormat, Document, Subject, Table, grouped, percent, significant, with_error,
 };
 use std::collections::BTreeMap;
 
@@ -106,7 +106,7 @@ impl Sweep {
         let mut columns: Vec<Column> =
             self.settings.axes.iter().map(|axis| Column::new(axis.name()).left()).collect();
         columns.push(Column::new(format!("Sum [{}]", self.unit())));
-        columns.push(Column::new("of the error box").format(Format::Percent));
+        columns.push(Column::new("of the error box").format(ColumnFormat::Percent));
         let mut table = Table::new(columns);
         for (number, trial) in self.designs.iter().enumerate().take(LONGEST_LIST) {
             let figures = trial.found.figures();

@@ -2,7 +2,7 @@
 
 use super::Trials;
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, Document, Format, Subject, Table, significant};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Table, significant};
 use catchment_core::pose::Dof;
 
 impl Subject for Trials {
@@ -16,10 +16,10 @@ impl Subject for Trials {
         let mut rounds = Table::new([
             Column::new("trials"),
             Column::new("step [s]"),
-            Column::new(format!("docks [{unit}]")).format(Format::Fixed(4)),
+            Column::new(format!("docks [{unit}]")).format(ColumnFormat::Fixed(4)),
             Column::new("inside"),
             Column::new("outside"),
-            Column::new("misclassified (95 % CI)").format(Format::Percent),
+            Column::new("misclassified (95 % CI)").format(ColumnFormat::Percent),
         ]);
         for round in &self.rounds {
             rounds.push([

@@ -6,7 +6,7 @@ use super::{
 use crate::plan::{PoseColumns, accuracy_words};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
-use catchment_core::document::{Column, Document, Subject, Table, Units, grouped, percent};
+use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, grouped, percent};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::Observed;
 
@@ -62,7 +62,7 @@ impl Subject for Validation {
     }
 
     fn document(&self, design: &Design) -> Document {
-        let units = Units::of(design);
+        let units = DesignUnits::of(design);
         let mut document = Document::default();
         document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
         if self.settings.friction > 0.0 {
@@ -147,7 +147,7 @@ impl Validation {
         table
     }
 
-    fn describe_lines(&self, document: &mut Document, units: Units<'_>) {
+    fn describe_lines(&self, document: &mut Document, units: DesignUnits<'_>) {
         let crossed: Vec<(&TrialLine, PoseError, PoseError)> = self
             .lines
             .iter()
@@ -178,7 +178,7 @@ impl Validation {
         more(document, crossed.len());
     }
 
-    fn describe_disagreements(&self, document: &mut Document, units: Units<'_>) {
+    fn describe_disagreements(&self, document: &mut Document, units: DesignUnits<'_>) {
         if self.disagreements.is_empty() {
             return;
         }

@@ -3,7 +3,7 @@
 use super::fit::{Fit, Law, Point, latching};
 use super::force::Forces;
 use super::measured::{Measured, Mode, THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
-use catchment::document::{Column, Document, Format, Table};
+use catchment::document::{Column, ColumnFormat, Document, Table};
 use catchment::report::document::Printed;
 use catchment::report::{Body, Envelope};
 use serde::Serialize;
@@ -149,7 +149,7 @@ impl Printed for TableBody {
 impl TableBody {
     fn prototypes(&self) -> Table {
         let column = |title: &str, key: &str, decimals: usize| {
-            Column::new(title).key(key).format(Format::Fixed(decimals))
+            Column::new(title).key(key).format(ColumnFormat::Fixed(decimals))
         };
         let mut table = Table::new([
             column("o", "overhang_mm", 1),
@@ -186,7 +186,7 @@ impl TableBody {
     }
 
     fn fit_table(&self) -> Table {
-        let column = |title: &str, decimals| Column::new(title).format(Format::Fixed(decimals));
+        let column = |title: &str, decimals| Column::new(title).format(ColumnFormat::Fixed(decimals));
         let mut table = Table::new([
             Column::new("law, its parameters").left(),
             column("rms", 3),

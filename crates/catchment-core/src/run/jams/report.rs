@@ -5,7 +5,7 @@ use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
 use crate::document::{
-    Cell, Column, Document, Format, Share, Subject, Table, grouped, tenths, tenths_between,
+    Cell, Column, ColumnFormat, Document, Share, Subject, Table, grouped, tenths, tenths_between,
 };
 use crate::method::descent::HARDLY;
 
@@ -56,10 +56,10 @@ impl Jams {
         let expected = self
             .expected
             .as_ref()
-            .map(|_| Column::new("share of the expected errors").format(Format::Tenths));
+            .map(|_| Column::new("share of the expected errors").format(ColumnFormat::Tenths));
         let columns = [
             Column::new("outcome").left(),
-            Column::new("share of the error box (95 % CI)").format(Format::Tenths),
+            Column::new("share of the error box (95 % CI)").format(ColumnFormat::Tenths),
         ];
         let mut table = Table::new(columns.into_iter().chain(expected));
         for (outcome, share) in &self.outcomes {
@@ -112,8 +112,8 @@ impl Jams {
             return;
         }
         let mut table = Table::new([
-            Column::new("of jams").format(Format::Tenths),
-            Column::new("of failures").format(Format::Tenths),
+            Column::new("of jams").format(ColumnFormat::Tenths),
+            Column::new("of failures").format(ColumnFormat::Tenths),
             Column::new("contact that jams").left(),
         ]);
         for pair in self.features.iter().take(SHOWN) {

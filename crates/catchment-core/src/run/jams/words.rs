@@ -2,7 +2,7 @@
 
 use super::{Examined, Extent, FeatureContact, Firmness, NamedFeature};
 use crate::design::Design;
-use crate::document::{Document, Units, rounded_down, significant};
+use crate::document::{DesignUnits, Document, rounded_down, significant};
 use crate::method::descent::{Immobility, ImmobilityOrder, Sticking};
 use crate::pose::{Dof, PoseError};
 
@@ -95,20 +95,20 @@ pub fn lifted(design: &Design, climb: f64) -> String {
     if climb < NOTHING {
         "not lifted at all".to_owned()
     } else {
-        format!("lifted by {} at most", Units::of(design).fine(climb))
+        format!("lifted by {} at most", DesignUnits::of(design).fine(climb))
     }
 }
 
 /// Places of rest of a design in words.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::run) struct Places<'a> {
-    units: Units<'a>,
+    units: DesignUnits<'a>,
     friction: f64,
 }
 
 impl<'a> Places<'a> {
     pub(in crate::run) const fn of(design: &'a Design, friction: f64) -> Self {
-        Self { units: Units::of(design), friction }
+        Self { units: DesignUnits::of(design), friction }
     }
 
     /// The pose of a rest, and its height above the mated pose.

@@ -3,7 +3,7 @@
 use super::{ToleranceWindow, WindowCertificate, WindowDetails};
 use crate::acceptance::Outcome;
 use crate::design::Design;
-use crate::document::{Cell, Column, Document, Subject, Table, Units, grouped};
+use crate::document::{Cell, Column, DesignUnits, Document, Subject, Table, grouped};
 
 /// Contacts of the worst pose that are shown.
 const MOST_TOUCHES: usize = 4;
@@ -58,7 +58,7 @@ impl WindowDetails {
     }
 
     fn table(&self, design: &Design) -> Table {
-        let units = Units::of(design);
+        let units = DesignUnits::of(design);
         let mut table = Table::new([
             Column::new("error").key("axis").left(),
             Column::new("tolerance window").key("half_width"),
@@ -93,7 +93,7 @@ impl WindowDetails {
     }
 
     fn describe_worst(&self, document: &mut Document, design: &Design) {
-        let units = Units::of(design);
+        let units = DesignUnits::of(design);
         let Some(worst) = &self.worst else {
             document.row("nearest failure", "not found: the window ends at the error box");
             return;

@@ -5,7 +5,7 @@ use crate::chain::accumulation::{heading_sigma, lateral_sigma};
 use crate::chain::fold::State;
 use crate::chain::sequence::Command;
 use crate::chain::study::Arrival;
-use catchment::document::{Cell, Column, Document, Format, Table, percent, rounded};
+use catchment::document::{Cell, Column, ColumnFormat, Document, Table, percent, rounded};
 use catchment::report::document::Printed;
 use std::borrow::Cow;
 
@@ -93,7 +93,7 @@ impl ChainBody {
         if self.corners.is_empty() {
             return;
         }
-        let column = |title: &str, decimals| Column::new(title).format(Format::Fixed(decimals));
+        let column = |title: &str, decimals| Column::new(title).format(ColumnFormat::Fixed(decimals));
         let mut table = Table::new([
             Column::new("corners").left(),
             Column::new("error"),
@@ -156,7 +156,7 @@ impl ChainBody {
     fn length_table(&self) -> Table {
         let docks = Column {
             keys: ["probability", "ci95_low", "ci95_high"].map(str::to_owned).to_vec(),
-            ..Column::new("docks (95 % CI)").format(Format::Percent)
+            ..Column::new("docks (95 % CI)").format(ColumnFormat::Percent)
         };
         let mut table = Table::new([
             Column::new("joint").key("joint_sigma_rad"),
@@ -164,7 +164,7 @@ impl ChainBody {
             Column::new("across").key("lateral_sigma_d"),
             Column::new("heading").key("heading_sigma_rad"),
             docks,
-            Column::new("offset").key("offset_probability").format(Format::Percent),
+            Column::new("offset").key("offset_probability").format(ColumnFormat::Percent),
         ]);
         let known = |cell: Option<Cell>| cell.unwrap_or_else(|| Cell::shown(NOTHING, Cell::Empty));
         for row in &self.lengths {
