@@ -7,7 +7,7 @@ use catchment::design::{DesignDefect, Quantity, parse_dofs};
 use catchment::exec::Exec;
 use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
-use catchment::report::page::Parts;
+use catchment::report::page::PageParts;
 use catchment::terminal::{escaped, shown};
 use clap::{Args, Parser};
 use std::path::PathBuf;
@@ -160,7 +160,7 @@ impl DesignArgs {
             let message = format!("{option}: {} is a result, which has been decided", shown(path));
             return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }
-        let Parts { report, problem, notes, .. } = Parts::stored(path, exec)?;
+        let PageParts { report, problem, notes, .. } = PageParts::stored(path, exec)?;
         let friction = report.friction();
         problem.map(|problem| (problem, friction)).ok_or_else(|| {
             let help = "give the design instead".to_owned();

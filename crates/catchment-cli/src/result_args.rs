@@ -21,7 +21,7 @@ use catchment::report::figure::Picture;
 use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
 use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{Envelope, ReportOf, csv};
+use catchment::report::{ReportEnvelope, ReportOf, csv};
 use catchment::run::{Requirement, RequirementError};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
@@ -303,7 +303,7 @@ impl<'a> Output<'a> {
     /// Writes and prints a report, and says which requirements it does not meet. `draw` makes its picture, if there is one.
     pub(crate) fn finish<B: Printed + Serialize>(
         self,
-        report: &Envelope<B>,
+        report: &ReportEnvelope<B>,
         draw: impl FnOnce() -> Result<Picture, Failure>,
     ) -> Result<ExitStatus, Failure> {
         let pictures = || Ok(vec![(self.name, draw()?)]);
@@ -315,7 +315,7 @@ impl<'a> Output<'a> {
     /// folder, and names what it added.
     pub(crate) fn write<B: Printed + Serialize>(
         &self,
-        report: &Envelope<B>,
+        report: &ReportEnvelope<B>,
         draw: impl FnOnce() -> Result<Pictures, Failure>,
         more: impl Fn(&Path) -> Result<String, SaveError>,
         exec: &Exec,
@@ -354,7 +354,7 @@ impl<'a> Output<'a> {
     /// Prints a report, and notes beside it; says which requirements it does not meet.
     pub(crate) fn print<B: Printed + Serialize>(
         &self,
-        report: &Envelope<B>,
+        report: &ReportEnvelope<B>,
         notes: &[String],
     ) -> Result<ExitStatus, Failure> {
         let status = self.print.print(report, &report.described());
@@ -384,7 +384,7 @@ impl PrintArgs {
     /// Prints a report, and says which requirements it does not meet.
     pub(crate) fn print<B: Printed + Serialize>(
         &self,
-        report: &Envelope<B>,
+        report: &ReportEnvelope<B>,
         document: &Described<'_>,
     ) -> Result<ExitStatus, Failure> {
         if self.json {
@@ -405,7 +405,7 @@ impl PrintArgs {
 /// A whole report as one text.
 pub(crate) fn rendered<B: Printed + Serialize>(
     kind: Kind,
-    report: &Envelope<B>,
+    report: &ReportEnvelope<B>,
     document: &Described<'_>,
 ) -> Result<Vec<u8>, Failure> {
     Ok(match kind {
@@ -418,7 +418,7 @@ pub(crate) fn rendered<B: Printed + Serialize>(
 }
 
 /// The table of a report for programs.
-fn table<B: Printed>(report: &Envelope<B>) -> Result<Vec<u8>, Failure> {
+fn table<B: Printed>(report: &ReportEnvelope<B>) -> Result<Vec<u8>, Failure> {
     let records = report.records();
     if records.is_empty() {
         let help = "--json prints all of it".to_owned();

@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use crate::refusal::Refusal;
 use crate::rendered::PNG_SCALE;
 use crate::work::{How, work};
-use catchment::report::figure::Drawn;
+use catchment::report::figure::DrawnFigures;
 use catchment::report::{Report, save, save_group};
 use catchment::run::{self, PartAnswer, Run, RunPart};
 use numpy::PyArray1;
@@ -87,7 +87,7 @@ impl Answer {
     /// Every picture: its name, SVG and PNG.
     fn draw(&self, py: Python<'_>, how: How) -> PyResult<Vec<(&'static str, String, Vec<u8>)>> {
         work(py, &how, |exec| {
-            let drawn = Drawn::of(&self.inner, exec)?.pictures;
+            let drawn = DrawnFigures::of(&self.inner, exec)?.pictures;
             let encoded = drawn.into_iter().map(|(name, picture)| {
                 exec.check()?;
                 Ok((name, picture.svg().to_owned(), picture.png(PNG_SCALE)?))

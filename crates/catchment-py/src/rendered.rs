@@ -3,7 +3,7 @@
 use crate::refusal::Refusal;
 use catchment::report::document::Printed;
 use catchment::report::figure::{FigureError, Picture};
-use catchment::report::{Envelope, csv};
+use catchment::report::{ReportEnvelope, csv};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -27,7 +27,7 @@ pub(crate) struct Rendered {
 
 impl Rendered {
     /// Of a report without a picture.
-    pub(crate) fn of<B: Printed + Serialize>(report: &Envelope<B>) -> Result<Self, Refusal> {
+    pub(crate) fn of<B: Printed + Serialize>(report: &ReportEnvelope<B>) -> Result<Self, Refusal> {
         let csv = String::from_utf8_lossy(&csv(&report.records())?).into_owned();
         Ok(Self { json: report.to_json()?, table: report.table(), csv, picture: None })
     }

@@ -9,7 +9,7 @@ use catchment::exec::Stopwatch;
 use catchment::method::zraa::{self, AcceptedSquare, Nilsson};
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
-use catchment::report::compare::{Source, compare as compared};
+use catchment::report::compare::{ComparisonSource, compare as compared};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{AcceptedOffsets, JamsReport, WindowReport, ZraaReport, figure};
 use catchment::run::window;
@@ -134,18 +134,19 @@ pub(crate) fn compare(
     cells: Option<String>,
     how: How,
 ) -> PyResult<Rendered> {
-    let source = |side: &Side<'_>| -> Result<Source, Refusal> {
+    let source = |side: &Side<'_>| -> Result<ComparisonSource, Refusal> {
         Ok(match side {
-            Side::Stored(path) => Source::Stored(path.clone()),
+            Side::Stored(path) => ComparisonSource::Stored(path.clone()),
             Side::Fresh(source, problem, name, settings) => {
                 let method = method(name, settings)?;
                 method.applies_to(problem.inner.design())?;
                 let (problem, run) = (Box::new(problem.inner.clone()), Box::new(Run::by(method)));
-                Source::Fresh { source: source.clone(), problem, run }
+                ComparisonSource::Fresh { source: source.clone(), problem, run }
             }
         })
     };
-    let sources = || -> Result<[Source; 2], Refusal> { Ok([source(&sides[0])?, source(&sides[1])?]) };
+    let sources =
+        || -> Result<[ComparisonSource; 2], Refusal> { Ok([source(&sides[0])?, source(&sides[1])?]) };
     let sources = sources().map_err(|refusal| refusal.raise(py))?;
     work(py, &how, |exec| {
         let found = compared(sources, resolution(cells.as_deref())?, true, exec)?;

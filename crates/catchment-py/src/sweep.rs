@@ -12,7 +12,7 @@ use crate::work::{How, work};
 use catchment::exec::{Exec, Stopwatch};
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
-use catchment::report::{Parts, SweepReport, figure};
+use catchment::report::{FinishedDesigns, SweepReport, figure};
 use catchment::study::sweep::{DesignResult, Keep, Nowhere, SweepAxis, SweepError, SweepPlan, SweepSettings};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -23,14 +23,14 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Sweep {
     plan: SweepPlan,
-    parts: Option<Parts>,
+    parts: Option<FinishedDesigns>,
     output: Option<PathBuf>,
 }
 
 /// What was found elsewhere, and what is kept beside the result.
 struct Both<'a> {
     found: BTreeMap<String, DesignResult>,
-    kept: Option<&'a Parts>,
+    kept: Option<&'a FinishedDesigns>,
 }
 
 impl Keep for Both<'_> {
@@ -86,7 +86,7 @@ impl Sweep {
             SweepPlan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)
         };
         let plan = plan().map_err(|refusal| refusal.raise(py))?;
-        let parts = output.as_deref().map(Parts::beside);
+        let parts = output.as_deref().map(FinishedDesigns::beside);
         Ok(Self { plan, parts, output })
     }
 

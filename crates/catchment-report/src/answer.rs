@@ -1,7 +1,7 @@
 //! The report of a run's result, and the check of its requirements.
 
 use super::Report;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::json_schema;
 use super::schema::{
     PartitionReport, RunBody, SuccessReport, Timing, UprightReport, WarningReport, WatershedsReport,
@@ -48,7 +48,7 @@ impl Report {
     }
 }
 
-impl<T: Body + Serialize> Envelope<T> {
+impl<T: ReportBody + Serialize> ReportEnvelope<T> {
     /// Every requirement, judged by this report.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
     ConnectorSpec, Design, Diagnostic, Diagnostics, DrawnFrames, FileSpec, HalfSpec, OutlineSpec, OwnSpec,
@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 
 /// What a check has to say, with its head.
-pub type CheckReport = Envelope<CheckBody>;
+pub type CheckReport = ReportEnvelope<CheckBody>;
 
 /// Result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -106,13 +106,13 @@ pub struct ProblemReport {
     /// Advice for its correction.
     pub help: Option<String>,
     /// Its place, if it has a place in the file.
-    pub place: Option<Place>,
+    pub place: Option<FileLocation>,
 }
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Place {
+pub struct FileLocation {
     /// Its line, from 1.
     pub line: usize,
     /// Its column in characters, from 1.
@@ -121,7 +121,7 @@ pub struct Place {
     pub bytes: [usize; 2],
 }
 
-impl Body for CheckBody {
+impl ReportBody for CheckBody {
     const KIND: &'static str = "check";
 }
 
@@ -150,7 +150,7 @@ impl CheckReport {
             help: diagnostic.help.clone(),
             place: diagnostic.span.as_ref().zip(source).map(|(span, source)| {
                 let (line, column) = source.line_column(span.start);
-                Place { line, column, bytes: [span.start, span.end] }
+                FileLocation { line, column, bytes: [span.start, span.end] }
             }),
         };
         let body = CheckBody {

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 /// One of the two.
 #[derive(Debug)]
-pub enum Source {
+pub enum ComparisonSource {
     /// A result that was stored: its folder or its group.
     Stored(PathBuf),
     /// A problem to be decided; the resolution of the run is not asked.
@@ -80,7 +80,7 @@ pub enum CompareError {
 
 /// The comparison, and its picture where there is something to draw.
 #[derive(Debug)]
-pub struct Found {
+pub struct ComparisonResult {
     /// What it has to say.
     pub report: ComparisonReport,
     /// Where the two differ, if asked for; or why that cannot be drawn.
@@ -93,16 +93,16 @@ pub struct Found {
 /// # Errors
 /// See [`CompareError`].
 pub fn compare(
-    sources: [Source; 2],
+    sources: [ComparisonSource; 2],
     resolution: Option<Resolution>,
     picture: bool,
     exec: &Exec,
-) -> Result<Found, CompareError> {
+) -> Result<ComparisonResult, CompareError> {
     let started = Stopwatch::start();
     // Stored results first: their grid is what a problem is decided on.
     let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
     for (side, source) in sides.iter_mut().zip(&sources) {
-        if let Source::Stored(path) = source {
+        if let ComparisonSource::Stored(path) = source {
             let (report, acceptance) = zarr::read(&group(path), exec)?;
             *side = Some((Side { source: path.display().to_string(), report }, acceptance));
         }
@@ -121,8 +121,10 @@ pub fn compare(
         let part = exec.part([0.5 * k as f64, 0.5 * (k + 1) as f64], "comparing");
         decided.push(match (side, source) {
             (Some(stored), _) => stored,
-            (None, Source::Fresh { source, problem, run }) => decide(source, &problem, &run, cells, &part)?,
-            (None, Source::Stored(path)) => {
+            (None, ComparisonSource::Fresh { source, problem, run }) => {
+                decide(source, &problem, &run, cells, &part)?
+            }
+            (None, ComparisonSource::Stored(path)) => {
                 return Err(ZarrError::Content { path, reason: "it was not read".to_owned() }.into());
             }
         });
@@ -149,7 +151,7 @@ pub fn compare(
     let axes = axes(&paired.first);
     let body = ComparisonBody { first: first.clone(), second: second.clone(), axes, comparison };
     let report = ComparisonReport::of(body, Vec::new(), Some(timing));
-    Ok(Found { report, picture })
+    Ok(ComparisonResult { report, picture })
 }
 
 /// The Zarr group that a path stands for: the one in the folder of a run, or the path itself.
@@ -164,8 +166,8 @@ fn as_resolution(report: &Report) -> Option<Resolution> {
 }
 
 /// The grid that a problem will be decided on; `None` of a stored result.
-fn planned(from: &Source, cells: Resolution) -> Option<Result<Grid, CompareError>> {
-    let Source::Fresh { source, problem, .. } = from else { return None };
+fn planned(from: &ComparisonSource, cells: Resolution) -> Option<Result<Grid, CompareError>> {
+    let ComparisonSource::Fresh { source, problem, .. } = from else { return None };
     Some(grid_of(source, problem, cells))
 }
 

@@ -1,8 +1,8 @@
 //! Comparison of two acceptances: as versioned JSON, text and tables.
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
-use super::schema::{Axis, Report};
+use super::envelope::{ReportBody, ReportEnvelope};
+use super::schema::{AxisReport, Report};
 use catchment_core::acceptance::Outcome;
 use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, grouped, percent, significant};
 use catchment_core::merit::comparison::{Comparison, Distances};
@@ -20,7 +20,7 @@ pub struct Compared {
 }
 
 /// What a comparison has to say, with its head.
-pub type ComparisonReport = Envelope<ComparisonBody>;
+pub type ComparisonReport = ReportEnvelope<ComparisonBody>;
 
 /// Result of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -31,12 +31,12 @@ pub struct ComparisonBody {
     /// The second.
     pub second: Compared,
     /// The axes of the common grid; empty for listed poses.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<AxisReport>,
     /// The comparison.
     pub comparison: Comparison,
 }
 
-impl Body for ComparisonBody {
+impl ReportBody for ComparisonBody {
     const KIND: &'static str = "comparison";
 }
 

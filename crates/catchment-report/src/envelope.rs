@@ -23,14 +23,14 @@ pub const SCHEMA: u32 = 3;
 pub const OLDEST: u32 = 2;
 
 /// What a report of one kind holds beside its head.
-pub trait Body {
+pub trait ReportBody {
     /// Its name in `kind`.
     const KIND: &'static str;
 }
 
 /// A report: its head, and a body whose fields stand beside it. `report.design` is `report.body.design`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Envelope<T> {
+pub struct ReportEnvelope<T> {
     /// Version of the program that wrote it.
     pub catchment: Version,
     /// The fields of its kind.
@@ -41,14 +41,14 @@ pub struct Envelope<T> {
     pub timing: Option<Timing>,
 }
 
-impl<T: Body> Envelope<T> {
+impl<T: ReportBody> ReportEnvelope<T> {
     /// A report of this program.
     pub fn of(body: T, warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
         Self { catchment: Version::own(), body, warnings, timing }
     }
 }
 
-impl<T: Body + Serialize> Envelope<T> {
+impl<T: ReportBody + Serialize> ReportEnvelope<T> {
     /// The report as indented JSON, ending with a line break. Characters that could steer a terminal are escaped.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ fn escaped(json: String) -> String {
     text
 }
 
-impl<T: Body + for<'de> Deserialize<'de>> Envelope<T> {
+impl<T: ReportBody + for<'de> Deserialize<'de>> ReportEnvelope<T> {
     /// Reads a report back. Fields that are not known are ignored.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl<T: Body + for<'de> Deserialize<'de>> Envelope<T> {
     }
 }
 
-impl<T> Deref for Envelope<T> {
+impl<T> Deref for ReportEnvelope<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
@@ -93,7 +93,7 @@ impl<T> Deref for Envelope<T> {
     }
 }
 
-impl<T> DerefMut for Envelope<T> {
+impl<T> DerefMut for ReportEnvelope<T> {
     fn deref_mut(&mut self) -> &mut T {
         &mut self.body
     }
@@ -117,7 +117,7 @@ struct Written<'a, T> {
     timing: &'a Option<Timing>,
 }
 
-impl<T: Body + Serialize> Serialize for Envelope<T> {
+impl<T: ReportBody + Serialize> Serialize for ReportEnvelope<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { catchment, body, warnings, timing } = self;
         Written { schema: SCHEMA, catchment, kind: T::KIND, body, warnings, timing }.serialize(serializer)
@@ -125,7 +125,7 @@ impl<T: Body + Serialize> Serialize for Envelope<T> {
 }
 
 #[cfg(feature = "schema")]
-impl<T: Body + schemars::JsonSchema + 'static> schemars::JsonSchema for Envelope<T> {
+impl<T: ReportBody + schemars::JsonSchema + 'static> schemars::JsonSchema for ReportEnvelope<T> {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         T::KIND.into()
     }
@@ -135,7 +135,7 @@ impl<T: Body + schemars::JsonSchema + 'static> schemars::JsonSchema for Envelope
     }
 }
 
-impl<'de, T: Body + Deserialize<'de>> Deserialize<'de> for Envelope<T> {
+impl<'de, T: ReportBody + Deserialize<'de>> Deserialize<'de> for ReportEnvelope<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         struct Read<T> {

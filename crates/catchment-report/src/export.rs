@@ -1,7 +1,7 @@
 //! Report of a drop test that was exported for other engines: its settings and its files.
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::design::Design;
 use catchment_core::document::Document;
@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 
 /// What was exported, with its head.
-pub type ExportReport = Envelope<ExportBody>;
+pub type ExportReport = ReportEnvelope<ExportBody>;
 
 /// Result of an export.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,7 +30,7 @@ pub struct ExportBody {
     pub meshes: usize,
 }
 
-impl Body for ExportBody {
+impl ReportBody for ExportBody {
     const KIND: &'static str = "export";
 }
 

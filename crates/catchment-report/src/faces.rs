@@ -1,7 +1,7 @@
 //! Several designs side by side with the offsets that they correct without rotation.
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::zraa::{AcceptedOffsets, ZraaBody};
 use catchment_core::document::{Document, Table};
 use catchment_core::pose::Dof;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 
 /// Designs side by side, with their head.
-pub type FacesReport = Envelope<FacesBody>;
+pub type FacesReport = ReportEnvelope<FacesBody>;
 
 /// Designs side by side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,7 +19,7 @@ pub struct FacesBody {
     pub faces: Vec<ZraaBody>,
 }
 
-impl Body for FacesBody {
+impl ReportBody for FacesBody {
     const KIND: &'static str = "zraa-faces";
 }
 

@@ -44,7 +44,7 @@ pub fn add_all(generator: &mut schemars::SchemaGenerator) {
         crate::ComparisonReport,
         crate::ExportReport,
         crate::FacesReport,
-        crate::Envelope<crate::outcomes::Answer<'static>>,
+        crate::ReportEnvelope<crate::outcomes::Answer<'static>>,
         crate::SolidsReport,
         crate::TraceReport,
     );

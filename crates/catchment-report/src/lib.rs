@@ -60,21 +60,21 @@ mod zraa;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
-pub use check::{CheckBody, CheckReport, Place, ProblemReport};
+pub use check::{CheckBody, CheckReport, FileLocation, ProblemReport};
 pub use comparison::{Compared, ComparisonBody, ComparisonReport};
 pub use document::{OfDesign, ReportOf};
-pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
+pub use envelope::{OLDEST, ReportBody, ReportEnvelope, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
 pub use lever::{CornerContact, FirstContact};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
-pub use parts::Parts;
+pub use parts::FinishedDesigns;
 pub use run::first_look;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
 pub use schema::{Report, RunBody};
-pub use slices::{SliceReport, SlicesFound};
+pub use slices::{SliceReport, SlicesResult};
 pub use solids::{SolidsBody, SolidsReport};
 pub use subjects::*;
 pub use text::csv;

@@ -1,6 +1,6 @@
 //! Outcomes of listed pose errors: the input table with result columns, or JSON.
 
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::acceptance::{Acceptance, FailureReason, Outcome};
 use catchment_core::design::Design;
@@ -159,7 +159,7 @@ pub(crate) struct Answer<'a> {
     poses: Vec<Row>,
 }
 
-impl Body for Answer<'_> {
+impl ReportBody for Answer<'_> {
     const KIND: &'static str = "outcome";
 }
 
@@ -317,7 +317,7 @@ impl<'a> OutcomesReport<'a> {
             missing: self.missing(),
             poses: poses.collect(),
         };
-        Envelope::of(answer, self.warnings.clone(), None).to_json()
+        ReportEnvelope::of(answer, self.warnings.clone(), None).to_json()
     }
 
     /// How many met which outcome, and which columns were carried through: a line each.

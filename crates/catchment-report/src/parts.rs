@@ -17,11 +17,11 @@ const LARGEST: u64 = 64 << 20;
 /// `OUT.parts`, which holds a JSON file per finished design, named by the digest of all that its figures depend on. A file that
 /// cannot be read is as good as none: the design is computed again.
 #[derive(Debug, Clone)]
-pub struct Parts {
+pub struct FinishedDesigns {
     folder: PathBuf,
 }
 
-impl Parts {
+impl FinishedDesigns {
     /// The parts of a result.
     pub fn beside(result: &Path) -> Self {
         let mut name = result.file_name().unwrap_or_default().to_owned();
@@ -65,7 +65,7 @@ impl Parts {
     }
 }
 
-impl Keep for Parts {
+impl Keep for FinishedDesigns {
     fn find(&self, key: &str) -> Option<DesignResult> {
         let path = self.file(key);
         let small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= LARGEST);
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_found_and_what_is_spoilt_is_not() {
         let home = tempfile::tempdir().unwrap();
-        let parts = Parts::beside(&home.path().join("out"));
+        let parts = FinishedDesigns::beside(&home.path().join("out"));
         let (key, found) = ("a".repeat(DIGITS), DesignResult::Refused("no".to_owned()));
         assert_eq!(parts.find(&key), None);
         parts.keep(&key, &found).unwrap();
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn what_a_killed_process_left_goes_with_it() {
         let home = tempfile::tempdir().unwrap();
-        let parts = Parts::beside(&home.path().join("out"));
+        let parts = FinishedDesigns::beside(&home.path().join("out"));
         let (key, found) = ("b".repeat(DIGITS), DesignResult::Refused("no".to_owned()));
         for after in 0.. {
             faults::set(home.path(), Fault::Crash, after, true);

@@ -8,7 +8,7 @@
 //! ```
 
 use super::cells;
-use super::figure::Drawn;
+use super::figure::DrawnFigures;
 use super::folder::{POSES, REPORT, RESULT, SaveError, encode, save_files, write_all};
 use super::vtk::View;
 use super::write::{self, WriteError};
@@ -39,7 +39,7 @@ pub struct Saved {
 /// # Errors
 /// Whatever the system refuses. Nothing is left behind and an older result stays as it was.
 pub fn save(answer: &Answer, path: impl AsRef<Path>, exec: &Exec) -> Result<Saved, SaveError> {
-    let drawn = Drawn::of(answer, exec)?;
+    let drawn = DrawnFigures::of(answer, exec)?;
     save_drawn(answer, path.as_ref(), &drawn, exec)
 }
 
@@ -47,7 +47,12 @@ pub fn save(answer: &Answer, path: impl AsRef<Path>, exec: &Exec) -> Result<Save
 ///
 /// # Errors
 /// Those of [`save`].
-pub fn save_drawn(answer: &Answer, path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, SaveError> {
+pub fn save_drawn(
+    answer: &Answer,
+    path: &Path,
+    drawn: &DrawnFigures,
+    exec: &Exec,
+) -> Result<Saved, SaveError> {
     let pictures = encode(&drawn.pictures, exec)?;
     let report = Report::of_answer(answer);
     let json = report.to_json()?;
@@ -76,7 +81,7 @@ pub fn save_group(answer: &Answer, path: &Path, exec: &Exec) -> Result<(), SaveE
 ///
 /// # Errors
 /// Those of [`save`].
-pub fn save_pictures(path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, SaveError> {
+pub fn save_pictures(path: &Path, drawn: &DrawnFigures, exec: &Exec) -> Result<Saved, SaveError> {
     let pictures = encode(&drawn.pictures, exec)?;
     save_files(path, PICTURES, &pictures, exec)?;
     Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
@@ -86,17 +91,17 @@ pub fn save_pictures(path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, S
 ///
 /// # Errors
 /// Whatever the system refuses, or the set cannot be shown so. Nothing is left behind.
-pub fn save_set(answer: &Answer, path: &Path, kind: set::Kind, exec: &Exec) -> Result<(), SaveError> {
+pub fn save_set(answer: &Answer, path: &Path, kind: set::SetFileKind, exec: &Exec) -> Result<(), SaveError> {
     let heights = layers(answer).heights;
-    if answer.grid().is_none() && kind == set::Kind::Table {
+    if answer.grid().is_none() && kind == set::SetFileKind::Table {
         return Ok(write::file(path, &cells(&answer.acceptance, None, exec)?, false)?);
     }
     let view = View::new(&answer.acceptance, heights, None, &PoseError::default())?;
     Ok(write::file(path, &kind.bytes(&view, &answer.acceptance, heights, exec)?, false)?)
 }
 
-fn layers(answer: &Answer) -> zarr::Layers<'_> {
-    zarr::Layers {
+fn layers(answer: &Answer) -> zarr::CellLayers<'_> {
+    zarr::CellLayers {
         heights: answer.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]),
         watersheds: answer.by_products.watersheds.as_ref(),
     }
@@ -122,7 +127,7 @@ pub fn save_slices(
             &folder.join(of.name() + ".zarr"),
             &whole,
             &slice.acceptance,
-            &zarr::Layers::default(),
+            &zarr::CellLayers::default(),
             exec,
         )?;
     }
@@ -149,7 +154,7 @@ pub enum Target<'a> {
     /// Pictures alone, into a folder.
     Pictures(&'a Path),
     /// The set alone, as a file for another program.
-    Set(&'a Path, set::Kind),
+    Set(&'a Path, set::SetFileKind),
 }
 
 impl Target<'_> {

@@ -17,7 +17,7 @@ pub const ENDINGS: [&str; 3] = ["vti", "vtp", "csv"];
 
 /// What is in such a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum SetFileKind {
     /// Every cell, for VTK.
     Image,
     /// The border of the accepted cells, for VTK.
@@ -26,7 +26,7 @@ pub enum Kind {
     Table,
 }
 
-impl Kind {
+impl SetFileKind {
     /// The kind that the end of a name stands for.
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?;
@@ -63,10 +63,10 @@ mod tests {
 
     #[test]
     fn the_end_of_a_name_says_the_kind() {
-        let kind = |name: &str| Kind::of(Path::new(name));
+        let kind = |name: &str| SetFileKind::of(Path::new(name));
         assert_eq!(
             ["a.vti", "b/a.VTP", "a.csv"].map(kind),
-            [Kind::Image, Kind::Border, Kind::Table].map(Some)
+            [SetFileKind::Image, SetFileKind::Border, SetFileKind::Table].map(Some)
         );
         assert_eq!(["a", "vti", "a.vti.gz", "a.zarr"].map(kind), [None; 4]);
     }

@@ -1,6 +1,6 @@
 //! Slices as versioned JSON, text and tables.
 
-use super::schema::{AcceptanceReport, Axis, OnaaReport, WarningReport, axes};
+use super::schema::{AcceptanceReport, AxisReport, OnaaReport, WarningReport, axes};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Slices of a design; fields as in [`Report`](super::Report).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SlicesFound {
+pub struct SlicesResult {
     /// Settings that change the result.
     #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
     pub settings: SlicesSettings,
@@ -28,7 +28,7 @@ pub struct SlicesFound {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceReport {
     /// The two errors that vary.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<AxisReport>,
     /// Name of the method that decided the outcomes.
     pub method: String,
     /// The accepted set.
@@ -39,7 +39,7 @@ pub struct SliceReport {
     pub warnings: Vec<WarningReport>,
 }
 
-impl SlicesFound {
+impl SlicesResult {
     /// Of slices that were computed with these settings.
     pub fn of(found: &Slices, settings: SlicesSettings) -> Self {
         Self {
@@ -86,7 +86,7 @@ impl SlicesFound {
     }
 }
 
-impl Subject for SlicesFound {
+impl Subject for SlicesResult {
     const KIND: &'static str = "slices";
 
     fn document(&self, _: &Design) -> Document {
@@ -167,7 +167,7 @@ mod tests {
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });
         let found = Slices { slices: vec![slice], estimate };
         let report =
-            SlicesReport::new(&design, SlicesFound::of(&found, SlicesSettings::default()), Vec::new(), None);
+            SlicesReport::new(&design, SlicesResult::of(&found, SlicesSettings::default()), Vec::new(), None);
         let text = report.table();
         for line in text.lines() {
             assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");

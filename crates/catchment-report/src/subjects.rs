@@ -37,7 +37,7 @@ subjects! {
     /// The Sum against ρ, the centre of rotation and the aspect ratio.
     SensitivityReport = catchment_study::sensitivity::Sensitivity;
     /// Slices of the area of acceptance.
-    SlicesReport = crate::SlicesFound;
+    SlicesReport = crate::SlicesResult;
     /// The probability that robots dock.
     SuccessesReport = catchment_study::success::Success;
     /// Every combination of values of a sweep.

@@ -1,7 +1,7 @@
 //! The trajectory of a pose from first contact to its end: as versioned JSON, text, and tables for programs.
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
@@ -22,7 +22,7 @@ const LINES: usize = 24;
 const STILL: f64 = 1e-9;
 
 /// A path, with its head.
-pub type TraceReport = Envelope<TraceBody>;
+pub type TraceReport = ReportEnvelope<TraceBody>;
 
 /// A trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -62,7 +62,7 @@ pub struct WaypointReport {
     pub touches: Vec<Touch>,
 }
 
-impl Body for TraceBody {
+impl ReportBody for TraceBody {
     const KIND: &'static str = "trace";
 }
 

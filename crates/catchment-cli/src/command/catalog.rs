@@ -7,7 +7,7 @@ use crate::output::{FileArgs, OutputArgs, style, to_stdout};
 use crate::result_args::{ResultArgs, no_picture};
 use catchment::problem::Problem;
 use catchment::report::document::text;
-use catchment::report::{Body, csv, figure as figures};
+use catchment::report::{ReportBody, csv, figure as figures};
 use catchment_systems::catalog::report::{CatalogBody, SystemBody};
 use catchment_systems::catalog::{
     Catalog, Condition, DESIGNS, DesignText, Order, Table, UnknownError, classify, figure,

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::result_args::ResultArgs;
 use catchment::design::{Quantity, SourceText, load};
 use catchment::exec::Stopwatch;
-use catchment::report::Body;
+use catchment::report::ReportBody;
 use catchment::report::schema::Timing;
 use catchment::run::Requirement;
 use catchment_systems::chain::file::{ChainFile, MOST_MODULES};

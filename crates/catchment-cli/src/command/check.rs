@@ -6,7 +6,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, no_picture};
 use catchment::problem::ProblemError;
-use catchment::report::{Body, CheckBody, CheckReport, figure};
+use catchment::report::{CheckBody, CheckReport, ReportBody, figure};
 use clap::Args;
 
 /// Check a design file: all problems at once, with their places

@@ -16,9 +16,9 @@ use crate::result_args::{Pictures, ResultArgs};
 use catchment::landscape::Resolution;
 use catchment::method::Method;
 use catchment::problem::Problem;
-use catchment::report::compare::{Found, Source, compare};
+use catchment::report::compare::{ComparisonResult, ComparisonSource, compare};
 use catchment::report::figure::FigureError;
-use catchment::report::{Body, ComparisonBody};
+use catchment::report::{ComparisonBody, ReportBody};
 use catchment::run::Run;
 use clap::Args;
 use std::path::PathBuf;
@@ -60,7 +60,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     let sources = sources(args)?;
     let running = args.exec.start()?;
     let exec = &running.exec;
-    let Found { report, picture } = compare(sources, args.resolution, output.wants_picture(), exec)?;
+    let ComparisonResult { report, picture } =
+        compare(sources, args.resolution, output.wants_picture(), exec)?;
     let pictures = match picture {
         Some(Ok(picture)) => vec![(NAME, picture)],
         Some(Err(FigureError::Empty { what })) => {
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// What A and B are, and who decides the designs among them.
-fn sources(args: &CompareArgs) -> Result<[Source; 2], Failure> {
+fn sources(args: &CompareArgs) -> Result<[ComparisonSource; 2], Failure> {
     let refused =
         |message: &str, help: &str| Err(Failure::with_help(message.to_owned(), Some(help.to_owned())));
     let paths = [&args.first, args.second.as_ref().unwrap_or(&args.first)];
@@ -92,16 +93,16 @@ fn sources(args: &CompareArgs) -> Result<[Source; 2], Failure> {
     }
     let mut methods = args.methods.iter().cloned();
     let all = args.methods.first().cloned().unwrap_or_default();
-    let mut source = |k: usize| -> Result<Source, Failure> {
+    let mut source = |k: usize| -> Result<ComparisonSource, Failure> {
         let path = paths[k].clone();
         if stored[k] {
-            return Ok(Source::Stored(path));
+            return Ok(ComparisonSource::Stored(path));
         }
         let problem = Problem::open(&path)?.checked()?;
         let method = methods.next().unwrap_or_else(|| all.clone());
         method.applies_to(problem.design())?;
         let run = Box::new(Run::by(method));
-        Ok(Source::Fresh { source: path.display().to_string(), problem: Box::new(problem), run })
+        Ok(ComparisonSource::Fresh { source: path.display().to_string(), problem: Box::new(problem), run })
     };
     Ok([source(0)?, source(1)?])
 }

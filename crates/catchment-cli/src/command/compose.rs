@@ -9,7 +9,7 @@ use crate::source::read_table;
 use catchment::design::{Quantity, QuantityUnit};
 use catchment::exec::Exec;
 use catchment::report::figure::ensure_fits;
-use catchment::report::{Body, csv};
+use catchment::report::{ReportBody, csv};
 use catchment::terminal::shown;
 use catchment_systems::compose::read::{Read, ReadError, read};
 use catchment_systems::compose::{

@@ -8,7 +8,7 @@ use crate::signals;
 use crate::source::read_table;
 use catchment::exec::Exec;
 use catchment::report::folder::{encode, save_files};
-use catchment::report::{Body, csv};
+use catchment::report::{ReportBody, csv};
 use catchment_systems::latch::figure::{Drawn, chart};
 use catchment_systems::latch::force::Forces;
 use catchment_systems::latch::{Latch, LatchBody, TableBody, connector, drawing, press, report, table};

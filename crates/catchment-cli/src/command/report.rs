@@ -13,7 +13,7 @@ use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::method::Method;
 use catchment::problem::Problem;
-use catchment::report::page::{Parts, Studies};
+use catchment::report::page::{PageParts, Studies};
 use catchment::run::{Over, Run};
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
@@ -102,7 +102,7 @@ impl MadeArgs {
     }
 
     /// Takes from the page of a stored result what it shall not have, and notes what the result does not hold.
-    fn of_stored(&self, parts: &mut Parts) {
+    fn of_stored(&self, parts: &mut PageParts) {
         let Studies { jams, window, .. } = self.studies();
         parts.jams.take_if(|_| !jams);
         parts.window.take_if(|_| !window);
@@ -125,9 +125,9 @@ impl MadeArgs {
     }
 
     /// The parts of the page of a problem.
-    pub(super) fn parts(&self, problem: &Problem, exec: &Exec) -> Result<Parts, Failure> {
+    pub(super) fn parts(&self, problem: &Problem, exec: &Exec) -> Result<PageParts, Failure> {
         let answer = self.run()?.on(problem, exec).map_err(|error| refused(problem, error))?;
-        let mut parts = Parts::of(&answer);
+        let mut parts = PageParts::of(&answer);
         parts.study(self.studies(), exec)?;
         Ok(parts)
     }
@@ -147,7 +147,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
             return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }
         let running = args.exec.start()?;
-        let mut parts = Parts::stored(path, &running.exec)?;
+        let mut parts = PageParts::stored(path, &running.exec)?;
         args.made.of_stored(&mut parts);
         // Slices at zero are exact motions, which no result holds.
         let planes = args.made.studies().planes;

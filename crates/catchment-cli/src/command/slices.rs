@@ -11,7 +11,7 @@ use catchment::document::Subject;
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
 use catchment::report::schema::Timing;
-use catchment::report::{SlicesFound, SlicesReport, figure, save_slices};
+use catchment::report::{SlicesReport, SlicesResult, figure, save_slices};
 use catchment::study::slices::{SlicesError, SlicesSettings, ensure_fits, run as compute};
 use catchment::terminal::escaped;
 use clap::Args;
@@ -56,7 +56,7 @@ fn pair(text: &str) -> Result<[Dof; 2], String> {
 
 pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let output = args.result.check(SlicesFound::KIND, true)?;
+    let output = args.result.check(SlicesResult::KIND, true)?;
     let problem = args.design.problem()?;
     let settings =
         SlicesSettings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };
@@ -73,7 +73,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let found = compute(&problem, &settings, exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let design = problem.design();
-    let report = SlicesReport::new(design, SlicesFound::of(&found, settings), Vec::new(), Some(timing));
+    let report = SlicesReport::new(design, SlicesResult::of(&found, settings), Vec::new(), Some(timing));
     let picture = || Ok(vec![("slices", figure::slice_matrix(design, problem.connector(), &found)?)]);
     let groups = |folder: &Path| {
         save_slices(&found, folder, &problem, &report, exec)?;

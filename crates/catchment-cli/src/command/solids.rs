@@ -6,7 +6,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, warnings};
 use catchment::method::partition::{PartitionSettings, SolidShape, shapes};
-use catchment::report::{Body, SolidsBody, SolidsReport, figure, solids};
+use catchment::report::{ReportBody, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 

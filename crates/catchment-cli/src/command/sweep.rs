@@ -16,7 +16,7 @@ use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::report::figure::{sweep_map, sweep_outlines};
 use catchment::report::schema::Timing;
-use catchment::report::{Parts, SweepReport};
+use catchment::report::{FinishedDesigns, SweepReport};
 use catchment::run::{Over, Run, RunError};
 use catchment::study::sweep::{Keep, Nowhere, Sweep, SweepAxis, SweepError, SweepPlan, SweepSettings};
 use catchment::terminal::{escaped, shown};
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     let exec = &running.exec;
     let base = plan.base().clone();
-    let parts = args.result.output().map(Parts::beside);
+    let parts = args.result.output().map(FinishedDesigns::beside);
     let (kept_so_far, designs) = (parts.clone(), plan.len());
     running.may_be_left_after(move || tell_kept(kept_so_far.as_ref(), designs));
     let found = compute(plan, parts.as_ref(), exec)?;
@@ -121,7 +121,7 @@ fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
 }
 
 /// Computes what is not kept; says what is where it stops.
-fn compute(plan: SweepPlan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep, Failure> {
+fn compute(plan: SweepPlan, parts: Option<&FinishedDesigns>, exec: &Exec) -> Result<Sweep, Failure> {
     let Some(parts) = parts else { return plan.run(&Nowhere, exec).map_err(refused) };
     let designs = plan.len();
     let keep: &dyn Keep = parts;
@@ -132,7 +132,7 @@ fn compute(plan: SweepPlan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep,
 }
 
 /// Says which designs are finished and kept.
-fn tell_kept(parts: Option<&Parts>, designs: usize) {
+fn tell_kept(parts: Option<&FinishedDesigns>, designs: usize) {
     let Some((parts, finished)) = parts.map(|parts| (parts, parts.count())).filter(|(_, count)| *count > 0)
     else {
         return;

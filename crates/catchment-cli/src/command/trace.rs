@@ -12,7 +12,7 @@ use catchment::method::drop::Bench;
 use catchment::method::kinematic::LeverPose;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
-use catchment::report::{Body, FirstContact, LeverReport, TraceBody, TraceReport, figure, gltf, vtk};
+use catchment::report::{FirstContact, LeverReport, ReportBody, TraceBody, TraceReport, figure, gltf, vtk};
 use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end

@@ -14,10 +14,10 @@ use catchment::exec::Exec;
 use catchment::method::Method;
 use catchment::method::zraa::{AcceptedSquare, Nilsson, Zraa, ZraaSettings, run as accepted_offsets};
 use catchment::problem::{Draft, Problem};
-use catchment::report::figure::{self, Face};
+use catchment::report::figure::{self, PicturedDesign};
 use catchment::report::schema::Timing;
 use catchment::report::{
-    AcceptedOffsets, Body, FacesBody, FacesError, FacesReport, TrialsReport, ZraaBody, ZraaReport,
+    AcceptedOffsets, FacesBody, FacesError, FacesReport, ReportBody, TrialsReport, ZraaBody, ZraaReport,
 };
 use catchment::study::trials::{self, Trials};
 use clap::Args;
@@ -117,7 +117,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let report = FacesReport::new(both().map(body).collect())
         .map_err(|error| Failure::with_help(error.to_string(), Some("--free x does".to_owned())))?;
     output.finish(&report, || {
-        let shown: Vec<Face<'_>> = both().filter_map(Correction::face).collect();
+        let shown: Vec<PicturedDesign<'_>> = both().filter_map(Correction::face).collect();
         Ok(figure::faces(&shown)?)
     })
 }
@@ -141,9 +141,9 @@ impl Correction {
         AcceptedOffsets::new(problem.design(), &self.zraa, &self.square, self.nilsson.as_ref())
     }
 
-    fn face<'a>((problem, correction): (&'a Problem, &'a Self)) -> Option<Face<'a>> {
+    fn face<'a>((problem, correction): (&'a Problem, &'a Self)) -> Option<PicturedDesign<'a>> {
         let Zraa::Interval { from, to, .. } = correction.zraa else { return None };
-        Some(Face {
+        Some(PicturedDesign {
             design: problem.design(),
             connector: problem.connector(),
             pair: problem.pair(),

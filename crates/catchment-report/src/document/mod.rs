@@ -19,7 +19,7 @@ pub use html::html;
 pub use markdown::markdown;
 pub use text::{Style, lines, text};
 
-use crate::envelope::{Body, Envelope};
+use crate::envelope::{ReportBody, ReportEnvelope};
 use crate::schema::{Timing, WarningReport};
 use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design};
@@ -41,9 +41,9 @@ pub struct OfDesign<T> {
 }
 
 /// The report of a result of a design.
-pub type ReportOf<T> = Envelope<OfDesign<T>>;
+pub type ReportOf<T> = ReportEnvelope<OfDesign<T>>;
 
-impl<T: Subject> Body for OfDesign<T> {
+impl<T: Subject> ReportBody for OfDesign<T> {
     const KIND: &'static str = T::KIND;
 }
 
@@ -70,7 +70,7 @@ impl<T: Subject> ReportOf<T> {
 }
 
 /// A report that people read.
-pub trait Printed: Body {
+pub trait Printed: ReportBody {
     /// What it is about: the name of the design, as a rule.
     fn title(&self) -> Cow<'_, str>;
 
@@ -97,7 +97,7 @@ impl<T: Subject> Printed for OfDesign<T> {
     }
 }
 
-impl<B: Printed> Envelope<B> {
+impl<B: Printed> ReportEnvelope<B> {
     /// The whole description, with title and warnings.
     pub fn described(&self) -> Described<'_> {
         self.described_with(|_| None)

@@ -1,6 +1,6 @@
 //! The pictures of an answer.
 
-use super::{FigureError, Picture, Placement};
+use super::{FigureError, MovingHalfPose, Picture};
 use crate::Report;
 use crate::folder::SaveError;
 use catchment_core::contact::Pair;
@@ -14,14 +14,14 @@ const LIFT: f64 = 0.6;
 
 /// What was drawn, by name, and what was left out, with the reason.
 #[derive(Debug, Clone, Default)]
-pub struct Drawn {
+pub struct DrawnFigures {
     /// Name, without ending, and picture.
     pub pictures: Vec<(&'static str, Picture)>,
     /// What was left out.
     pub left_out: Vec<String>,
 }
 
-impl Drawn {
+impl DrawnFigures {
     /// Draws all that the answer has: maps need two free errors, and slices finer than the grid are followed exactly.
     ///
     /// # Errors
@@ -73,7 +73,7 @@ impl Drawn {
             drawn.keep("jams", super::jams(design, found, connector))?;
         }
         exec.check()?;
-        let lifted = Placement::mated(design, LIFT);
+        let lifted = MovingHalfPose::mated(design, LIFT);
         drawn.keep("section", super::section(design, connector, &lifted))?;
         drawn.keep("solids", super::solids(design, connector, &lifted))?;
         exec.check()?;
@@ -111,7 +111,7 @@ mod tests {
     fn slices_have_one_resolution() {
         let problem = Problem::of(design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect())).unwrap();
         let run = Run { over: Over::Grid("6".parse().unwrap()), sample: Sample::None, ..Run::default() };
-        let drawn = Drawn::of(&run.on(&problem, &Exec::new()).unwrap(), &Exec::new()).unwrap();
+        let drawn = DrawnFigures::of(&run.on(&problem, &Exec::new()).unwrap(), &Exec::new()).unwrap();
         let (_, picture) = drawn.pictures.iter().find(|(name, _)| *name == "slices").unwrap();
         let document = resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
         let sizes: Vec<(u32, u32)> = document

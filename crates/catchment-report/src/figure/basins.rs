@@ -9,7 +9,7 @@
 //!             ≈0   …            ∞
 //! ```
 
-use super::draw::axis::{Frame, Scale, Units, short, tick_label};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short, tick_label};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n, width_of};
 use super::{FigureError, Picture, headline};
@@ -85,7 +85,7 @@ pub fn basins(
         (lo, hi) = (lo.min(tolerance), hi.max(tolerance));
     }
     let design = &report.design;
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let (left, width) = (78.0, 548.0);
     let scale = Depths { left, width, lo: (lo / MARGIN).max(hi * 10f64.powf(-DECADES)), hi: hi * MARGIN };
     let top = Rect { x: left, y: 101.0, w: width, h: 210.0 };
@@ -118,16 +118,16 @@ pub fn basins(
             svg.rect(Rect { x: a, w: b - a, ..rect }, r##"fill="#e9f1f7""##);
         }
     }
-    let nothing = || Scale::new(String::new(), 0.0, 0.0, false);
+    let nothing = || AxisScale::new(String::new(), 0.0, 0.0, false);
     staircase(
         &mut svg,
         hierarchy,
         total,
         &scale,
-        &Frame {
+        &PlotFrame {
             rect: top,
             x: nothing(),
-            y: Scale::new("accepted [%]".to_owned(), 0.0, highest(hierarchy, total), false),
+            y: AxisScale::new("accepted [%]".to_owned(), 0.0, highest(hierarchy, total), false),
         },
     );
     dots(&mut svg, acceptance, hierarchy, &scale, bottom);
@@ -167,7 +167,7 @@ fn highest(hierarchy: &Hierarchy, total: f64) -> f64 {
     (1.15 * 100.0 * most as f64 / total).clamp(1.0, 100.0)
 }
 
-fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, frame: &Frame) {
+fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, frame: &PlotFrame) {
     let steps = &hierarchy.staircase;
     let right = scale.right();
     let mut path = String::new();

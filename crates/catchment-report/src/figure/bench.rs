@@ -2,7 +2,7 @@
 
 use super::super::{PlanReport, ValidationReport};
 use super::Picture;
-use super::draw::axis::{Frame, Scale, Units, short};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
 use super::draw::colour::{self, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline, width_of};
 use catchment_core::acceptance::Outcome;
@@ -108,7 +108,7 @@ fn draw(
     panels: &[Panel],
     words: &[(Shape, bool, &str)],
 ) -> Picture {
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let [left, top] = [70.0, 118.0];
     let height = if panels.iter().any(|panel| panel.across.len() > 1) { SIDE } else { LOW };
     let (columns, rows) = (panels.len().clamp(1, PER_ROW), panels.len().div_ceil(PER_ROW).max(1));
@@ -171,7 +171,7 @@ fn key(svg: &mut Svg, met: &[&(Shape, bool, &str)], has_region: bool, note: &str
 }
 
 /// The errors that a panel does not show: `yaw = 20°`, `yaw = 20° ± 0.3°`, and of a projection `yaw −5 … 12 deg`.
-fn beside(panel: &Panel, units: &Units) -> String {
+fn beside(panel: &Panel, units: &ShownUnits) -> String {
     let words = |(axis, ends): &(Dof, [f64; 2])| {
         let shown = |value: f64| short(value * units.factor(*axis));
         if panel.is_projection() {
@@ -192,16 +192,16 @@ fn region() -> Rgb {
     mix(colour::outcome(Outcome::Aligned), [0xff, 0xff, 0xff], LIGHT)
 }
 
-fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &Units, rect: Rect) {
-    let nothing = || Scale::new(String::new(), 0.0, 1.0, false);
+fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: Rect) {
+    let nothing = || AxisScale::new(String::new(), 0.0, 1.0, false);
     let scale = |k: usize| {
         panel.across.get(k).map_or_else(nothing, |(axis, [lo, hi])| {
             let factor = units.factor(*axis);
-            Scale::new(units.label(*axis), lo * factor, hi * factor, axis.is_rotation())
+            AxisScale::new(units.label(*axis), lo * factor, hi * factor, axis.is_rotation())
         })
     };
     let planar = panel.across.len() > 1;
-    let frame = Frame { rect, x: scale(0), y: scale(1) };
+    let frame = PlotFrame { rect, x: scale(0), y: scale(1) };
     let (others, size) = (beside(panel, units), if panel.is_projection() { TICK } else { LABEL });
     svg.text([rect.x, rect.y - 8.0], size, Anchor::Start, INK, &others);
     if !panel.is_projection() {

@@ -2,7 +2,7 @@
 //! for every piece.
 
 use super::super::solids::{bounds, in_words, is_angle};
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, CURVES, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::solid::{self, Body};
@@ -84,7 +84,7 @@ fn flat(svg: &mut Svg, rect: Rect, design: &Design, shape: &Solids, [lo, hi]: [D
     const MARGIN: f64 = 0.06;
     // Of x and y the one along which it lies.
     let across = usize::from(hi.x == lo.x);
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let range = |k: usize| {
         let (lo, hi) = (lo[k], hi[k]);
         let margin = MARGIN * (hi - lo).max(f64::MIN_POSITIVE);
@@ -95,7 +95,7 @@ fn flat(svg: &mut Svg, rect: Rect, design: &Design, shape: &Solids, [lo, hi]: [D
     // Lengths are drawn alike in both directions.
     let (rect, x) = if is_angle(name) {
         let degrees = |angle: f64| angle.to_degrees();
-        (rect, Scale::new(format!("{name} [deg]"), degrees(left), degrees(right), true))
+        (rect, AxisScale::new(format!("{name} [deg]"), degrees(left), degrees(right), true))
     } else {
         let scale = (rect.w / (right - left)).min(rect.h / (high - low));
         let (w, h) = (scale * (right - left), scale * (high - low));
@@ -103,7 +103,7 @@ fn flat(svg: &mut Svg, rect: Rect, design: &Design, shape: &Solids, [lo, hi]: [D
         (rect, units.length(name, left, right))
     };
     let factor = if is_angle(name) { 1f64.to_degrees() } else { units.lengths() };
-    let frame = Frame { rect, x, y: units.length("z", low, high) };
+    let frame = PlotFrame { rect, x, y: units.length("z", low, high) };
     for solid in &shape.solids {
         let [fill, edge] = colours(shape, solid).map(hex);
         let style = format!(r#"fill="{fill}" fill-opacity="0.5" stroke="{edge}" stroke-width="1.2" {JOIN}"#);

@@ -1,7 +1,7 @@
 //! Docking probability of drop tests: over two errors, with the border of exact motions; and over speed.
 
-use super::draw::axis::{Frame, Units, short};
-use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
+use super::draw::axis::{PlotFrame, ShownUnits, short};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex, sequential};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture};
@@ -80,9 +80,9 @@ fn story(report: &ChanceReport) -> Vec<String> {
 }
 
 fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) {
-    let units = Units::of(&report.design);
+    let units = ShownUnits::of(&report.design);
     let [first, second] = [&map.axes[0], &map.axes[1]];
-    let frame = Frame { rect, x: units.axis(first), y: units.axis(second) };
+    let frame = PlotFrame { rect, x: units.axis(first), y: units.axis(second) };
     let (w, h) = (rect.w / first.cells as f64, rect.h / second.cells as f64);
     let corner = |i: usize, j: usize| [rect.x + w * i as f64, rect.y + rect.h - h * j as f64];
     svg.begin_clip(rect);
@@ -156,10 +156,10 @@ fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
     // Speeds where there are any, else what they are multiplied by.
     let has_speed = report.curve.iter().all(|at| at.speed > 0.0);
     let place = |times: f64, speed: f64| if has_speed { speed * factor } else { times };
-    let mut points: Vec<Point> = report
+    let mut points: Vec<ChartPoint> = report
         .curve
         .iter()
-        .map(|at| Point {
+        .map(|at| ChartPoint {
             x: place(at.factor, at.speed),
             y: percent(at.probability),
             interval: Some(at.ci95.map(percent)),
@@ -169,17 +169,21 @@ fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
     if let (Some(overall), Some(x)) = (&report.overall, declared)
         && report.curve.iter().all(|at| (at.factor - 1.0).abs() > 1e-9)
     {
-        points.push(Point { x, y: percent(overall.probability), interval: Some(overall.ci95.map(percent)) });
+        points.push(ChartPoint {
+            x,
+            y: percent(overall.probability),
+            interval: Some(overall.ci95.map(percent)),
+        });
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
     let ends = [points.first(), points.last()].map(|point| point.map_or(1.0, |point| point.x));
-    let mut lines = vec![Line { name: "trials".to_owned(), colour: CURVES[0], points }];
+    let mut lines = vec![ChartLine { name: "trials".to_owned(), colour: CURVES[0], points }];
     if let Some(overall) = &report.overall {
         let interval = Some(overall.quasi_static_ci95.map(percent));
-        let points = ends.map(|x| Point { x, y: percent(overall.quasi_static), interval }).to_vec();
+        let points = ends.map(|x| ChartPoint { x, y: percent(overall.quasi_static), interval }).to_vec();
         let name =
             if report.settings.held { "exact motions, the limit of no speed" } else { "exact motions" };
-        lines.push(Line { name: name.to_owned(), colour: EXACT, points });
+        lines.push(ChartLine { name: name.to_owned(), colour: EXACT, points });
     }
     let x_label =
         if has_speed { format!("mean approach speed [{unit}]") } else { "all speeds times".to_owned() };

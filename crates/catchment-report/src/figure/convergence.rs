@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Point, Spacing, legend};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Spacing, legend};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::ConvergenceReport;
@@ -22,21 +22,22 @@ pub fn convergence(report: &ConvergenceReport) -> Picture {
         short(100.0 * report.settings.tolerance)
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    let lines = |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
-        let line = |(k, s): (usize, &RefinementSequence)| Line {
-            name: s.method.to_owned(),
-            colour: CURVES[k % CURVES.len()],
-            points: s
-                .trials
-                .iter()
-                .map(|t| {
-                    let (value, interval) = y(t);
-                    Point { x: x(t), y: value, interval }
-                })
-                .collect(),
+    let lines =
+        |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<ChartLine> {
+            let line = |(k, s): (usize, &RefinementSequence)| ChartLine {
+                name: s.method.to_owned(),
+                colour: CURVES[k % CURVES.len()],
+                points: s
+                    .trials
+                    .iter()
+                    .map(|t| {
+                        let (value, interval) = y(t);
+                        ChartPoint { x: x(t), y: value, interval }
+                    })
+                    .collect(),
+            };
+            report.sequences.iter().enumerate().map(line).collect()
         };
-        report.sequences.iter().enumerate().map(line).collect()
-    };
     let sum_label = format!("Sum [{}]", report.unit);
     let places = [(left, top), (right, top), (left, below), (right, below)];
     for (k, (x, y)) in places.into_iter().enumerate() {

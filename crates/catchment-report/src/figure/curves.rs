@@ -1,7 +1,7 @@
 //! Curves over a logarithmic scale, in charts side by side.
 
 use super::Picture;
-use super::draw::chart::{Chart, Line, Point, Spacing, legend};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
@@ -67,11 +67,11 @@ pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
     Picture::of(svg)
 }
 
-fn lines(curves: &[Curve]) -> Vec<Line> {
-    let line = |(k, curve): (usize, &Curve)| Line {
+fn lines(curves: &[Curve]) -> Vec<ChartLine> {
+    let line = |(k, curve): (usize, &Curve)| ChartLine {
         name: curve.name.clone(),
         colour: if curve.is_reference { REFERENCE } else { CURVES[k % CURVES.len()] },
-        points: curve.points.iter().map(|p| Point { x: p.x, y: p.y, interval: p.interval }).collect(),
+        points: curve.points.iter().map(|p| ChartPoint { x: p.x, y: p.y, interval: p.interval }).collect(),
     };
     curves.iter().enumerate().map(line).collect()
 }

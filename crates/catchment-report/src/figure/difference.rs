@@ -1,7 +1,7 @@
 //! Differences of two acceptances: a map of two errors, or the slices through zero of every pair in a
 //! triangle.
 
-use super::draw::axis::{Units, short};
+use super::draw::axis::{ShownUnits, short};
 use super::draw::colour::{Rgb, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::map::{self, Map};
@@ -57,7 +57,7 @@ pub fn difference(
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story(comparison, sliced));
     // A single map sits in the middle over its legend.
     let left = if rows.len() == 1 { LEFT + 0.5 * (width - LEFT - side - 28.0) } else { LEFT };
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let at = |axes: &[Dof], dof: Dof| axes.iter().position(|axis| *axis == dof).unwrap_or(0);
     for (pair, map) in pairs.iter().zip(&maps) {
         let (column, row) = (at(columns, pair[0]), at(rows, pair[1]));

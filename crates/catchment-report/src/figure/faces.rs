@@ -13,9 +13,9 @@
 
 use super::super::zraa::NilssonReport;
 use super::draw::arrow::dimension;
-use super::draw::axis::{Frame, Scale, Units, short};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
-use super::section::{Placement, View, approach_axis};
+use super::section::{MovingHalfPose, View, approach_axis};
 use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
 use catchment_core::contact::Pair;
@@ -40,7 +40,7 @@ const INSIDE: f64 = 1.0 - 1e-9;
 
 /// One design of the picture.
 #[derive(Debug, Clone, Copy)]
-pub struct Face<'a> {
+pub struct PicturedDesign<'a> {
     /// The design.
     pub design: &'a Design,
     /// Its halves.
@@ -53,7 +53,7 @@ pub struct Face<'a> {
     pub nilsson: Option<Nilsson>,
 }
 
-impl Face<'_> {
+impl PicturedDesign<'_> {
     /// The larger of the two offsets.
     fn offset(&self) -> f64 {
         let [from, to] = self.reach;
@@ -61,19 +61,19 @@ impl Face<'_> {
     }
 
     /// Where the moving half touches at the largest offset.
-    fn shifted(&self) -> Result<Placement, FigureError> {
+    fn shifted(&self) -> Result<MovingHalfPose, FigureError> {
         let x = self.offset() * INSIDE;
         let pose = CorPose { lateral: DVec2::new(x, 0.0), rotation: DMat3::IDENTITY };
         let height =
             self.pair.height(&pose).ok_or(FigureError::Empty { what: "the halves pass each other by" })?;
-        Ok(Placement { error: PoseError { x, ..PoseError::default() }, height })
+        Ok(MovingHalfPose { error: PoseError { x, ..PoseError::default() }, height })
     }
 }
 
 /// A view that lies in a column of the picture.
 struct Column<'a> {
-    face: &'a Face<'a>,
-    rows: [(View<'a>, Placement); 2],
+    face: &'a PicturedDesign<'a>,
+    rows: [(View<'a>, MovingHalfPose); 2],
     /// Left side and width.
     x: f64,
     width: f64,
@@ -83,13 +83,14 @@ struct Column<'a> {
 ///
 /// # Errors
 /// If a design cannot be cut along the approach axis, or its halves pass each other by.
-pub fn faces(faces: &[Face<'_>]) -> Result<Picture, FigureError> {
+pub fn faces(faces: &[PicturedDesign<'_>]) -> Result<Picture, FigureError> {
     let mut columns = Vec::new();
     for face in faces {
-        let mated = Placement::mated(face.design, 0.0);
+        let mated = MovingHalfPose::mated(face.design, 0.0);
         let shifted = face.shifted()?;
-        let view =
-            |placement: &Placement| View::new(face.design, face.connector, std::slice::from_ref(placement));
+        let view = |placement: &MovingHalfPose| {
+            View::new(face.design, face.connector, std::slice::from_ref(placement))
+        };
         let rows = [(view(&mated)?, mated), (view(&shifted)?, shifted)];
         columns.push(Column { face, rows, x: 0.0, width: 0.0 });
     }
@@ -139,19 +140,25 @@ pub fn faces(faces: &[Face<'_>]) -> Result<Picture, FigureError> {
 }
 
 /// The frame of a view in its column: `scale` SVG units to the D, the face centre at the height of the row.
-fn frame_of(face: &Face<'_>, view: &View<'_>, rect: Rect, scale: f64, [lo, hi]: [f64; 2]) -> Frame {
-    let factor = Units::of(face.design).lengths();
+fn frame_of(
+    face: &PicturedDesign<'_>,
+    view: &View<'_>,
+    rect: Rect,
+    scale: f64,
+    [lo, hi]: [f64; 2],
+) -> PlotFrame {
+    let factor = ShownUnits::of(face.design).lengths();
     let half = rect.w / scale / 2.0;
-    let range = |lo: f64, hi: f64| Scale::new(String::new(), lo * factor, hi * factor, false);
-    Frame { rect, x: range(view.middle() - half, view.middle() + half), y: range(lo, hi) }
+    let range = |lo: f64, hi: f64| AxisScale::new(String::new(), lo * factor, hi * factor, false);
+    PlotFrame { rect, x: range(view.middle() - half, view.middle() + half), y: range(lo, hi) }
 }
 
 /// D below the mated halves, and H beside them.
-fn size(svg: &mut Svg, face: &Face<'_>, view: &View<'_>, frame: &Frame) {
+fn size(svg: &mut Svg, face: &PicturedDesign<'_>, view: &View<'_>, frame: &PlotFrame) {
     let below = frame.rect.y + frame.rect.h + 4.0;
     let [left, right] = [-0.5, 0.5].map(|x| view.place(frame, [x, 0.0])[0]);
     dimension(svg, [left, below], [right, below], INK);
-    let units = Units::of(face.design);
+    let units = ShownUnits::of(face.design);
     let told = face
         .design
         .unit
@@ -167,7 +174,7 @@ fn size(svg: &mut Svg, face: &Face<'_>, view: &View<'_>, frame: &Frame) {
 }
 
 /// The offset below the shifted halves, from face centre to face centre.
-fn offset(svg: &mut Svg, face: &Face<'_>, view: &View<'_>, frame: &Frame) {
+fn offset(svg: &mut Svg, face: &PicturedDesign<'_>, view: &View<'_>, frame: &PlotFrame) {
     let shift = face.offset();
     let below = frame.rect.y + frame.rect.h + 6.0;
     let [fixed, moving] = [0.0, shift].map(|x| view.place(frame, [x, 0.0])[0]);
@@ -176,7 +183,7 @@ fn offset(svg: &mut Svg, face: &Face<'_>, view: &View<'_>, frame: &Frame) {
         svg.line([x, frame.rect.y], [x, below + 4.0], &style);
     }
     dimension(svg, [fixed, below], [moving, below], INK);
-    let units = Units::of(face.design);
+    let units = ShownUnits::of(face.design);
     let in_d = rounded(shift).replace('-', "−");
     let told = face.design.unit.map_or_else(
         || format!("{in_d} D"),
@@ -222,10 +229,10 @@ mod tests {
             })
             .collect();
         let pairs: Vec<Pair> = made.iter().map(|(d, c, _)| Pair::new(c, &d.alignment)).collect();
-        let shown: Vec<Face<'_>> = made
+        let shown: Vec<PicturedDesign<'_>> = made
             .iter()
             .zip(&pairs)
-            .map(|((design, connector, reach), pair)| Face {
+            .map(|((design, connector, reach), pair)| PicturedDesign {
                 design,
                 connector,
                 pair,

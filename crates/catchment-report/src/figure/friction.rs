@@ -10,7 +10,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
 use crate::FrictionReport;
@@ -66,22 +66,22 @@ pub fn friction(report: &FrictionReport) -> Picture {
 const MARKED: f64 = 0.95;
 
 /// The poses that dock without friction and still dock, and those that the static test says do, as shares of the first.
-fn lines(report: &FrictionReport) -> Vec<Line> {
+fn lines(report: &FrictionReport) -> Vec<ChartLine> {
     let percent = |share: f64| 100.0 * share;
     let base = report.curve.first().map_or(0, |rung| rung.aligned.count);
     let rungs = || report.curve.iter().filter(|_| base > 0);
     let still = rungs().map(|rung| {
         let kept = Share::of(base - rung.lost, base);
-        Point { x: rung.friction, y: percent(kept.share), interval: Some(kept.ci95.map(percent)) }
+        ChartPoint { x: rung.friction, y: percent(kept.share), interval: Some(kept.ci95.map(percent)) }
     });
-    let by_statics = rungs().map(|rung| Point {
+    let by_statics = rungs().map(|rung| ChartPoint {
         x: rung.friction,
         y: percent(rung.static_docks as f64 / base as f64),
         interval: None,
     });
     vec![
-        Line { name: "static test".to_owned(), colour: STATIC, points: by_statics.collect() },
-        Line { name: "docks still, followed".to_owned(), colour: CURVES[0], points: still.collect() },
+        ChartLine { name: "static test".to_owned(), colour: STATIC, points: by_statics.collect() },
+        ChartLine { name: "docks still, followed".to_owned(), colour: CURVES[0], points: still.collect() },
     ]
 }
 

@@ -1,6 +1,6 @@
 //! The height of first contact over two errors, with contours and the border of the accepted set.
 
-use super::draw::axis::{Frame, Units};
+use super::draw::axis::{PlotFrame, ShownUnits};
 use super::draw::colour::{self, Rgb};
 use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::map::{self, Map};
@@ -23,7 +23,7 @@ pub fn heights(
     at: &PoseError,
 ) -> Result<Picture, FigureError> {
     let (design, story) = (&report.design, headline(report));
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let map = Map::of(acceptance, pair, at)?;
     let side = 400.0;
     let (width, total) = ((width_of(&story, LABEL) + 48.0).max(580.0), 578.0);
@@ -47,7 +47,7 @@ pub(super) fn panel(
     svg: &mut Svg,
     map: &Map,
     rect: Rect,
-    units: &Units,
+    units: &ShownUnits,
     height: &dyn Fn(usize) -> f64,
 ) -> Result<(), FigureError> {
     let field: Vec<f64> = map.slice.cells.iter().map(|i| height(*i) * units.lengths()).collect();
@@ -61,7 +61,7 @@ pub(super) fn panel(
         if h.is_finite() { colour::sequential((h - lo) / span) } else { colour::NOTHING }
     };
     let colours: Vec<Rgb> = field.iter().map(paint).collect();
-    let frame: Frame = map.frame(rect, units);
+    let frame: PlotFrame = map.frame(rect, units);
     map.paint(svg, &frame, &colours)?;
     let shape = [map.slice.axes[0].cells, map.slice.axes[1].cells];
     let scale = units.length("z", lo / units.lengths(), (lo + span) / units.lengths());

@@ -2,7 +2,7 @@
 
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::plane::{Patch, Plane};
-use super::section::{Placement, View, describe};
+use super::section::{MovingHalfPose, View, describe};
 use super::solid::touching;
 use super::{FigureError, Picture};
 use crate::RestsReport;
@@ -35,7 +35,7 @@ const TOP: f64 = 76.0;
 struct Panel<'a> {
     head: String,
     contacts: &'a [FeatureContact],
-    placement: Placement,
+    placement: MovingHalfPose,
     /// Below what touches and where.
     tail: Vec<String>,
 }
@@ -84,7 +84,7 @@ fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> 
             tenths(jam.of_box.share)
         ),
         contacts: &jam.contacts,
-        placement: Placement { error: jam.pose, height: jam.height_d },
+        placement: MovingHalfPose { error: jam.pose, height: jam.height_d },
         tail: tail.into_iter().collect(),
     }
 }
@@ -128,7 +128,7 @@ fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestPlace) -> P
     Panel {
         head: format!("rest {number}:  basin {} of the box{docked}", tenths(rest.of_box.share)),
         contacts: &rest.contacts,
-        placement: Placement { error: rest.pose, height: rest.height_d },
+        placement: MovingHalfPose { error: rest.pose, height: rest.height_d },
         tail,
     }
 }

@@ -2,10 +2,10 @@
 //! halves.
 
 use super::draw::arrow::arrow;
-use super::draw::axis::Frame;
+use super::draw::axis::PlotFrame;
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
-use super::section::{Placement, View, describe};
+use super::section::{MovingHalfPose, View, describe};
 use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
@@ -27,7 +27,7 @@ pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Resul
     let Some((lever, height)) = start.lever.zip(start.height) else {
         return Err(FigureError::Empty { what: "no corner touches an edge" });
     };
-    let placement = Placement { error: start.error, height };
+    let placement = MovingHalfPose { error: start.error, height };
     let pivots = [lever.corner_pivot, lever.edge_pivot].map(|p| p.to_array());
     let view = View::new(design, connector, std::slice::from_ref(&placement))?.with(&pivots);
     let (width, height) = view.fit(520.0, 560.0);
@@ -55,7 +55,7 @@ pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Resul
 }
 
 /// Lever arms, normal and angles.
-fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
+fn marks(svg: &mut Svg, view: &View<'_>, frame: &PlotFrame, lever: &Lever) {
     let at = |p: DVec2| DVec2::from_array(view.place(frame, p.to_array()));
     let [corner, edge, contact] = [lever.corner_pivot, lever.edge_pivot, lever.contact].map(at);
     // Down the picture is up in the world.

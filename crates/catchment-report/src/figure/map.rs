@@ -1,6 +1,6 @@
 //! Maps over two errors: the common part of slices, height maps and the overview.
 
-use super::draw::axis::{Frame, Units, short};
+use super::draw::axis::{PlotFrame, ShownUnits, short};
 use super::draw::colour::{self, Rgb, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 use super::{FigureError, raster};
@@ -34,18 +34,18 @@ impl Map {
         Ok(self)
     }
 
-    pub(super) fn frame(&self, rect: Rect, units: &Units) -> Frame {
-        Frame { rect, x: units.axis(&self.slice.axes[0]), y: units.axis(&self.slice.axes[1]) }
+    pub(super) fn frame(&self, rect: Rect, units: &ShownUnits) -> PlotFrame {
+        PlotFrame { rect, x: units.axis(&self.slice.axes[0]), y: units.axis(&self.slice.axes[1]) }
     }
 
     /// The fixed errors in words; empty if there are none.
-    pub(super) fn fixed(&self, units: &Units) -> String {
+    pub(super) fn fixed(&self, units: &ShownUnits) -> String {
         let values: Vec<String> = self.slice.at.iter().map(|(dof, v)| units.value(*dof, *v)).collect();
         values.join(", ")
     }
 
     /// What it shows, and where it lies among the errors that are fixed, in at most this width: `…, slice through zero`, `…, slice at yaw = 1.5°`.
-    pub(super) fn heading(&self, shows: &str, units: &Units, width: f64) -> String {
+    pub(super) fn heading(&self, shows: &str, units: &ShownUnits, width: f64) -> String {
         if self.slice.at.is_empty() {
             return shows.to_owned();
         }
@@ -68,14 +68,14 @@ impl Map {
     }
 
     /// One pixel per cell, first axis to the right, second upwards.
-    pub(super) fn paint(&self, svg: &mut Svg, frame: &Frame, colours: &[Rgb]) -> Result<(), FigureError> {
+    pub(super) fn paint(&self, svg: &mut Svg, frame: &PlotFrame, colours: &[Rgb]) -> Result<(), FigureError> {
         let [width, height] = [self.slice.axes[0].cells, self.slice.axes[1].cells];
         svg.image(frame.rect, &raster::cells(width, height, colours)?, true);
         Ok(())
     }
 
     /// The border of the accepted set: along cell borders, runs joined.
-    pub(super) fn border(&self, frame: &Frame) -> String {
+    pub(super) fn border(&self, frame: &PlotFrame) -> String {
         let [width, height] = [self.slice.axes[0].cells, self.slice.axes[1].cells];
         let accepted = |i: usize, j: usize| self.outcomes[i + j * width] == Outcome::Aligned;
         let place = |i: usize, j: usize| {
@@ -113,8 +113,8 @@ fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
 pub(super) fn outcomes(
     svg: &mut Svg,
     map: &Map,
-    frame: &Frame,
-    units: &Units,
+    frame: &PlotFrame,
+    units: &ShownUnits,
     onaa: &[Interval],
 ) -> Result<(), FigureError> {
     inside(svg, map, frame, units, onaa)?;
@@ -126,8 +126,8 @@ pub(super) fn outcomes(
 pub(super) fn inside(
     svg: &mut Svg,
     map: &Map,
-    frame: &Frame,
-    units: &Units,
+    frame: &PlotFrame,
+    units: &ShownUnits,
     onaa: &[Interval],
 ) -> Result<(), FigureError> {
     let colours: Vec<Rgb> = map.outcomes.iter().map(|o| colour::outcome(*o)).collect();
@@ -139,7 +139,7 @@ pub(super) fn inside(
 }
 
 /// Thin lines through zero.
-pub(super) fn zero_lines(svg: &mut Svg, frame: &Frame) {
+pub(super) fn zero_lines(svg: &mut Svg, frame: &PlotFrame) {
     let r = frame.rect;
     let style = r##"stroke="#ffffff" stroke-opacity="0.75" stroke-width="0.9""##;
     if frame.x.lo < 0.0 && frame.x.hi > 0.0 {
@@ -151,7 +151,7 @@ pub(super) fn zero_lines(svg: &mut Svg, frame: &Frame) {
 }
 
 /// The cube's shadow on the two axes; dashed where the slice does not cut it.
-fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &[Interval]) {
+fn cube(svg: &mut Svg, map: &Map, frame: &PlotFrame, units: &ShownUnits, onaa: &[Interval]) {
     let range = |dof: Dof| onaa.iter().find(|i| i.axis == dof).map(|i| (i.lo, i.hi));
     let [a, b] = [map.slice.axes[0].dof, map.slice.axes[1].dof];
     let (Some((x0, x1)), Some((y0, y1))) = (range(a), range(b)) else { return };
@@ -239,15 +239,15 @@ const BETWEEN: f64 = 22.0;
 /// A colour bar with ticks, to the right of a map.
 pub(super) fn colour_bar(
     svg: &mut Svg,
-    map: &Frame,
-    scale: super::draw::axis::Scale,
+    map: &PlotFrame,
+    scale: super::draw::axis::AxisScale,
 ) -> Result<(), FigureError> {
     const STEPS: usize = 128;
     let rect = Rect { x: map.rect.x + map.rect.w + 14.0, y: map.rect.y, w: 12.0, h: map.rect.h };
     let colours: Vec<Rgb> = (0..STEPS).map(|k| colour::sequential(k as f64 / (STEPS - 1) as f64)).collect();
     svg.image(rect, &raster::cells(1, STEPS, &colours)?, false);
     svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-opacity="0.5" stroke-width="0.8""#));
-    let frame = Frame { rect, x: scale.clone(), y: scale };
+    let frame = PlotFrame { rect, x: scale.clone(), y: scale };
     for z in frame.y.ticks((rect.h / 42.0) as usize) {
         let y = frame.py(z);
         svg.line([rect.x + rect.w, y], [rect.x + rect.w + 4.0, y], r#"stroke="black" stroke-width="0.7""#);
@@ -264,7 +264,7 @@ pub(super) fn colour_bar(
 
 /// Path data of the lines where a field over cell centres takes `level`: marching squares, straight in each square.
 /// Squares with a corner that is not finite are left out.
-pub(super) fn contour(frame: &Frame, [width, height]: [usize; 2], field: &[f64], level: f64) -> String {
+pub(super) fn contour(frame: &PlotFrame, [width, height]: [usize; 2], field: &[f64], level: f64) -> String {
     let at = |i: usize, j: usize| field[i + j * width];
     let place = |i: f64, j: f64| {
         let r = frame.rect;
@@ -319,8 +319,8 @@ mod tests {
         Map { slice: GridSlice { axes, at: Vec::new(), cells: (0..outcomes.len()).collect() }, outcomes }
     }
 
-    fn frame(map: &Map, side: f64) -> Frame {
-        let units = Units::of(&crate::schema::testing::design(catchment_core::pose::DofSet::ALL));
+    fn frame(map: &Map, side: f64) -> PlotFrame {
+        let units = ShownUnits::of(&crate::schema::testing::design(catchment_core::pose::DofSet::ALL));
         map.frame(Rect { x: 0.0, y: 0.0, w: side, h: side }, &units)
     }
 

@@ -8,11 +8,11 @@
 //!          x   y  roll pitch
 //! ```
 
-use super::draw::axis::{Units, short};
+use super::draw::axis::{ShownUnits, short};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
 use super::map::{self, Map};
-use super::section::Placement;
+use super::section::MovingHalfPose;
 use super::{FigureError, Picture, solid};
 use crate::schema::OnaaReport;
 use catchment_core::acceptance::Outcome;
@@ -58,7 +58,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
 
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let at = |axes: &[Dof], dof: Dof| axes.iter().position(|a| *a == dof).unwrap_or(0);
     for slice in &found.slices {
         let (column, row) = (at(&columns, slice.axes[0]), at(&rows, slice.axes[1]));
@@ -87,7 +87,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
     if rows.len() >= 3 && columns.len() == rows.len() {
         let size = extent(rows.len() / 2, GAP[0]) + 0.5 * side;
         let corner = Rect { x: width - 20.0 - size, y: 66.0, w: size, h: size * 0.92 };
-        let apart = Placement { error: SHOWN, height: 0.9 - design.alignment.center_of_rotation };
+        let apart = MovingHalfPose { error: SHOWN, height: 0.9 - design.alignment.center_of_rotation };
         solid::panel(&mut svg, corner, design, connector, &apart)?;
     }
     legend(&mut svg, found, height - 20.0);

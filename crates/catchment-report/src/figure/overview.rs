@@ -1,9 +1,9 @@
 //! The overview of a design: its halves, its area of acceptance, its heights, side by side.
 
-use super::draw::axis::Units;
+use super::draw::axis::ShownUnits;
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
 use super::map::{self, Legend, Map};
-use super::section::Placement;
+use super::section::MovingHalfPose;
 use super::{FigureError, Picture, cube, headline, heights, solid};
 use crate::Report;
 use catchment_core::acceptance::Acceptance;
@@ -28,7 +28,7 @@ pub fn overview(
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
     let design = &report.design;
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
     let cube = cube(report);
     let (side, top) = (300.0, 96.0);
@@ -43,7 +43,7 @@ pub fn overview(
     let only_free = |dof: Dof, value: f64| if design.alignment.free.contains(dof) { value } else { 0.0 };
     let error =
         PoseError { x: only_free(Dof::X, error.x), pitch: only_free(Dof::Pitch, error.pitch), ..error };
-    let apart = Placement { error, height: 0.9 - design.alignment.center_of_rotation };
+    let apart = MovingHalfPose { error, height: 0.9 - design.alignment.center_of_rotation };
     heading(&mut svg, 24.0, "the two halves");
     let picture = Rect { x: 14.0, y: top, w: side + 10.0, h: side + 30.0 };
     solid::panel(&mut svg, picture, design, connector, &apart)?;

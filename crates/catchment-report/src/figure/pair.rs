@@ -2,7 +2,7 @@
 //! at first contact if there is no valid mated pose.
 
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use super::section::{Placement, View};
+use super::section::{MovingHalfPose, View};
 use super::solid::panel;
 use super::{FigureError, Picture};
 use catchment_core::contact::face::misdrawn;
@@ -20,7 +20,7 @@ pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
     const TOP: f64 = 86.0;
     const HEIGHT: f64 = 400.0;
     let (design, connector) = (problem.design(), problem.connector());
-    let mated = Placement::mated(design, 0.0);
+    let mated = MovingHalfPose::mated(design, 0.0);
     // Where the halves do not touch as they should, that is drawn where they do.
     let height = problem.pair().mated_height();
     let meets = (height - mated.height).abs() <= CONTACT_TOLERANCE;
@@ -28,7 +28,7 @@ pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
     let (mated, words) = if is_mated {
         (mated, "mated, cut along the approach")
     } else {
-        (Placement { height, ..mated }, "at first contact, cut along the approach")
+        (MovingHalfPose { height, ..mated }, "at first contact, cut along the approach")
     };
     let view = View::new(design, connector, std::slice::from_ref(&mated))?;
     let (width, height) = view.fit(460.0, HEIGHT);
@@ -39,7 +39,7 @@ pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
     for (rect, words) in [(space, "drawn apart"), (cut, words)] {
         svg.text([rect.x, TOP - 18.0], LABEL, Anchor::Start, SOFT, words);
     }
-    panel(&mut svg, space, design, connector, &Placement::mated(design, LIFT))?;
+    panel(&mut svg, space, design, connector, &MovingHalfPose::mated(design, LIFT))?;
     let frame = view.frame(cut);
     view.halves(&mut svg, &frame, &mated);
     frame.draw(&mut svg);

@@ -1,7 +1,7 @@
 //! The partition over two errors: every part of the contact space in the colour of its outcome, and the exact
 //! outline of the accepted set.
 
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::map::{Legend, Map, zero_lines};
@@ -27,7 +27,7 @@ pub fn partition(
     let [first, second] = dofs[..] else {
         return Err(FigureError::Empty { what: "a partition is drawn over two errors" });
     };
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let rect = Rect { x: 78.0, y: 109.0, w: 520.0, h: 520.0 };
     let numbers = headline(report);
     let width = (rect.x + rect.w + 34.0).max(width_of(&numbers, LABEL) + 48.0);
@@ -49,9 +49,9 @@ pub fn partition(
     svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
     let scale = |dof| {
         let half = design.alignment.half_range(dof) * units.factor(dof);
-        Scale::new(units.label(dof), -half, half, dof.is_rotation())
+        AxisScale::new(units.label(dof), -half, half, dof.is_rotation())
     };
-    let frame = Frame { rect, x: scale(first), y: scale(second) };
+    let frame = PlotFrame { rect, x: scale(first), y: scale(second) };
     let at =
         |corner: &[f64; 2]| frame.at([corner[0] * units.factor(first), corner[1] * units.factor(second)]);
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::outcome(Outcome::Missed))));

@@ -6,7 +6,7 @@
 //!                                                         it passes through as many contacts as it can
 //! ```
 
-use super::section::{Placement, cut};
+use super::section::{MovingHalfPose, cut};
 use catchment_core::connector::{Connector, Half};
 use catchment_core::design::Design;
 use glam::{DMat3, DVec2, DVec3};
@@ -120,7 +120,7 @@ impl Plane {
     pub(super) fn showing(
         design: &Design,
         connector: &Connector,
-        placement: &Placement,
+        placement: &MovingHalfPose,
         patches: &[Patch],
     ) -> Self {
         /// Less than so much of what the usual cut shows of a half is next to nothing.
@@ -268,7 +268,7 @@ mod tests {
     fn where_next_to_nothing_would_be_seen_the_usual_cut_is_shown() {
         use crate::schema::testing::design;
         let design = design([Dof::X, Dof::Pitch].into_iter().collect());
-        let mated = Placement::mated(&design, 0.0);
+        let mated = MovingHalfPose::mated(&design, 0.0);
         for y in [-0.5, 0.5] {
             let slopes = [-1.0, 1.0].map(|x| patch(&[[0.4 * x, y, 0.2]], [-0.7 * x, 0.0, 0.7]));
             assert_eq!(Plane::through(&pyramid(), &slopes).offsets, [y]);
@@ -283,7 +283,7 @@ mod tests {
     fn a_profile_that_varies_is_looked_for() {
         use crate::schema::testing::design;
         let design = design(catchment_core::pose::DofSet::ALL);
-        let mated = Placement::mated(&design, 0.0);
+        let mated = MovingHalfPose::mated(&design, 0.0);
         let text = "[connector]\nfamily = \"x-face-3d\"\n";
         let problem = catchment_core::problem::Problem::of(
             catchment_core::design::read(text, ".".as_ref()).unwrap().design,

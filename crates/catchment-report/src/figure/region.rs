@@ -2,7 +2,7 @@
 //! interval of a single axis.
 
 use super::Picture;
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use catchment_core::design::Design;
@@ -17,7 +17,7 @@ const MARGIN: f64 = 1.15;
 
 /// Draws a zero-rotation area of acceptance over x and y, or over its one axis.
 pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture {
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let left = 78.0;
     let (rect, measure) = match zraa {
         Zraa::Region { area, .. } => {
@@ -36,7 +36,7 @@ pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture 
     let half = MARGIN * reach(zraa).max(LEAST);
     let scale = |dof: Dof| {
         let half = half * units.factor(dof);
-        Scale::new(units.label(dof), -half, half, false)
+        AxisScale::new(units.label(dof), -half, half, false)
     };
     // Neighbouring polygons share borders; a line of their own colour leaves no seam between them.
     let colour = hex(colour::outcome(catchment_core::acceptance::Outcome::Aligned));
@@ -44,7 +44,7 @@ pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture 
     let dotted = format!(r#"stroke="{SOFT}" stroke-width="0.9" stroke-dasharray="2 3""#);
     let frame = match zraa {
         Zraa::Region { polygons, .. } => {
-            let frame = Frame { rect, x: scale(Dof::X), y: scale(Dof::Y) };
+            let frame = PlotFrame { rect, x: scale(Dof::X), y: scale(Dof::Y) };
             let factor = units.lengths();
             for polygon in polygons {
                 let corners = polygon.iter().map(|p| frame.at([p.x * factor, p.y * factor]));
@@ -63,8 +63,8 @@ pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture 
         }
         Zraa::Interval { axis, from, to } => {
             // A scale without extent has no ticks: there is nothing to read upwards.
-            let nothing = Scale::new(String::new(), 0.0, 0.0, false);
-            let frame = Frame { rect, x: scale(*axis), y: nothing };
+            let nothing = AxisScale::new(String::new(), 0.0, 0.0, false);
+            let frame = PlotFrame { rect, x: scale(*axis), y: nothing };
             let [from, to] = [from, to].map(|v| frame.px(v * units.factor(*axis)));
             svg.rect(Rect { x: from, w: to - from, ..rect }, &style);
             frame

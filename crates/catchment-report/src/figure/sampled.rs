@@ -10,7 +10,7 @@
 //! A plot shows all poses, whatever their other errors: dots of different outcomes may lie next to each
 //! other.
 
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::matrix::{BELOW, GAP, LEFT, TOP};
@@ -41,10 +41,10 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
     let mut svg = Svg::new(width, height);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    let units = Units::of(&report.design);
+    let units = ShownUnits::of(&report.design);
     let scale = |dof: Dof| {
         let half = alignment.half_range(dof) * units.factor(dof);
-        Scale::new(units.label(dof), -half, half, dof.is_rotation())
+        AxisScale::new(units.label(dof), -half, half, dof.is_rotation())
     };
     // What docks is drawn last.
     let order = [Outcome::Missed, Outcome::Undecided, Outcome::Jammed, Outcome::Aligned];
@@ -53,7 +53,7 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
             let (x, y) = (free[column], free[row]);
             let at = [column as f64 * (side + GAP[0]), (row - 1) as f64 * (side + GAP[1])];
             let rect = Rect { x: LEFT + at[0], y: TOP + at[1], w: side, h: side };
-            let frame = Frame { rect, x: scale(x), y: scale(y) };
+            let frame = PlotFrame { rect, x: scale(x), y: scale(y) };
             for outcome in order {
                 for (k, _) in acceptance.outcomes.iter().enumerate().filter(|(_, found)| **found == outcome) {
                     let error = acceptance.domain.pose(k).to_array();
@@ -89,7 +89,7 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
 /// The outline of the window.
 const WINDOW: &str = r##"fill="none" stroke="#1b2430" stroke-width="1.4""##;
 
-fn window(svg: &mut Svg, report: &Report, frame: &Frame, units: &Units, [x, y]: [Dof; 2]) {
+fn window(svg: &mut Svg, report: &Report, frame: &PlotFrame, units: &ShownUnits, [x, y]: [Dof; 2]) {
     let Some(found) = &report.centered else { return };
     let half =
         |dof: Dof| found.bounds.iter().find(|side| side.axis == dof).map(|side| side.hi * units.factor(dof));

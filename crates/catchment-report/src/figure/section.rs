@@ -4,7 +4,7 @@
 //! The usual cut is y = 0. If facets lie in that plane or no solid meets it (a connector in two layers), a
 //! cut through the middle of either side is drawn, the farther one paler behind the nearer one.
 
-use super::draw::axis::{Frame, Scale, Units, short};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
 use super::draw::colour::{self, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use super::plane::{Patch, Plane, Stroke};
@@ -17,14 +17,14 @@ use std::collections::BTreeMap;
 
 /// Where the moving half is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
+pub struct MovingHalfPose {
     /// The pose error of its face centre.
     pub error: PoseError,
     /// z of its centre of rotation in the world frame, in D; aligned it is at −cor.
     pub height: f64,
 }
 
-impl Placement {
+impl MovingHalfPose {
     /// The mated pose lifted by `lift` D.
     pub fn mated(design: &Design, lift: f64) -> Self {
         Self { error: PoseError::default(), height: lift - design.alignment.center_of_rotation }
@@ -68,7 +68,7 @@ pub(super) fn seen_apart(shown: &mut Vec<[f64; 2]>, at: [f64; 2]) -> bool {
 pub fn section(
     design: &Design,
     connector: &Connector,
-    placement: &Placement,
+    placement: &MovingHalfPose,
 ) -> Result<Picture, FigureError> {
     let view = View::new(design, connector, std::slice::from_ref(placement))?;
     let (width, height) = view.fit(460.0, 420.0);
@@ -88,7 +88,7 @@ pub fn panel(
     rect: Rect,
     design: &Design,
     connector: &Connector,
-    placement: &Placement,
+    placement: &MovingHalfPose,
 ) -> Result<(), FigureError> {
     let view = View::new(design, connector, std::slice::from_ref(placement))?;
     let frame = view.frame(rect);
@@ -98,8 +98,8 @@ pub fn panel(
 }
 
 /// The errors that are not zero, in words.
-pub(super) fn describe(design: &Design, placement: &Placement) -> String {
-    let units = Units::of(design);
+pub(super) fn describe(design: &Design, placement: &MovingHalfPose) -> String {
+    let units = ShownUnits::of(design);
     let words: Vec<String> = Dof::ALL
         .into_iter()
         .zip(placement.error.to_array())
@@ -117,7 +117,7 @@ pub(super) fn describe(design: &Design, placement: &Placement) -> String {
 pub(super) struct View<'a> {
     design: &'a Design,
     connector: &'a Connector,
-    units: Units,
+    units: ShownUnits,
     /// Where it is cut.
     plane: Plane,
     /// Turns the world so that the cuts are at constant y.
@@ -131,7 +131,7 @@ impl<'a> View<'a> {
     pub(super) fn new(
         design: &'a Design,
         connector: &'a Connector,
-        placements: &[Placement],
+        placements: &[MovingHalfPose],
     ) -> Result<Self, FigureError> {
         Self::along(design, connector, placements, Plane::across(connector))
     }
@@ -140,7 +140,7 @@ impl<'a> View<'a> {
     pub(super) fn along(
         design: &'a Design,
         connector: &'a Connector,
-        placements: &[Placement],
+        placements: &[MovingHalfPose],
         plane: Plane,
     ) -> Result<Self, FigureError> {
         let turn = plane.turn();
@@ -167,7 +167,7 @@ impl<'a> View<'a> {
         Ok(Self {
             design,
             connector,
-            units: Units::of(design),
+            units: ShownUnits::of(design),
             plane,
             turn,
             lo: lo.map(|v| v - margin),
@@ -210,17 +210,17 @@ impl<'a> View<'a> {
     }
 
     /// Fills a rectangle of any proportions: the view is widened to keep lengths equal in both directions.
-    pub(super) fn frame(&self, rect: Rect) -> Frame {
+    pub(super) fn frame(&self, rect: Rect) -> PlotFrame {
         let [w, h] = self.size();
         let scale = (rect.w / w).min(rect.h / h);
         let [mx, mz] = [0, 1].map(|k| 0.5 * (self.lo[k] + self.hi[k]));
         let [rx, rz] = [0.5 * rect.w / scale, 0.5 * rect.h / scale];
-        let axis = |name: &str, lo: f64, hi: f64| -> Scale { self.units.length(name, lo, hi) };
-        Frame { rect, x: axis(&self.plane.name(), mx - rx, mx + rx), y: axis("z", mz - rz, mz + rz) }
+        let axis = |name: &str, lo: f64, hi: f64| -> AxisScale { self.units.length(name, lo, hi) };
+        PlotFrame { rect, x: axis(&self.plane.name(), mx - rx, mx + rx), y: axis("z", mz - rz, mz + rz) }
     }
 
     /// Both halves, the moving one at `placement`, with its face centre and centre of rotation.
-    pub(super) fn halves(&self, svg: &mut Svg, frame: &Frame, placement: &Placement) {
+    pub(super) fn halves(&self, svg: &mut Svg, frame: &PlotFrame, placement: &MovingHalfPose) {
         svg.begin_clip(frame.rect);
         approach_axis(svg, frame);
         self.fixed(svg, frame);
@@ -229,7 +229,7 @@ impl<'a> View<'a> {
         svg.end();
     }
 
-    pub(super) fn fixed(&self, svg: &mut Svg, frame: &Frame) {
+    pub(super) fn fixed(&self, svg: &mut Svg, frame: &PlotFrame) {
         self.half(
             svg,
             frame,
@@ -239,7 +239,7 @@ impl<'a> View<'a> {
         );
     }
 
-    pub(super) fn moving(&self, svg: &mut Svg, frame: &Frame, placement: &Placement) {
+    pub(super) fn moving(&self, svg: &mut Svg, frame: &PlotFrame, placement: &MovingHalfPose) {
         let colours = [colour::MOVING, colour::MOVING_EDGE];
         self.half(svg, frame, &self.connector.moving, placement.of(self.design), colours);
     }
@@ -247,7 +247,7 @@ impl<'a> View<'a> {
     fn half(
         &self,
         svg: &mut Svg,
-        frame: &Frame,
+        frame: &PlotFrame,
         half: &Half,
         (r, face): (DMat3, DVec3),
         [fill, edge]: [Rgb; 2],
@@ -268,17 +268,17 @@ impl<'a> View<'a> {
     }
 
     /// Where a point of the world is seen.
-    pub(super) fn seen(&self, frame: &Frame, point: DVec3) -> [f64; 2] {
+    pub(super) fn seen(&self, frame: &PlotFrame, point: DVec3) -> [f64; 2] {
         let point = self.turn * point;
         self.place(frame, [point.x, point.z])
     }
 
-    pub(super) fn place(&self, frame: &Frame, [x, z]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn place(&self, frame: &PlotFrame, [x, z]: [f64; 2]) -> [f64; 2] {
         frame.at([x * self.units.lengths(), z * self.units.lengths()])
     }
 
     /// Where the halves touch: full in the plane of the cut, hollow where that is seen through to.
-    pub(super) fn contacts(&self, svg: &mut Svg, frame: &Frame, patches: &[Patch]) {
+    pub(super) fn contacts(&self, svg: &mut Svg, frame: &PlotFrame, patches: &[Patch]) {
         for patch in patches {
             let in_cut = |stroke: &Stroke| self.plane.offsets.iter().any(|y| stroke.holds(*y, CLOSE));
             let mut strokes = patch.strokes(&self.turn);
@@ -305,7 +305,7 @@ impl<'a> View<'a> {
     }
 
     /// ● the face centre, ⊕ the centre of rotation, of the moving half.
-    fn marks(&self, svg: &mut Svg, frame: &Frame, placement: &Placement) {
+    fn marks(&self, svg: &mut Svg, frame: &PlotFrame, placement: &MovingHalfPose) {
         let (rotation, face) = placement.of(self.design);
         let cor = face - face_from_cor(&rotation, self.design.alignment.center_of_rotation);
         let [at_face, at_cor] = [face, cor].map(|p| self.seen(frame, p));
@@ -329,7 +329,7 @@ impl<'a> View<'a> {
 }
 
 /// The dash-dotted line x = 0.
-pub(super) fn approach_axis(svg: &mut Svg, frame: &Frame) {
+pub(super) fn approach_axis(svg: &mut Svg, frame: &PlotFrame) {
     let x = frame.px(0.0);
     let style =
         format!(r#"stroke="{SOFT}" stroke-opacity="0.6" stroke-width="0.9" stroke-dasharray="9 3 2 3""#);
@@ -447,7 +447,7 @@ mod tests {
         let mut design = design([Dof::X, Dof::Pitch].into_iter().collect::<DofSet>());
         design.alignment.center_of_rotation = 0.5;
         let error = PoseError { x: 0.25, pitch: 0.3, ..PoseError::default() };
-        let placement = Placement { error, height: 0.05 };
+        let placement = MovingHalfPose { error, height: 0.05 };
         for (name, connector) in
             [("section-v", v_face()), ("section-x", x_face()), ("section-pyramid", pyramid())]
         {

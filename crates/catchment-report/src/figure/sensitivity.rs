@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Mark, Point, Spacing};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::SensitivityReport;
@@ -20,13 +20,16 @@ pub fn sensitivity(report: &SensitivityReport) -> Picture {
         report.settings.poses.unwrap_or_default()
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    let point = |p: &catchment_study::sensitivity::AtRho| Point {
+    let point = |p: &catchment_study::sensitivity::AtRho| ChartPoint {
         x: p.rotation_length,
         y: p.sum,
         interval: Some(p.ci95),
     };
-    let line =
-        Line { name: String::new(), colour: CURVES[0], points: report.over_rho.iter().map(point).collect() };
+    let line = ChartLine {
+        name: String::new(),
+        colour: CURVES[0],
+        points: report.over_rho.iter().map(point).collect(),
+    };
     let chart = Chart {
         rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
         x_label: "ρ, characteristic length [D]",

@@ -1,6 +1,6 @@
 //! Outcomes over pairs of errors, with all others fixed.
 
-use super::draw::axis::{Units, short};
+use super::draw::axis::{ShownUnits, short};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::map::{self, Legend, Map, pairs_or_all};
 use super::{FigureError, Picture, cube, headline};
@@ -34,7 +34,7 @@ pub fn slices(
     };
     let maps = pairs.iter().map(drawn).collect::<Result<Vec<Map>, FigureError>>()?;
     let (design, cube, story) = (&report.design, cube(report), headline(report));
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let columns = match maps.len() {
         1 => 1,
         2 | 4 => 2,

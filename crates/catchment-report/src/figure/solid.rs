@@ -7,7 +7,7 @@
 
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use super::section::{Placement, contact_mark, describe, seen_apart};
+use super::section::{MovingHalfPose, contact_mark, describe, seen_apart};
 use super::{FigureError, Picture, raster};
 use catchment_core::connector::{Connector, Surface};
 use catchment_core::design::Design;
@@ -18,7 +18,11 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// If neither half has a facet.
-pub fn solids(design: &Design, connector: &Connector, placement: &Placement) -> Result<Picture, FigureError> {
+pub fn solids(
+    design: &Design,
+    connector: &Connector,
+    placement: &MovingHalfPose,
+) -> Result<Picture, FigureError> {
     let (width, height) = (560.0, 520.0);
     let mut svg = Svg::new(width, height);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
@@ -42,7 +46,7 @@ pub fn panel(
     rect: Rect,
     design: &Design,
     connector: &Connector,
-    placement: &Placement,
+    placement: &MovingHalfPose,
 ) -> Result<(), FigureError> {
     touching(svg, rect, design, connector, placement, &[])
 }
@@ -56,7 +60,7 @@ pub(super) fn touching(
     rect: Rect,
     design: &Design,
     connector: &Connector,
-    placement: &Placement,
+    placement: &MovingHalfPose,
     points: &[DVec3],
 ) -> Result<(), FigureError> {
     let (rotation, face) = placement.of(design);
@@ -380,7 +384,7 @@ mod tests {
     fn solids_of_every_kind() {
         let design = design(DofSet::ALL);
         let error = PoseError { x: 0.2, y: -0.1, roll: 0.1, pitch: 0.2, yaw: 0.3 };
-        let placement = Placement { error, height: 0.75 };
+        let placement = MovingHalfPose { error, height: 0.75 };
         for (name, connector) in [("solid-v", v_face()), ("solid-x", x_face()), ("solid-pyramid", pyramid())]
         {
             look(name, &solids(&design, &connector, &placement).unwrap());
@@ -444,7 +448,7 @@ mod tests {
             catchment_core::connector::Half::default(),
         );
         let design = design(DofSet::ALL);
-        let placement = Placement::mated(&design, 0.0);
+        let placement = MovingHalfPose::mated(&design, 0.0);
         assert!(matches!(solids(&design, &nothing, &placement), Err(FigureError::Empty { .. })));
     }
 }

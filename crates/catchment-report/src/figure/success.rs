@@ -2,8 +2,8 @@
 //! them.
 
 use super::Picture;
-use super::draw::axis::{Units, short};
-use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
+use super::draw::axis::{ShownUnits, short};
+use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use crate::SuccessesReport;
@@ -50,37 +50,37 @@ pub fn success(report: &SuccessesReport) -> Picture {
     Picture::of(svg)
 }
 
-fn lines(report: &SuccessesReport) -> Vec<Line> {
+fn lines(report: &SuccessesReport) -> Vec<ChartLine> {
     let percent = |share: f64| 100.0 * share;
-    let of = |(k, robot): (usize, &RobotDocking)| Line {
+    let of = |(k, robot): (usize, &RobotDocking)| ChartLine {
         name: robot.robot.clone(),
         colour: CURVES[k % CURVES.len()],
         points: robot
             .curve
             .iter()
             .filter(|at| at.factor >= LEAST)
-            .map(|at| Point {
+            .map(|at| ChartPoint {
                 x: at.factor,
                 y: percent(at.probability),
                 interval: Some(at.ci95.map(percent)),
             })
             .collect(),
     };
-    let mut lines: Vec<Line> = report.robots.iter().take(MOST).enumerate().map(of).collect();
+    let mut lines: Vec<ChartLine> = report.robots.iter().take(MOST).enumerate().map(of).collect();
     let factors = || lines.iter().flat_map(|line| line.points.iter().map(|point| point.x));
     let ends = [factors().fold(f64::INFINITY, f64::min), factors().fold(0.0, f64::max)];
     let required = percent(report.settings.required);
-    lines.push(Line {
+    lines.push(ChartLine {
         name: format!("{} % required", short(required)),
         colour: REQUIRED,
-        points: ends.map(|x| Point { x, y: required, interval: None }).to_vec(),
+        points: ends.map(|x| ChartPoint { x, y: required, interval: None }).to_vec(),
     });
     lines
 }
 
 /// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
 fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &RobotDocking, rect: Rect) {
-    let units = Units::of(&report.design);
+    let units = ShownUnits::of(&report.design);
     let head = if report.robots.len() > 1 {
         format!("halved, one by one: {}", robot.robot)
     } else {

@@ -11,7 +11,7 @@
 //!
 //! Rows are the first axis, columns the second; further axes are maps side by side, or further rows.
 
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
 use super::map::{self, Map};
 use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
@@ -123,7 +123,7 @@ pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureErr
     if outlines.len() > MOST_OUTLINES || columns.len() > MOST_MAPS {
         return Ok(None);
     }
-    let units = Units::of(&report.design);
+    let units = ShownUnits::of(&report.design);
     let (side, gap, top) = (if columns.len() > 6 { 92.0 } else { 118.0 }, 14.0, 104.0);
     let widest_row = rows.iter().map(|row| width_of(row, TICK)).fold(0.0, f64::max);
     let left = 24.0 + widest_row + 52.0;
@@ -172,12 +172,12 @@ pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureErr
 }
 
 /// The frame of one outline on the scale that all share.
-fn shared_frame(rect: Rect, outline: &Outline, reach: [f64; 2], units: &Units) -> Frame {
+fn shared_frame(rect: Rect, outline: &Outline, reach: [f64; 2], units: &ShownUnits) -> PlotFrame {
     let scale = |axis: usize| {
         let (dof, half) = (outline.axes[axis], reach[axis] * units.factor(outline.axes[axis]));
-        Scale::new(units.label(dof), -half, half, dof.is_rotation())
+        AxisScale::new(units.label(dof), -half, half, dof.is_rotation())
     };
-    Frame { rect, x: scale(0), y: scale(1) }
+    PlotFrame { rect, x: scale(0), y: scale(1) }
 }
 
 /// One slice, in its part of the shared frame.
@@ -186,7 +186,7 @@ fn draw(
     outline: &Outline,
     rect: Rect,
     reach: [f64; 2],
-    units: &Units,
+    units: &ShownUnits,
 ) -> Result<(), FigureError> {
     let axis = |k: usize| GridAxis {
         dof: outline.axes[k],
@@ -208,7 +208,7 @@ fn draw(
 }
 
 /// Few ticks without a label: the story has it.
-fn ticks_below(svg: &mut Svg, frame: &Frame) {
+fn ticks_below(svg: &mut Svg, frame: &PlotFrame) {
     let r = frame.rect;
     for x in frame.x.ticks(2) {
         let words = super::draw::axis::tick_label(x);
@@ -216,7 +216,7 @@ fn ticks_below(svg: &mut Svg, frame: &Frame) {
     }
 }
 
-fn ticks_beside(svg: &mut Svg, frame: &Frame) {
+fn ticks_beside(svg: &mut Svg, frame: &PlotFrame) {
     for y in frame.y.ticks(3) {
         let words = super::draw::axis::tick_label(y);
         svg.text([frame.rect.x - 5.0, frame.py(y) + 3.5], TICK - 1.0, Anchor::End, SOFT, &words);

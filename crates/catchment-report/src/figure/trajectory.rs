@@ -1,10 +1,10 @@
 //! A motion: the trajectory of the moving half in section, and its remaining errors.
 
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::plane::{Patch, Plane};
-use super::section::{Placement, View, approach_axis, describe};
+use super::section::{MovingHalfPose, View, approach_axis, describe};
 use super::solid::touching;
 use super::{FigureError, Picture};
 use catchment_core::acceptance::Outcome;
@@ -28,7 +28,7 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
         return Err(FigureError::Empty { what: "the halves never met, there is no path" });
     };
     let ghosts = ghosts(&path.waypoints);
-    let placements: Vec<Placement> = ghosts.iter().map(|w| placed(w)).collect();
+    let placements: Vec<MovingHalfPose> = ghosts.iter().map(|w| placed(w)).collect();
     let meeting = path.waypoints.iter().find(|w| !w.touches.is_empty()).unwrap_or(first);
     // What docks touches all around at its end; what misses, nowhere.
     let jams = path.outcome == Outcome::Jammed;
@@ -94,8 +94,8 @@ fn is_planar(design: &Design) -> bool {
     design.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch))
 }
 
-const fn placed(w: &Waypoint) -> Placement {
-    Placement { error: w.error, height: w.height }
+const fn placed(w: &Waypoint) -> MovingHalfPose {
+    MovingHalfPose { error: w.error, height: w.height }
 }
 
 /// What touches: points with the same normal are of one face or edge.
@@ -130,7 +130,7 @@ const SHORT: f64 = 1e-3;
 
 /// Lengths above, angles below, over a common path length.
 fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let moves = |dof: &Dof| {
         design.alignment.free.contains(*dof)
             || waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > 1e-9)
@@ -151,10 +151,10 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
             .fold((0.0f64, 0.0f64), |(lo, hi), v| (lo.min(v), hi.max(v)));
         let margin = 0.08 * (hi - lo).max(1e-6 * factor);
         let label = if angle { "angle [deg]".to_owned() } else { units.length("offset", 0.0, 0.0).label };
-        let frame = Frame {
+        let frame = PlotFrame {
             rect: Rect { y: rect.y + k as f64 * (each + gap), h: each, ..rect },
-            x: Scale::new("path length [D]".to_owned(), 0.0, travelled, false),
-            y: Scale::new(label, lo - margin, hi + margin, angle),
+            x: AxisScale::new("path length [D]".to_owned(), 0.0, travelled, false),
+            y: AxisScale::new(label, lo - margin, hi + margin, angle),
         };
         let zero = frame.py(0.0);
         let dotted = format!(r#"stroke="{SOFT}" stroke-width="0.9" stroke-dasharray="2 3""#);
@@ -178,7 +178,7 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
 }
 
 /// Names of the curves with the error that is left, above their frame.
-fn legend(svg: &mut Svg, group: &[Dof], waypoints: &[Waypoint], units: &Units, rect: Rect) {
+fn legend(svg: &mut Svg, group: &[Dof], waypoints: &[Waypoint], units: &ShownUnits, rect: Rect) {
     let mut x = rect.x;
     let y = rect.y - 8.0;
     for dof in group {

@@ -3,7 +3,7 @@
 
 use super::super::TrialsReport;
 use super::Picture;
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use catchment_core::acceptance::Outcome;
@@ -54,18 +54,18 @@ pub fn trials(report: &TrialsReport) -> Picture {
     Picture::of(svg)
 }
 
-fn frame(design: &Design, found: &Trials, rect: Rect) -> Frame {
-    let units = Units::of(design);
+fn frame(design: &Design, found: &Trials, rect: Rect) -> PlotFrame {
+    let units = ShownUnits::of(design);
     let axes = &found.grid.axes;
-    let nothing = || Scale::new(String::new(), 0.0, 0.0, false);
+    let nothing = || AxisScale::new(String::new(), 0.0, 0.0, false);
     let scale = |k: usize| axes.get(k).map_or_else(nothing, |axis| units.axis(axis));
-    Frame { rect, x: scale(0), y: scale(1) }
+    PlotFrame { rect, x: scale(0), y: scale(1) }
 }
 
 /// The exact region, filled or as an outline of its tiles, and the axes.
-fn region(svg: &mut Svg, frame: &Frame, design: &Design, zraa: &Zraa, filled: bool) {
+fn region(svg: &mut Svg, frame: &PlotFrame, design: &Design, zraa: &Zraa, filled: bool) {
     let rect = frame.rect;
-    let factor = Units::of(design).lengths();
+    let factor = ShownUnits::of(design).lengths();
     let fill = hex(colour::outcome(Outcome::Aligned));
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
     svg.begin_clip(rect);
@@ -90,8 +90,8 @@ fn region(svg: &mut Svg, frame: &Frame, design: &Design, zraa: &Zraa, filled: bo
     frame.draw(svg);
 }
 
-fn dots(svg: &mut Svg, frame: &Frame, design: &Design, found: &Trials) {
-    let factor = Units::of(design).lengths();
+fn dots(svg: &mut Svg, frame: &PlotFrame, design: &Design, found: &Trials) {
+    let factor = ShownUnits::of(design).lengths();
     let cells = found.grid.axes.iter().map(|axis| axis.cells).max().unwrap_or(1);
     let radius = (0.3 * frame.rect.w / cells as f64).clamp(0.8, 4.0);
     let line = frame.rect.y + 0.5 * frame.rect.h;

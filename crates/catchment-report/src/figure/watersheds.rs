@@ -4,11 +4,11 @@
 //! Every first watershed has its own colour, which shows the divisions caused by sampling alone; after
 //! merging it has the colour of its outcome.
 
-use super::draw::axis::Units;
+use super::draw::axis::ShownUnits;
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE};
 use super::map::{Legend, Map};
-use super::section::Placement;
+use super::section::MovingHalfPose;
 use super::{FigureError, Picture, headline, heights, solid};
 use crate::Report;
 use crate::schema::WatershedsReport;
@@ -34,7 +34,7 @@ pub fn watersheds(
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
     let design = &report.design;
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let map = Map::of(acceptance, pair, &PoseError::default())?;
     let (side, top) = (270.0, 96.0);
     let mut svg = Svg::new(1330.0, top + side + 108.0);
@@ -44,7 +44,7 @@ pub fn watersheds(
         |svg: &mut Svg, x: f64, words: &str| svg.text([x, top - 12.0], LABEL, Anchor::Start, INK, words);
 
     heading(&mut svg, 24.0, "the two halves");
-    let apart = Placement::mated(design, LIFT);
+    let apart = MovingHalfPose::mated(design, LIFT);
     solid::panel(&mut svg, Rect { x: 14.0, y: top, w: 260.0, h: side + 30.0 }, design, connector, &apart)?;
 
     let whole = if map.slice.at.is_empty() { "" } else { " in the whole grid" };

@@ -9,7 +9,7 @@
 //! that it shows.
 
 use super::{PageError, deflated};
-use crate::schema::{Axis, axes};
+use crate::schema::{AxisReport, axes};
 use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::advice::Advice;
 use catchment_core::exec::Exec;
@@ -22,7 +22,7 @@ const CHUNK_CELLS: usize = 1 << 20;
 /// Outcomes over two axes, in one piece.
 pub(super) struct Plane {
     /// Its axes, the first fastest.
-    pub(super) axes: Vec<Axis>,
+    pub(super) axes: Vec<AxisReport>,
     /// Its outcomes.
     pub(super) packed: Vec<u8>,
 }

@@ -22,7 +22,7 @@ mod grid;
 mod parts;
 
 pub use crate::html::policy;
-pub use parts::{Parts, Studies};
+pub use parts::{PageParts, Studies};
 
 use super::{JamsReport, Report, WindowReport};
 use crate::html::Html;

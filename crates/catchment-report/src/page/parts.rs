@@ -23,7 +23,7 @@ use serde_json::json;
 
 /// A page in parts.
 #[derive(Debug, Clone)]
-pub struct Parts {
+pub struct PageParts {
     /// The run.
     pub report: Report,
     /// Its outcomes.
@@ -51,7 +51,7 @@ pub struct Studies {
     pub window: bool,
 }
 
-impl Parts {
+impl PageParts {
     /// Of an answer.
     pub fn of(answer: &Answer) -> Self {
         let (report, acceptance) = (Report::of_answer(answer), answer.acceptance.clone());

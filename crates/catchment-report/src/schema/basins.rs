@@ -21,7 +21,7 @@ pub struct BasinsReport {
     /// The accepted set for every tolerance: each step holds for tolerances above its own, up to that of the
     /// next step. Steps that change the accepted set by less than [`SMALLEST_STEP`] of the error box are left
     /// out.
-    pub staircase: Vec<StepReport>,
+    pub staircase: Vec<ToleranceStepReport>,
 }
 
 /// How many basins are listed.
@@ -53,7 +53,7 @@ pub struct BasinReport {
 /// A step of the accepted share as a function of the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct StepReport {
+pub struct ToleranceStepReport {
     /// The step holds for tolerances above this.
     pub above: f64,
     /// Accepted cells.
@@ -80,16 +80,16 @@ impl BasinsReport {
             cells: basin.cells,
             fraction: share(basin.cells),
         });
-        let mut staircase: Vec<StepReport> = Vec::new();
+        let mut staircase: Vec<ToleranceStepReport> = Vec::new();
         for step in &hierarchy.staircase {
             let fraction = share(step.cells);
             // To nothing at all is a step of its own, however small.
-            let changes = |last: &StepReport| {
+            let changes = |last: &ToleranceStepReport| {
                 (fraction - last.fraction).abs() >= SMALLEST_STEP || (last.cells == 0) != (step.cells == 0)
             };
             if staircase.last().is_none_or(changes) {
                 let sum = step.cells as f64 * grid.cell_measure();
-                staircase.push(StepReport { above: step.above, cells: step.cells, sum, fraction });
+                staircase.push(ToleranceStepReport { above: step.above, cells: step.cells, sum, fraction });
             }
         }
         Some(Self {

@@ -1,7 +1,7 @@
 //! The report of a run: a versioned contract. Lengths in D, angles in radians, fields in this order, in the
 //! [`Envelope`] of every report. The same run writes the same bytes except for `timing`.
 
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::acceptance::{Acceptance, Warning};
 use catchment_core::design::Design;
 use catchment_core::exec::Exec;
@@ -20,7 +20,7 @@ use catchment_core::run::{Seating, Upright};
 use serde::{Deserialize, Serialize};
 
 /// Everything one run has to say, with its head.
-pub type Report = Envelope<RunBody>;
+pub type Report = ReportEnvelope<RunBody>;
 
 /// Result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ pub struct RunBody {
     /// The settings of the method.
     pub settings: serde_json::Value,
     /// The axes of the error grid, the first one fastest; empty for listed poses.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<AxisReport>,
     /// The accepted set.
     pub acceptance: AcceptanceReport,
     /// The largest axis-oriented cube; null for listed poses.
@@ -93,18 +93,18 @@ impl From<&ToleranceWindow> for WindowSection {
     }
 }
 
-impl Body for RunBody {
+impl ReportBody for RunBody {
     const KIND: &'static str = "run";
 }
 
 /// One axis of the error grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Axis {
+pub struct AxisReport {
     /// The error.
     pub axis: Dof,
     /// `D` or `rad`.
-    pub unit: Unit,
+    pub unit: ErrorUnit,
     /// Lower border of the error box.
     pub lo: f64,
     /// Upper border of the error box.
@@ -116,7 +116,7 @@ pub struct Axis {
 /// Unit of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Unit {
+pub enum ErrorUnit {
     /// Widths of the connector.
     D,
     /// Radians.
@@ -124,7 +124,7 @@ pub enum Unit {
     Rad,
 }
 
-impl Unit {
+impl ErrorUnit {
     /// The unit of an error.
     pub const fn of(dof: Dof) -> Self {
         if dof.is_rotation() { Self::Rad } else { Self::D }
@@ -237,7 +237,7 @@ pub struct ToleranceReport {
     /// The error.
     pub axis: Dof,
     /// `D` or `rad`.
-    pub unit: Unit,
+    pub unit: ErrorUnit,
     /// Limit below zero; not negative.
     pub minus: f64,
     /// Limit above zero; not negative.
@@ -364,7 +364,7 @@ impl Report {
             window: None,
             seat: None,
         };
-        Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
+        ReportEnvelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
     }
 
     /// Adds the success probability for a distribution of errors.
@@ -384,11 +384,11 @@ impl Report {
 }
 
 /// The axes of its grid.
-pub(super) fn axes(acceptance: &Acceptance) -> Vec<Axis> {
+pub(super) fn axes(acceptance: &Acceptance) -> Vec<AxisReport> {
     let Some(grid) = acceptance.grid() else { return Vec::new() };
     grid.axes
         .iter()
-        .map(|a| Axis { axis: a.dof, unit: Unit::of(a.dof), lo: a.lo, hi: a.hi, cells: a.cells })
+        .map(|a| AxisReport { axis: a.dof, unit: ErrorUnit::of(a.dof), lo: a.lo, hi: a.hi, cells: a.cells })
         .collect()
 }
 
@@ -475,7 +475,7 @@ impl From<Tolerance> for ToleranceReport {
     fn from(t: Tolerance) -> Self {
         Self {
             axis: t.dof,
-            unit: Unit::of(t.dof),
+            unit: ErrorUnit::of(t.dof),
             minus: t.minus,
             plus: t.plus,
             half_cell: t.half_cell,
@@ -496,7 +496,7 @@ pub(crate) mod testing;
 mod tests;
 mod watersheds;
 
-pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
+pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, ToleranceStepReport};
 pub use partition::PartitionReport;
 pub use sample::SampleReport;
 pub use sound::UnsoundError;

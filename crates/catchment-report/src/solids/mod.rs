@@ -15,7 +15,7 @@ pub use obj::obj;
 pub use vtp::vtp;
 
 use super::document::Printed;
-use super::envelope::{Body, Envelope};
+use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, ColumnFormat, Document, Table, grouped};
@@ -25,7 +25,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 
 /// A shape, with its head.
-pub type SolidsReport = Envelope<SolidsBody>;
+pub type SolidsReport = ReportEnvelope<SolidsBody>;
 
 /// Content of an exported solid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,7 +57,7 @@ pub struct SolidsBody {
     pub high: [f64; 3],
 }
 
-impl Body for SolidsBody {
+impl ReportBody for SolidsBody {
     const KIND: &'static str = "solids";
 }
 

@@ -151,7 +151,7 @@ fn write_group(path: &Path, version: usize) -> bool {
     let design = design([Dof::X, Dof::Y].into_iter().collect());
     let acceptance = blob(&design, 4);
     let report = Report::new(&design, &acceptance, version.into(), None, &Exec::new()).unwrap();
-    crate::zarr::write(path, &report, &acceptance, &crate::zarr::Layers::default(), &Exec::new()).is_ok()
+    crate::zarr::write(path, &report, &acceptance, &crate::zarr::CellLayers::default(), &Exec::new()).is_ok()
 }
 
 #[cfg(not(feature = "zarr"))]
@@ -181,7 +181,7 @@ fn a_group_survives_every_stop() {
 fn a_run_survives_every_stop() {
     use crate::Target;
     use crate::figure::draw::svg::Svg;
-    use crate::figure::{Drawn, Picture};
+    use crate::figure::{DrawnFigures, Picture};
     use catchment_core::problem::Problem;
     use catchment_core::run::{Over, Run, Sample};
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
@@ -197,7 +197,7 @@ fn a_run_survives_every_stop() {
             let answer = run.on(&problem, &exec).unwrap();
             // As many files as of a run; its pictures take longer to draw than all that is asked here.
             let dot = Picture::of(Svg::new(8.0, 8.0));
-            (answer, Drawn { pictures: vec![("section", dot)], left_out: Vec::new() })
+            (answer, DrawnFigures { pictures: vec![("section", dot)], left_out: Vec::new() })
         })
         .collect();
     let cells: Vec<usize> = answers.iter().map(|(answer, _)| answer.acceptance.outcomes.len()).collect();

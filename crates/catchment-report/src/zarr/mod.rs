@@ -23,7 +23,7 @@ pub use read::{read, read_heights};
 #[cfg(feature = "figure")]
 pub(super) use sweep::fill as fill_sweep;
 
-use super::schema::{Report, Unit};
+use super::schema::{ErrorUnit, Report};
 use super::write::{self, WriteError};
 use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
@@ -102,7 +102,7 @@ fn storage<E: std::error::Error>(error: E) -> ZarrError {
 
 /// What a method knows of every cell beside its outcome, in the order of the grid's cells.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Layers<'a> {
+pub struct CellLayers<'a> {
     /// z of the COR at first contact, in D; values that are not finite stand for no contact.
     pub heights: Option<&'a [f32]>,
     /// The labels of flooding.
@@ -117,7 +117,7 @@ pub fn write(
     path: &Path,
     report: &Report,
     acceptance: &Acceptance,
-    layers: &Layers,
+    layers: &CellLayers,
     exec: &Exec,
 ) -> Result<(), ZarrError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
@@ -141,7 +141,7 @@ fn fill(
     report: &Report,
     acceptance: &Acceptance,
     grid: &Grid,
-    layers: &Layers,
+    layers: &CellLayers,
     exec: &Exec,
 ) -> Result<(), ZarrError> {
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
@@ -226,16 +226,16 @@ fn outcome_attributes(method: &str) -> Value {
 }
 
 fn long_name(axis: &GridAxis) -> String {
-    match Unit::of(axis.dof) {
-        Unit::D => format!("lateral offset of the face centre along {}", axis.dof.name()),
-        Unit::Rad => format!("{} error", axis.dof.name()),
+    match ErrorUnit::of(axis.dof) {
+        ErrorUnit::D => format!("lateral offset of the face centre along {}", axis.dof.name()),
+        ErrorUnit::Rad => format!("{} error", axis.dof.name()),
     }
 }
 
 const fn units(axis: &GridAxis) -> &'static str {
-    match Unit::of(axis.dof) {
-        Unit::D => "D",
-        Unit::Rad => "rad",
+    match ErrorUnit::of(axis.dof) {
+        ErrorUnit::D => "D",
+        ErrorUnit::Rad => "rad",
     }
 }
 
@@ -359,7 +359,7 @@ mod tests {
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
         let first = (0..acceptance.outcomes.len() as u32).map(|k| if k == 9 { DAM } else { k % 5 }).collect();
         let watersheds = Watersheds { first, into: vec![0, 0, 2, 3, 2], outside: Some(3) };
-        let layers = Layers { heights: Some(&heights), watersheds: Some(&watersheds) };
+        let layers = CellLayers { heights: Some(&heights), watersheds: Some(&watersheds) };
         write(folder, &report, &acceptance, &layers, &Exec::new()).unwrap();
         (acceptance, heights)
     }
@@ -427,9 +427,9 @@ mod tests {
         let design = design([Dof::X].into_iter().collect());
         let acceptance = blob(&design, 4);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        let refused = write(home.path(), &report, &acceptance, &Layers::default(), &Exec::new());
+        let refused = write(home.path(), &report, &acceptance, &CellLayers::default(), &Exec::new());
         assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
-        let one = Layers { heights: Some(&[0.0]), watersheds: None };
+        let one = CellLayers { heights: Some(&[0.0]), watersheds: None };
         let short = write(&home.path().join("new.zarr"), &report, &acceptance, &one, &Exec::new());
         assert!(matches!(short, Err(ZarrError::Shape { heights: 1, cells: 4 })));
     }

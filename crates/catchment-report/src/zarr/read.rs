@@ -85,7 +85,7 @@ pub fn read_heights(path: &Path, grid: &Grid, exec: &Exec) -> Result<Option<Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Layers, write};
+    use super::super::{CellLayers, write};
     use super::*;
     use crate::schema::testing::{blob, design};
     use catchment_core::pose::Dof;
@@ -97,7 +97,7 @@ mod tests {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let acceptance = blob(&design, 7);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(&path, &report, &acceptance, &Layers::default(), &Exec::new()).unwrap();
+        write(&path, &report, &acceptance, &CellLayers::default(), &Exec::new()).unwrap();
         let (read_report, read_acceptance) = read(&path, &Exec::new()).unwrap();
         assert_eq!(read_report, report);
         assert_eq!(
@@ -141,7 +141,7 @@ mod tests {
         let heights: Vec<f32> =
             (0..49).map(|k| if k == 7 { f32::NEG_INFINITY } else { 0.1 * k as f32 }).collect();
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        let layers = Layers { heights: Some(&heights), watersheds: None };
+        let layers = CellLayers { heights: Some(&heights), watersheds: None };
         write(&path, &report, &acceptance, &layers, &Exec::new()).unwrap();
         let grid = acceptance.grid().unwrap();
         let read = read_heights(&path, grid, &Exec::new()).unwrap().unwrap();
@@ -161,7 +161,7 @@ mod tests {
         let design = design([Dof::X, Dof::Yaw].into_iter().collect());
         let acceptance = blob(&design, 7);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(&path, &report, &acceptance, &Layers::default(), &Exec::new()).unwrap();
+        write(&path, &report, &acceptance, &CellLayers::default(), &Exec::new()).unwrap();
         std::fs::write(path.join(file), bytes).unwrap();
         read(&path, &Exec::new()).unwrap_err().to_string()
     }

@@ -2,7 +2,7 @@
 
 use super::report::bracket;
 use super::{Composition, Frames, Map, Region};
-use catchment::report::figure::draw::axis::{Frame, Scale, short};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame, short};
 use catchment::report::figure::draw::colour::{self, Rgb, hex, mix, sequential};
 use catchment::report::figure::draw::svg::{
     Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline,
@@ -20,13 +20,14 @@ const PITCH: f64 = SIDE + 76.0;
 const MARGIN: f64 = 0.08;
 
 /// The square of the plane around points.
-fn frame(around: [DVec2; 2], column: usize, unit: &str) -> Frame {
+fn frame(around: [DVec2; 2], column: usize, unit: &str) -> PlotFrame {
     let (center, half) = ((around[0] + around[1]) / 2.0, (around[1] - around[0]).max_element() / 2.0);
     let half = (half * (1.0 + 2.0 * MARGIN)).max(1e-6);
-    let scale =
-        |name: &str, middle: f64| Scale::new(format!("{name} [{unit}]"), middle - half, middle + half, false);
+    let scale = |name: &str, middle: f64| {
+        AxisScale::new(format!("{name} [{unit}]"), middle - half, middle + half, false)
+    };
     let rect = Rect { x: 70.0 + PITCH * column as f64, y: TOP, w: SIDE, h: SIDE };
-    Frame { rect, x: scale("x", center.x), y: scale("y", center.y) }
+    PlotFrame { rect, x: scale("x", center.x), y: scale("y", center.y) }
 }
 
 /// The smallest rectangle around regions and the origin.
@@ -37,13 +38,13 @@ fn around<'r>(regions: impl IntoIterator<Item = &'r Region>) -> [DVec2; 2] {
         .fold([DVec2::ZERO; 2], |[low, high], [l, h]| [low.min(l), high.max(h)])
 }
 
-fn path(frame: &Frame, region: &Region) -> String {
+fn path(frame: &PlotFrame, region: &Region) -> String {
     let data = |outline: Vec<DVec2>| polyline(outline.iter().map(|p| frame.at(p.to_array())), true);
     region.outlines().into_iter().map(data).collect()
 }
 
 /// Where a robot's frame has its origin, and which way it faces.
-fn robot(svg: &mut Svg, frame: &Frame, facing: Option<DVec2>) {
+fn robot(svg: &mut Svg, frame: &PlotFrame, facing: Option<DVec2>) {
     let [x, y] = frame.at([0.0, 0.0]);
     svg.circle([x, y], 3.6, &format!(r##"fill="{INK}" stroke="#ffffff" stroke-width="1.2""##));
     if let Some(way) = facing {

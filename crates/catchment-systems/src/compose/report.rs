@@ -6,14 +6,14 @@ use super::{ComposeSettings, Composition, Frames, Slice};
 use catchment::document::{Cell, Column, Document, Table, number, significant};
 use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
-use catchment::report::{Body, Envelope};
+use catchment::report::{ReportBody, ReportEnvelope};
 use glam::DVec2;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write;
 
 /// A composition with its head.
-pub type ComposeReport = Envelope<ComposeBody>;
+pub type ComposeReport = ReportEnvelope<ComposeBody>;
 
 /// Approach region of two halves. Lengths in `unit`, angles in radians; areas as [inner, outer], between
 /// which the true area lies.
@@ -109,7 +109,7 @@ pub struct OverlapReport {
     pub rows: Vec<Vec<f64>>,
 }
 
-impl Body for ComposeBody {
+impl ReportBody for ComposeBody {
     const KIND: &'static str = "compose";
 }
 
@@ -187,7 +187,7 @@ pub fn report(found: &Composition) -> ComposeReport {
         };
         warnings.push(WarningReport::note(message));
     }
-    Envelope::of(ComposeBody::new(found), warnings, None)
+    ReportEnvelope::of(ComposeBody::new(found), warnings, None)
 }
 
 impl Printed for ComposeBody {

@@ -10,12 +10,12 @@ use super::{Heights, Inverse, REACHED};
 use catchment::connector::Connector;
 use catchment::design::Design;
 use catchment::document::significant;
-use catchment::report::figure::draw::axis::{Frame, Units};
+use catchment::report::figure::draw::axis::{PlotFrame, ShownUnits};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{
     Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of,
 };
-use catchment::report::figure::{FigureError, Picture, Placement, section_panel};
+use catchment::report::figure::{FigureError, MovingHalfPose, Picture, section_panel};
 use glam::DVec2;
 
 /// How far apart the halves are drawn, in D.
@@ -61,11 +61,11 @@ fn story(found: &Inverse) -> String {
 
 fn halves(svg: &mut Svg, rect: Rect, design: &Design, connector: &Connector) -> Result<(), FigureError> {
     svg.text([rect.x, rect.y - 12.0], LABEL, Anchor::Start, INK, "the halves, aligned and drawn apart");
-    section_panel(svg, rect, design, connector, &Placement::mated(design, APART))
+    section_panel(svg, rect, design, connector, &MovingHalfPose::mated(design, APART))
 }
 
 fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Result<(), FigureError> {
-    let units = Units::of(design);
+    let units = ShownUnits::of(design);
     let [wanted, reached] = [&found.wanted, &found.reached].map(profile);
     let ends = wanted.iter().flatten();
     let (mut lo, mut hi) =
@@ -79,7 +79,7 @@ fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Resul
     }
     let room = MARGIN * (hi - lo).max(DVec2::splat(1e-6));
     let scale = |name: &str, k: usize| units.length(name, lo[k] - room[k], hi[k] + room[k]);
-    let frame = Frame { rect, x: scale("x", 0), y: scale("height of first contact", 1) };
+    let frame = PlotFrame { rect, x: scale("x", 0), y: scale("height of first contact", 1) };
     let at = |p: DVec2| frame.at((p * units.lengths()).to_array());
     let colour = hex(CURVES[0]);
     svg.begin_clip(rect);

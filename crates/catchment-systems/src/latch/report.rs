@@ -8,12 +8,12 @@ use super::{Geometry, Latch, Rule, Verdict, stiffness};
 use catchment::document::{Cell, Column, Document, Table};
 use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
-use catchment::report::{Body, Envelope};
+use catchment::report::{ReportBody, ReportEnvelope};
 use serde::Serialize;
 use std::borrow::Cow;
 
 /// A latch and what is found of it, with its head.
-pub type LatchReport = Envelope<LatchBody>;
+pub type LatchReport = ReportEnvelope<LatchBody>;
 
 /// N·mm in a N·m.
 const MILLI: f64 = 1e-3;
@@ -94,7 +94,7 @@ pub struct PressReport {
     positions: Vec<Position>,
 }
 
-impl Body for LatchBody {
+impl ReportBody for LatchBody {
     const KIND: &'static str = "latch";
 }
 
@@ -151,7 +151,7 @@ pub fn report(latch: &Latch, geometry: &Geometry, forces: &Forces, record: &Reco
         rules,
         files: Vec::new(),
     };
-    Envelope::of(body, warnings.iter().map(WarningReport::note).collect(), None)
+    ReportEnvelope::of(body, warnings.iter().map(WarningReport::note).collect(), None)
 }
 
 impl Printed for LatchBody {

@@ -5,12 +5,12 @@ use super::force::Forces;
 use super::measured::{Measured, Mode, THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
 use catchment::document::{Column, ColumnFormat, Document, Table};
 use catchment::report::document::Printed;
-use catchment::report::{Body, Envelope};
+use catchment::report::{ReportBody, ReportEnvelope};
 use serde::Serialize;
 use std::borrow::Cow;
 
 /// Table 6.1 beside the model, with its head.
-pub type TableReport = Envelope<TableBody>;
+pub type TableReport = ReportEnvelope<TableBody>;
 
 /// Table 6.1 compared with the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,7 +53,7 @@ pub struct TableRow {
     pub ratio_model: f64,
 }
 
-impl Body for TableBody {
+impl ReportBody for TableBody {
     const KIND: &'static str = "latch-table";
 }
 
@@ -100,7 +100,7 @@ pub fn report(forces: &Forces) -> TableReport {
         k_compression: stiffness(|r| r.k_compression_n_per_mm),
         contradictions: CONTRADICTIONS.to_vec(),
     };
-    Envelope::of(body, Vec::new(), None)
+    ReportEnvelope::of(body, Vec::new(), None)
 }
 
 impl Printed for TableBody {

@@ -8,13 +8,13 @@ use catchment::exec::Exec;
 use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
 use catchment::report::compare::group;
-use catchment::report::set::{ENDINGS, Kind};
+use catchment::report::set::{ENDINGS, SetFileKind};
 use catchment::report::vtk::View;
 use catchment::report::zarr;
 use catchment::terminal::shown;
 
 pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure> {
-    let Some(kind) = Kind::of(&args.output) else {
+    let Some(kind) = SetFileKind::of(&args.output) else {
         let message = format!("cannot tell what to write into {}", shown(&args.output));
         return Err(Failure::with_help(
             message,
@@ -28,7 +28,7 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
             Some(help),
         ));
     }
-    if kind == Kind::Table && (args.axes.is_some() || args.at.is_some()) {
+    if kind == SetFileKind::Table && (args.axes.is_some() || args.at.is_some()) {
         let help = "leave --axes and --at out, or write .vti".to_owned();
         return Err(Failure::with_help("a table has every axis of the result".to_owned(), Some(help)));
     }
@@ -47,7 +47,7 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     let view = View::new(&acceptance, heights.as_deref(), args.axes, &at)?;
     let bytes = kind.bytes(&view, &acceptance, heights.as_deref(), exec)?;
     write_file(&args.output, &bytes, args.force)?;
-    let told = if kind == Kind::Table { String::new() } else { view.table() };
+    let told = if kind == SetFileKind::Table { String::new() } else { view.table() };
     tell(&told, &[format!("wrote {}", shown(&args.output))])
 }
 

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::output::{check_place, write_file, written};
 use crate::result_args::{self, rendered};
 use catchment::exec::Exec;
-use catchment::report::figure::Drawn;
+use catchment::report::figure::DrawnFigures;
 use catchment::report::folder::{POSES, REPORT, RESULT};
-use catchment::report::set::Kind;
+use catchment::report::set::SetFileKind;
 use catchment::report::write;
 use catchment::report::{self, Report, Target};
 use catchment::run::Answer;
@@ -68,7 +68,7 @@ impl PlaceArgs {
                 "leave it out: a folder that this command wrote is replaced without it, and no other is";
             return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
         }
-        let output = output.filter(|_| report.is_none()).map(|path| match Kind::of(path) {
+        let output = output.filter(|_| report.is_none()).map(|path| match SetFileKind::of(path) {
             Some(kind) => Target::Set(path, kind),
             None if is_group(path) => Target::Group(path),
             None => Target::Folder(path),
@@ -93,8 +93,8 @@ impl Targets<'_> {
     /// Whether something is written that only a grid has.
     pub(super) fn need_grid(&self) -> bool {
         let needs = |target: &Target<'_>| match target {
-            Target::Group(_) | Target::Set(_, Kind::Image | Kind::Border) => true,
-            Target::Folder(_) | Target::Pictures(_) | Target::Set(_, Kind::Table) => false,
+            Target::Group(_) | Target::Set(_, SetFileKind::Image | SetFileKind::Border) => true,
+            Target::Folder(_) | Target::Pictures(_) | Target::Set(_, SetFileKind::Table) => false,
         };
         self.all.iter().any(needs)
     }
@@ -111,7 +111,7 @@ impl Targets<'_> {
         report: &Report,
         exec: &Exec,
     ) -> Result<Vec<String>, Failure> {
-        let drawn = if self.draw() { Drawn::of(answer, exec)? } else { Drawn::default() };
+        let drawn = if self.draw() { DrawnFigures::of(answer, exec)? } else { DrawnFigures::default() };
         let mut notes = drawn.left_out.clone();
         if let Some((path, kind, replace)) = self.report {
             write_file(path, &rendered(kind, report, &report.described_with(advice::flags))?, replace)?;

@@ -7,13 +7,13 @@ use catchment_core::pose::Dof;
 
 /// How a design's lengths and angles are shown.
 #[derive(Debug, Clone, Copy)]
-pub struct Units {
+pub struct ShownUnits {
     /// What one D is called on an axis.
     width: f64,
     symbol: &'static str,
 }
 
-impl Units {
+impl ShownUnits {
     /// Those of a design.
     pub fn of(design: &Design) -> Self {
         match design.unit {
@@ -43,14 +43,14 @@ impl Units {
     }
 
     /// The scale of an error axis of a grid.
-    pub fn axis(&self, axis: &GridAxis) -> Scale {
+    pub fn axis(&self, axis: &GridAxis) -> AxisScale {
         let factor = self.factor(axis.dof);
-        Scale::new(self.label(axis.dof), axis.lo * factor, axis.hi * factor, axis.dof.is_rotation())
+        AxisScale::new(self.label(axis.dof), axis.lo * factor, axis.hi * factor, axis.dof.is_rotation())
     }
 
     /// The scale of a length that is no error.
-    pub fn length(&self, name: &str, lo: f64, hi: f64) -> Scale {
-        Scale::new(format!("{name} [{}]", self.symbol), lo * self.width, hi * self.width, false)
+    pub fn length(&self, name: &str, lo: f64, hi: f64) -> AxisScale {
+        AxisScale::new(format!("{name} [{}]", self.symbol), lo * self.width, hi * self.width, false)
     }
 
     /// The unit of lengths.
@@ -80,7 +80,7 @@ pub fn short(value: f64) -> String {
 
 /// A labelled range of shown values.
 #[derive(Debug, Clone)]
-pub struct Scale {
+pub struct AxisScale {
     /// What is measured, with its unit.
     pub label: String,
     /// Where it begins.
@@ -90,7 +90,7 @@ pub struct Scale {
     degrees: bool,
 }
 
-impl Scale {
+impl AxisScale {
     /// A range with its label; `degrees` asks for ticks at multiples of 15 where they fit.
     pub const fn new(label: String, lo: f64, hi: f64, degrees: bool) -> Self {
         Self { label, lo, hi, degrees }
@@ -128,16 +128,16 @@ impl Scale {
 
 /// A frame with two scales: shown values to places in the picture.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub struct PlotFrame {
     /// Where it lies in the picture.
     pub rect: Rect,
     /// The scale of its lower side.
-    pub x: Scale,
+    pub x: AxisScale,
     /// The scale of its left side.
-    pub y: Scale,
+    pub y: AxisScale,
 }
 
-impl Frame {
+impl PlotFrame {
     /// Across the picture, of a shown value.
     pub fn px(&self, x: f64) -> f64 {
         self.rect.x + (x - self.x.lo) / (self.x.hi - self.x.lo) * self.rect.w
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        let ticks = |lo, hi, degrees, wanted| Scale::new(String::new(), lo, hi, degrees).ticks(wanted);
+        let ticks = |lo, hi, degrees, wanted| AxisScale::new(String::new(), lo, hi, degrees).ticks(wanted);
         assert_eq!(ticks(-90.0, 90.0, true, 5), [-90.0, -45.0, 0.0, 45.0, 90.0]);
         assert_eq!(ticks(-50.0, 50.0, false, 5), [-40.0, -20.0, 0.0, 20.0, 40.0]);
         assert_eq!(ticks(-1.0, 1.0, false, 4), [-1.0, -0.5, 0.0, 0.5, 1.0]);

@@ -1,22 +1,22 @@
 //! Lines over a logarithmic or a linear scale, each with its interval as a band.
 
-use super::axis::{Frame, Scale, tick_label};
+use super::axis::{AxisScale, PlotFrame, tick_label};
 use super::colour::{Rgb, hex};
 use super::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 
 /// One line.
-pub struct Line {
+pub struct ChartLine {
     /// What the legend calls it.
     pub name: String,
     /// Its colour.
     pub colour: Rgb,
     /// Its points, from left to right.
-    pub points: Vec<Point>,
+    pub points: Vec<ChartPoint>,
 }
 
 /// One point of a line, with the interval of its value where it has one.
 #[derive(Debug, Clone, Copy)]
-pub struct Point {
+pub struct ChartPoint {
     /// Along the scale.
     pub x: f64,
     /// Its value.
@@ -45,7 +45,7 @@ impl Spacing {
     }
 
     /// Round numbers on a scale of this width.
-    fn ticks(self, scale: &Scale, width: f64) -> Vec<f64> {
+    fn ticks(self, scale: &AxisScale, width: f64) -> Vec<f64> {
         match self {
             Self::Logarithmic => decades(scale.lo, scale.hi, width),
             Self::Even => scale.ticks((width / 60.0) as usize),
@@ -64,7 +64,7 @@ pub struct Chart<'a> {
     /// What the y scale measures.
     pub y_label: &'a str,
     /// The lines.
-    pub lines: &'a [Line],
+    pub lines: &'a [ChartLine],
     /// A value to mark on the x scale.
     pub mark: Option<Mark<'a>>,
 }
@@ -125,7 +125,7 @@ impl Chart<'_> {
     }
 
     /// The frame around all points, their intervals and the mark; `None` without points.
-    fn frame(&self) -> Option<Frame> {
+    fn frame(&self) -> Option<PlotFrame> {
         /// Room beside the outermost points, as a share of the extent.
         const MARGIN: f64 = 0.06;
         let points = || self.lines.iter().flat_map(|line| line.shown(self.spacing));
@@ -147,22 +147,22 @@ impl Chart<'_> {
         };
         let (left, right) = wide(left, right, 0.02);
         let (low, high) = wide(low, high, 1e-3 * low.abs().max(high.abs()).max(1e-9));
-        Some(Frame {
+        Some(PlotFrame {
             rect: self.rect,
-            x: Scale::new(String::new(), left, right, false),
-            y: Scale::new(self.y_label.to_owned(), low, high, false),
+            x: AxisScale::new(String::new(), left, right, false),
+            y: AxisScale::new(self.y_label.to_owned(), low, high, false),
         })
     }
 }
 
-impl Line {
-    fn shown(&self, spacing: Spacing) -> impl Iterator<Item = &Point> {
+impl ChartLine {
+    fn shown(&self, spacing: Spacing) -> impl Iterator<Item = &ChartPoint> {
         self.points.iter().filter(move |p| spacing.shows(p.x) && p.y.is_finite())
     }
 
-    fn band(&self, svg: &mut Svg, frame: &Frame, spacing: Spacing) {
+    fn band(&self, svg: &mut Svg, frame: &PlotFrame, spacing: Spacing) {
         let ends = |k: usize| {
-            let end = move |p: &Point| p.interval.map(|i| frame.at([spacing.at(p.x), i[k]]));
+            let end = move |p: &ChartPoint| p.interval.map(|i| frame.at([spacing.at(p.x), i[k]]));
             self.shown(spacing).filter_map(end)
         };
         let mut outline: Vec<[f64; 2]> = ends(1).collect();
@@ -185,7 +185,7 @@ impl Line {
         }
     }
 
-    fn curve(&self, svg: &mut Svg, frame: &Frame, spacing: Spacing) {
+    fn curve(&self, svg: &mut Svg, frame: &PlotFrame, spacing: Spacing) {
         let colour = hex(self.colour);
         let places: Vec<[f64; 2]> = self.shown(spacing).map(|p| frame.at([spacing.at(p.x), p.y])).collect();
         let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
@@ -197,7 +197,7 @@ impl Line {
 }
 
 /// The names of lines, from left to right.
-pub fn legend(svg: &mut Svg, lines: &[Line], [mut x, y]: [f64; 2]) {
+pub fn legend(svg: &mut Svg, lines: &[ChartLine], [mut x, y]: [f64; 2]) {
     for line in lines {
         let style = format!(r#"stroke="{}" stroke-width="2.4""#, hex(line.colour));
         svg.line([x, y - 4.0], [x + 18.0, y - 4.0], &style);
@@ -229,9 +229,9 @@ mod tests {
     #[test]
     fn every_interval_lies_within_the_frame() {
         let rect = Rect { x: 50.0, y: 20.0, w: 300.0, h: 200.0 };
-        let point = |x: f64, half: f64| Point { x, y: 2.0, interval: Some([2.0 - half, 2.0 + half]) };
+        let point = |x: f64, half: f64| ChartPoint { x, y: 2.0, interval: Some([2.0 - half, 2.0 + half]) };
         for spacing in [Spacing::Logarithmic, Spacing::Even] {
-            let lines = [Line {
+            let lines = [ChartLine {
                 name: String::new(),
                 colour: [0; 3],
                 points: vec![point(0.1, 1.5), point(1.0, 0.4), point(10.0, 0.1)],
@@ -252,8 +252,8 @@ mod tests {
 
     #[test]
     fn a_mark_is_read_off_at_its_height() {
-        let points = [[0.0, 100.0], [1.0, 90.0]].map(|[x, y]| Point { x, y, interval: None }).to_vec();
-        let lines = [Line { name: String::new(), colour: [0; 3], points }];
+        let points = [[0.0, 100.0], [1.0, 90.0]].map(|[x, y]| ChartPoint { x, y, interval: None }).to_vec();
+        let lines = [ChartLine { name: String::new(), colour: [0; 3], points }];
         let rect = Rect { x: 50.0, y: 20.0, w: 300.0, h: 200.0 };
         let mark = Some(Mark { x: 0.5, y: Some(95.0), words: "95 %" });
         let chart = Chart { rect, x_label: "x", spacing: Spacing::Even, y_label: "y", lines: &lines, mark };

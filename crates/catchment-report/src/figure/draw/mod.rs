@@ -4,13 +4,13 @@
 //!
 //! ```
 //! use catchment_report::figure::Picture;
-//! use catchment_report::figure::draw::axis::{Frame, Scale};
+//! use catchment_report::figure::draw::axis::{PlotFrame, AxisScale};
 //! use catchment_report::figure::draw::svg::{Rect, Svg};
 //!
 //! let mut svg = Svg::new(300.0, 240.0);
 //! let rect = Rect { x: 60.0, y: 20.0, w: 220.0, h: 160.0 };
-//! let length = |name: &str| Scale::new(format!("{name} [mm]"), 0.0, 50.0, false);
-//! let frame = Frame { rect, x: length("x"), y: length("y") };
+//! let length = |name: &str| AxisScale::new(format!("{name} [mm]"), 0.0, 50.0, false);
+//! let frame = PlotFrame { rect, x: length("x"), y: length("y") };
 //! frame.draw(&mut svg);
 //! svg.circle(frame.at([25.0, 10.0]), 3.0, r##"fill="#2d4261""##);
 //! assert!(Picture::of(svg).svg().contains("y [mm]"));

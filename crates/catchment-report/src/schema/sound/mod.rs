@@ -3,7 +3,7 @@
 
 mod parts;
 
-use super::{Interval, RunBody, Unit};
+use super::{ErrorUnit, Interval, RunBody};
 use catchment_core::pose::Dof;
 
 /// A number in a report that cannot be.
@@ -97,7 +97,7 @@ impl RunBody {
             hold(finite && axis.lo < axis.hi, format!("axes: {name}: lo and hi"), "must be in order")?;
             hold(axis.cells > 0, format!("axes: {name}: cells"), "must be above 0")?;
             hold(
-                axis.unit == Unit::of(axis.axis),
+                axis.unit == ErrorUnit::of(axis.axis),
                 format!("axes: {name}: unit"),
                 "must be that of the error",
             )?;
@@ -147,7 +147,7 @@ mod tests {
             ("axes must each be there once", |b| b.axes.swap(0, 1)),
             ("axes: yaw: lo and hi must be in order", |b| b.axes[1].hi = -9.0),
             ("axes: x: cells must be above 0", |b| b.axes[0].cells = 0),
-            ("axes: x: unit must be that of the error", |b| b.axes[0].unit = super::Unit::Rad),
+            ("axes: x: unit must be that of the error", |b| b.axes[0].unit = super::ErrorUnit::Rad),
             ("acceptance.outcomes must add up", |b| b.acceptance.outcomes.jammed = usize::MAX),
             ("acceptance.sum_bracket must be in order", |b| b.acceptance.sum_bracket = Some([2.0, 1.0])),
             ("onaa.edge must lie between 0 and 1", |b| b.onaa.as_mut().unwrap().edge = 1e300),

@@ -3,7 +3,7 @@
 use super::super::facts::Shape;
 use catchment::connector::Half;
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{self, hex, mix};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use glam::{DVec2, DVec3};
@@ -130,8 +130,8 @@ pub fn cone_over_x_face() -> Picture {
         view.path(&mut svg, &corners(*shape), style);
     }
     view.square(&mut svg, DVec2::ZERO, 1.0, &dashed());
-    let scale = |name: &str| Scale::new(format!("{name} [D]"), -REACH, REACH, false);
-    Frame { rect, x: scale("x"), y: scale("y") }.draw(&mut svg);
+    let scale = |name: &str| AxisScale::new(format!("{name} [D]"), -REACH, REACH, false);
+    PlotFrame { rect, x: scale("x"), y: scale("y") }.draw(&mut svg);
     let words = [
         "3-D X-Face: |x| + |y| < D, 2.0 D², ONAA 1.0 D",
         "cone around the unit square: π/2 = 1.5708 D², ONAA 1.0 D (X-Face: + 27.3 %)",

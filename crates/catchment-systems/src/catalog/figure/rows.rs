@@ -12,7 +12,7 @@ use catchment::pose::PoseError;
 use catchment::problem::Problem;
 use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
 use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg};
-use catchment::report::figure::{Placement, solid_panel};
+use catchment::report::figure::{MovingHalfPose, solid_panel};
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 
@@ -154,7 +154,7 @@ impl Row {
         match &self.problem {
             Some(problem) => {
                 let height = APART - problem.alignment().center_of_rotation;
-                let placement = Placement { error: PoseError::default(), height };
+                let placement = MovingHalfPose { error: PoseError::default(), height };
                 solid_panel(svg, cell(0), problem.design(), problem.connector(), &placement)?;
                 let view = View::new(cell(1), SECTION);
                 face(svg, &view, &problem.connector().fixed, self.width);

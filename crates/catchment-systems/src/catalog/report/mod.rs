@@ -9,18 +9,18 @@ use catchment::design::Design;
 use catchment::document::{Cell, Column, Document, Subject, Table, significant};
 use catchment::report::document::Printed;
 use catchment::report::text::line;
-use catchment::report::{Body, Envelope, ReportOf};
+use catchment::report::{ReportBody, ReportEnvelope, ReportOf};
 use catchment::terminal::printable;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The catalogue, with its head.
-pub type CatalogReport = Envelope<CatalogBody>;
+pub type CatalogReport = ReportEnvelope<CatalogBody>;
 /// A design among the published systems, with its head.
 pub type ClassifyReport = ReportOf<ClassifyBody>;
 /// One system, with its head.
-pub type SystemReport = Envelope<SystemBody>;
+pub type SystemReport = ReportEnvelope<SystemBody>;
 
 /// What stands where nothing is known.
 const NOTHING: &str = "–";
@@ -95,11 +95,11 @@ pub struct ClassifyBody {
     pub ratios: Vec<Ratio>,
 }
 
-impl Body for CatalogBody {
+impl ReportBody for CatalogBody {
     const KIND: &'static str = "catalog";
 }
 
-impl Body for SystemBody {
+impl ReportBody for SystemBody {
     const KIND: &'static str = "catalog-system";
 }
 
@@ -189,7 +189,7 @@ impl CatalogBody {
     /// The report of a catalogue.
     pub fn report(catalog: &Catalog) -> CatalogReport {
         let systems = catalog.systems.iter().map(SystemBody::of).collect();
-        Envelope::of(Self { systems }, Vec::new(), None)
+        ReportEnvelope::of(Self { systems }, Vec::new(), None)
     }
 
     /// The attributes that say most, for people.
@@ -281,7 +281,7 @@ fn cut(name: &str, most: usize) -> String {
 impl SystemBody {
     /// The report of a row.
     pub fn report(system: &System) -> SystemReport {
-        Envelope::of(Self::of(system), Vec::new(), None)
+        ReportEnvelope::of(Self::of(system), Vec::new(), None)
     }
 
     fn attribute_table(&self) -> Table {

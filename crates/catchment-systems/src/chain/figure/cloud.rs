@@ -5,7 +5,7 @@ use super::super::report::ChainReport;
 use super::super::study::Arrival;
 use catchment::acceptance::Outcome;
 use catchment::document::percent;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{FIXED_EDGE, hex, outcome};
 use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, polyline};
 
@@ -19,10 +19,10 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &Ar
     let shown = &arrival.cloud[..arrival.cloud.len().min(MOST)];
     let reach = |k: usize, least: f64| 1.1 * shown.iter().map(|e| at(e)[k].abs()).fold(least, f64::max);
     let (x, pitch) = (reach(0, 1e-3), reach(1, 0.1));
-    let frame = Frame {
+    let frame = PlotFrame {
         rect,
-        x: Scale::new("x [D]".to_owned(), -x, x, false),
-        y: Scale::new("pitch [deg]".to_owned(), -pitch, pitch, false),
+        x: AxisScale::new("x [D]".to_owned(), -x, x, false),
+        y: AxisScale::new("pitch [deg]".to_owned(), -pitch, pitch, false),
     };
     let fine = format!(r#"stroke="{SOFT}" stroke-width="0.8" stroke-dasharray="2 3""#);
     svg.line([rect.x, frame.py(0.0)], [rect.x + rect.w, frame.py(0.0)], &fine);

@@ -4,7 +4,7 @@ use super::super::report::ChainReport;
 use super::super::study::Length;
 use super::{SIDE, TOP, WIDTH, degrees, headed};
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::axis::{Frame, Scale, short};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame, short};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 
@@ -54,10 +54,10 @@ fn chart(
     let (first, last) =
         all().fold((usize::MAX, 0), |(low, high), r| (low.min(r.modules), high.max(r.modules)));
     let highest = all().filter_map(&value).map(|(v, _)| v).fold(1e-9, f64::max);
-    let frame = Frame {
+    let frame = PlotFrame {
         rect,
-        x: Scale::new("modules".to_owned(), first as f64 - 0.5, last as f64 + 0.5, false),
-        y: Scale::new(label.to_owned(), 0.0, top.map_or(1.08 * highest, |top| 1.04 * top), false),
+        x: AxisScale::new("modules".to_owned(), first as f64 - 0.5, last as f64 + 0.5, false),
+        y: AxisScale::new(label.to_owned(), 0.0, top.map_or(1.08 * highest, |top| 1.04 * top), false),
     };
     let grid = format!(r#"stroke="{SOFT}" stroke-opacity="0.18" stroke-width="0.8""#);
     for y in frame.y.ticks((rect.h / 40.0) as usize) {

@@ -7,7 +7,7 @@ use super::super::shape::Side;
 use super::super::study::Study;
 use super::{SIDE, TOP, WIDTH, cloud, degrees, headed};
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{CURVES, FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, hex};
 use catchment::report::figure::draw::svg::{
     Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of,
@@ -209,10 +209,10 @@ fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
     let (low, high) = angles().fold((0.0f64, 0.0f64), |(low, high), a| (low.min(a), high.max(a)));
     let last = folded.track.last().map_or(1.0, |(time, _)| *time).max(1.0);
     let margin = 0.06 * (high - low).max(1.0);
-    let frame = Frame {
+    let frame = PlotFrame {
         rect,
-        x: Scale::new("t [s]".to_owned(), 0.0, last, false),
-        y: Scale::new("joint angles [deg]".to_owned(), low - margin, high + margin, false),
+        x: AxisScale::new("t [s]".to_owned(), 0.0, last, false),
+        y: AxisScale::new("joint angles [deg]".to_owned(), low - margin, high + margin, false),
     };
     let dotted = format!(r#"stroke="{SOFT}" stroke-width="0.9" stroke-dasharray="2 3""#);
     svg.line([rect.x, frame.py(-90.0)], [rect.x + rect.w, frame.py(-90.0)], &dotted);

@@ -9,14 +9,14 @@ use super::shape::{Shape, cells};
 use super::study::{Arrival, Length, Study};
 use catchment::document::{number, rounded};
 use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{Body as ReportBody, Envelope};
+use catchment::report::{ReportBody, ReportEnvelope};
 use catchment::run::Requirement;
 use serde::{Deserialize, Serialize};
 
 mod document;
 
 /// A chain's report, with its head.
-pub type ChainReport = Envelope<ChainBody>;
+pub type ChainReport = ReportEnvelope<ChainBody>;
 
 /// Results for a chain. Millimetres, radians, newtons, seconds; `_d` is in D, the width of a face.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -267,7 +267,7 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<Reach> {
 pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing>) -> ChainReport {
     let body = ChainBody::of(study, requirements);
     let doubts = doubts(study, &body).iter().map(WarningReport::note).collect();
-    Envelope::of(body, doubts, timing)
+    ReportEnvelope::of(body, doubts, timing)
 }
 
 /// What a reader must know.

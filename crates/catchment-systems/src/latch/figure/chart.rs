@@ -4,7 +4,7 @@
 use super::super::Latch;
 use super::super::force::{Forces, outside};
 use super::super::measured::REJECTED_OVERHANG;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{Rgb, hex, mix, sequential};
 use catchment::report::figure::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, width_of};
 
@@ -34,10 +34,10 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&La
     );
     let story = "points: measured; colours: model; pale: extrapolated, or an upper bound";
     svg.text([rect.x - 46.0, rect.y - 20.0], TICK, Anchor::Start, SOFT, story);
-    let frame = Frame {
+    let frame = PlotFrame {
         rect,
-        x: Scale::new("overhang o [mm]".to_owned(), OVERHANGS[0], OVERHANGS[1], false),
-        y: Scale::new("neck t [mm]".to_owned(), NECKS[0], NECKS[1], false),
+        x: AxisScale::new("overhang o [mm]".to_owned(), OVERHANGS[0], OVERHANGS[1], false),
+        y: AxisScale::new("neck t [mm]".to_owned(), NECKS[0], NECKS[1], false),
     };
     let [across, up] = CELLS;
     let step = [(OVERHANGS[1] - OVERHANGS[0]) / across as f64, (NECKS[1] - NECKS[0]) / up as f64];

@@ -2,7 +2,7 @@
 //! fitted to measurements.
 
 use super::super::press::Record;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 
@@ -19,10 +19,10 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record, latching: f64) {
         [first, .., last] => (way(first.above), way(last.above)),
         _ => return,
     };
-    let frame = Frame {
+    let frame = PlotFrame {
         rect,
-        x: Scale::new("way after first contact [mm]".to_owned(), first, last, false),
-        y: Scale::new("force [N]".to_owned(), 0.0, 1.15 * record.peak.max(latching), false),
+        x: AxisScale::new("way after first contact [mm]".to_owned(), first, last, false),
+        y: AxisScale::new("force [N]".to_owned(), 0.0, 1.15 * record.peak.max(latching), false),
     };
     let curve = |of: &dyn Fn(usize) -> f64| {
         polyline(
