@@ -3,12 +3,12 @@
 //!
 //! ```
 //! use catchment::design::SourceText;
-//! use catchment_systems::form::{Form, Section};
+//! use catchment_systems::form::{Form, FormTable};
 //!
 //! #[derive(Debug)]
 //! struct Arm { length: f64, angle: f64 }
 //!
-//! fn arm(form: &mut Form<'_>, root: &Section<'_>) -> Arm {
+//! fn arm(form: &mut Form<'_>, root: &FormTable<'_>) -> Arm {
 //!     let table = form.table(root, "arm");
 //!     let length = form.length(&table, "length", 1.0..=1000.0, Some(100.0));
 //!     let angle = form.angle(&table, "angle", 0.0..=1.6, None);
@@ -53,7 +53,7 @@ pub struct Form<'t> {
 
 /// One table of a form. It remembers the keys it was asked for: all others are unknown.
 #[derive(Debug)]
-pub struct Section<'t> {
+pub struct FormTable<'t> {
     path: String,
     span: Range<usize>,
     table: Option<&'t DeTable<'t>>,
@@ -69,7 +69,7 @@ pub struct Word<'t> {
     pub span: Range<usize>,
 }
 
-impl<'t> Section<'t> {
+impl<'t> FormTable<'t> {
     /// Where the table stands.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
@@ -107,7 +107,7 @@ impl Form<'_> {
     /// All problems of the text, in order.
     pub fn read<T>(
         source: SourceText,
-        fill: impl FnOnce(&mut Form<'_>, &Section<'_>) -> T,
+        fill: impl FnOnce(&mut Form<'_>, &FormTable<'_>) -> T,
     ) -> Result<T, Diagnostics> {
         let (document, syntax) = DeTable::parse_recoverable(&source.text);
         let broken = syntax.iter().map(|e| e.span().unwrap_or_default()).collect();
@@ -117,7 +117,7 @@ impl Form<'_> {
         };
         let found = syntax.into_iter().map(refused).collect();
         let mut form = Form { found, broken, text: &source.text };
-        let root = Section {
+        let root = FormTable {
             path: String::new(),
             span: 0..0,
             table: Some(document.get_ref()),
@@ -159,7 +159,7 @@ impl<'t> Form<'t> {
         self.refuse(value.span(), format!("`{place}` should be {expected}, not {found}"), None);
     }
 
-    fn missing(&mut self, section: &Section<'_>, key: &str, expected: &str) {
+    fn missing(&mut self, section: &FormTable<'_>, key: &str, expected: &str) {
         if self.broken.is_empty() {
             let message = format!("`{}` is missing: {expected}", section.place(key));
             self.refuse(section.span(), message, None);
@@ -167,19 +167,19 @@ impl<'t> Form<'t> {
     }
 
     /// A table; an empty one where it is not written.
-    pub fn table<'s>(&mut self, parent: &Section<'s>, key: &'static str) -> Section<'s> {
+    pub fn table<'s>(&mut self, parent: &FormTable<'s>, key: &'static str) -> FormTable<'s> {
         let path = parent.place(key);
-        let none = |span| Section { path: path.clone(), span, table: None, asked: RefCell::default() };
+        let none = |span| FormTable { path: path.clone(), span, table: None, asked: RefCell::default() };
         let Some(value) = parent.value(key) else { return none(parent.span()) };
         let DeValue::Table(table) = value.get_ref() else {
             self.wrong(&path, "a table", value);
             return none(value.span());
         };
-        Section { path, span: value.span(), table: Some(table), asked: RefCell::default() }
+        FormTable { path, span: value.span(), table: Some(table), asked: RefCell::default() }
     }
 
     /// The tables of an array, `[[key]]`.
-    pub fn tables<'s>(&mut self, parent: &Section<'s>, key: &'static str) -> Vec<Section<'s>> {
+    pub fn tables<'s>(&mut self, parent: &FormTable<'s>, key: &'static str) -> Vec<FormTable<'s>> {
         let path = parent.place(key);
         let Some(value) = parent.value(key) else { return Vec::new() };
         let DeValue::Array(array) = value.get_ref() else {
@@ -191,7 +191,7 @@ impl<'t> Form<'t> {
             let path = format!("{path}[{k}]");
             if let DeValue::Table(table) = entry.get_ref() {
                 let asked = RefCell::default();
-                sections.push(Section { path, span: entry.span(), table: Some(table), asked });
+                sections.push(FormTable { path, span: entry.span(), table: Some(table), asked });
             } else {
                 self.wrong(&path, "a table", entry);
             }
@@ -200,7 +200,7 @@ impl<'t> Form<'t> {
     }
 
     /// Complains about every key that was not asked for.
-    pub fn close(&mut self, section: &Section<'_>) {
+    pub fn close(&mut self, section: &FormTable<'_>) {
         let asked = section.asked.borrow();
         let named =
             if section.path.is_empty() { "the file".to_owned() } else { format!("[{}]", section.path) };
@@ -224,7 +224,7 @@ impl<'t> Form<'t> {
     /// A length, in millimetres.
     pub fn length(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         range: RangeInclusive<f64>,
         default: Option<f64>,
@@ -235,7 +235,7 @@ impl<'t> Form<'t> {
     /// An angle, in radians.
     pub fn angle(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         range: RangeInclusive<f64>,
         default: Option<f64>,
@@ -247,7 +247,7 @@ impl<'t> Form<'t> {
     /// A number.
     pub fn number(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         range: RangeInclusive<f64>,
         default: Option<f64>,
@@ -262,7 +262,7 @@ impl<'t> Form<'t> {
     #[expect(clippy::too_many_arguments, reason = "the three kinds of quantities differ in all of them")]
     fn quantity(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         kind: &str,
         unit: &str,
@@ -321,7 +321,11 @@ impl<'t> Form<'t> {
     }
 
     /// An array of lengths in millimetres, with the place of each.
-    pub fn lengths(&mut self, section: &Section<'_>, key: &'static str) -> Option<Vec<(f64, Range<usize>)>> {
+    pub fn lengths(
+        &mut self,
+        section: &FormTable<'_>,
+        key: &'static str,
+    ) -> Option<Vec<(f64, Range<usize>)>> {
         let value = section.value(key)?;
         let place = section.place(key);
         let DeValue::Array(array) = value.get_ref() else {
@@ -341,7 +345,7 @@ impl<'t> Form<'t> {
     /// A whole number.
     pub fn integer(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         range: RangeInclusive<i64>,
         default: Option<i64>,
@@ -369,7 +373,7 @@ impl<'t> Form<'t> {
     }
 
     /// True or false.
-    pub fn flag(&mut self, section: &Section<'_>, key: &'static str, default: bool) -> bool {
+    pub fn flag(&mut self, section: &FormTable<'_>, key: &'static str, default: bool) -> bool {
         let Some(value) = section.value(key) else { return default };
         if let DeValue::Boolean(flag) = value.get_ref() {
             *flag
@@ -380,7 +384,7 @@ impl<'t> Form<'t> {
     }
 
     /// A string and its place.
-    pub fn word<'s>(&mut self, section: &Section<'s>, key: &'static str) -> Option<Word<'s>> {
+    pub fn word<'s>(&mut self, section: &FormTable<'s>, key: &'static str) -> Option<Word<'s>> {
         let value = section.value(key)?;
         if let DeValue::String(text) = value.get_ref() {
             Some(Word { text, span: value.span() })
@@ -393,7 +397,7 @@ impl<'t> Form<'t> {
     /// One of the named values; the first is the default.
     pub fn choice<T: Copy>(
         &mut self,
-        section: &Section<'_>,
+        section: &FormTable<'_>,
         key: &'static str,
         known: &[(&'static str, T)],
     ) -> T {
@@ -433,7 +437,7 @@ mod tests {
     use super::*;
 
     fn refusals(text: &str) -> String {
-        let fill = |form: &mut Form<'_>, root: &Section<'_>| {
+        let fill = |form: &mut Form<'_>, root: &FormTable<'_>| {
             let table = form.table(root, "a");
             form.length(&table, "length", 1.0..=10.0, Some(2.0));
             form.angle(&table, "angle", 0.0..=1.0, Some(0.5));

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment_systems::catalog::{Attribute, Catalog};
+use catchment_systems::catalog::{Catalog, CatalogAttribute};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -14,14 +14,14 @@ fn page() -> String {
 #[test]
 fn every_attribute_stands_in_the_page_with_its_values_and_their_counts() {
     let (page, catalog) = (page(), Catalog::published().unwrap());
-    for attribute in Attribute::ALL {
+    for attribute in CatalogAttribute::ALL {
         let start = format!("| {} | ", attribute.title());
         let row = page.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("{start}"));
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for value in catalog.systems.iter().filter_map(|system| system.printed(attribute)) {
             *counts.entry(value).or_default() += 1;
         }
-        if attribute == Attribute::Introduced {
+        if attribute == CatalogAttribute::Introduced {
             let ends = [counts.keys().min().unwrap(), counts.keys().max().unwrap()];
             assert!(row.contains(&format!("{} … {}", ends[0], ends[1])), "{row}");
             continue;

@@ -10,7 +10,7 @@ use catchment::report::document::text;
 use catchment::report::{ReportBody, csv, figure as figures};
 use catchment_systems::catalog::report::{CatalogBody, SystemBody};
 use catchment_systems::catalog::{
-    Catalog, Condition, DESIGNS, DesignText, Order, Table, UnknownError, classify, figure,
+    Catalog, Condition, DESIGNS, DesignText, PublishedTable, RowOrder, UnknownError, classify, figure,
 };
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
@@ -163,8 +163,8 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     }
     if let Some(table) = args.as_printed {
         let table = match table {
-            Printed::Connectors => Table::Connectors,
-            Printed::Zraa => Table::Zraa,
+            Printed::Connectors => PublishedTable::Connectors,
+            Printed::Zraa => PublishedTable::Zraa,
         };
         to_stdout(&String::from_utf8_lossy(&catalog.as_printed(table)?))?;
         return Ok(ExitStatus::Done);
@@ -172,8 +172,8 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     let catalog = catalog.filtered(&conditions);
     let catalog = match args.sort {
         None => catalog,
-        Some(Sort::Introduced) => catalog.sorted(Order::Introduced),
-        Some(Sort::Zraa) => catalog.sorted(Order::Zraa),
+        Some(Sort::Introduced) => catalog.sorted(RowOrder::Introduced),
+        Some(Sort::Zraa) => catalog.sorted(RowOrder::Zraa),
     };
     let report = CatalogBody::report(&catalog);
     let printed = if args.json {

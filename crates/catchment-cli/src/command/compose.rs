@@ -11,9 +11,9 @@ use catchment::exec::Exec;
 use catchment::report::figure::ensure_fits;
 use catchment::report::{ReportBody, csv};
 use catchment::terminal::shown;
-use catchment_systems::compose::read::{Read, ReadError, read};
+use catchment_systems::compose::read::{ParsedRegion, ReadError, read};
 use catchment_systems::compose::{
-    ComposeBody, ComposeSettings, Frames, compose, figure, outline_svg, report,
+    ComposeBody, ComposeSettings, RegionFrames, compose, figure, outline_svg, report,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
         _ => None,
     };
     let settings = ComposeSettings {
-        frames: if args.frames == "world" { Frames::World } else { Frames::Own },
+        frames: if args.frames == "world" { RegionFrames::World } else { RegionFrames::Own },
         headings: spread(args.heading, args.headings),
         ..ComposeSettings::default()
     };
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
     output.finish(&report, || Ok(figure(&found)?))
 }
 
-fn region(path: &Path, exec: &Exec) -> Result<Read, Failure> {
+fn region(path: &Path, exec: &Exec) -> Result<ParsedRegion, Failure> {
     read(read_table(path)?, exec).map_err(|error| match error {
         ReadError::Diagnostics(diagnostics) => diagnostics.into(),
         ReadError::Problem(problem) => problem.into(),

@@ -14,8 +14,8 @@ use catchment::problem::Problem;
 use catchment::report::figure::ensure_fits;
 use catchment::terminal::shown;
 use catchment_systems::invert::{
-    Heights, InvertBody, InvertSettings, Limits, MAX_PIECES, design_file, figure, heights_of, invert,
-    list_of_angles, report, wanted_from_table,
+    Heights, InvertBody, InvertSettings, MAX_PIECES, ManufacturingLimits, design_file, figure, heights_of,
+    invert, list_of_angles, report, wanted_from_table,
 };
 use clap::Args;
 use glam::DMat3;
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     };
     let found = invert(design, connector, level, other.connector(), &settings, exec)?;
     drop(running);
-    let report = report(design, &found, Limits { feature_d, draft_rad: args.min_draft });
+    let report = report(design, &found, ManufacturingLimits { feature_d, draft_rad: args.min_draft });
     if output.own().is_some() {
         if report.pieces_d.len() > MAX_PIECES {
             let help = "want heights on a coarser grid".to_owned();

@@ -9,9 +9,9 @@ use crate::source::read_table;
 use catchment::exec::Exec;
 use catchment::report::folder::{encode, save_files};
 use catchment::report::{ReportBody, csv};
-use catchment_systems::latch::figure::{Drawn, chart};
+use catchment_systems::latch::figure::{LatchDrawings, chart};
 use catchment_systems::latch::force::Forces;
-use catchment_systems::latch::{Latch, LatchBody, TableBody, connector, drawing, press, report, table};
+use catchment_systems::latch::{LatchBody, LatchDesign, TableBody, connector, drawing, press, report, table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -62,9 +62,9 @@ fn of_design(args: &LatchArgs, design: &Path) -> Result<ExitStatus, Failure> {
     let source = read_table(design)?;
     let exec = Exec::new();
     signals::listen(&exec.cancel_flag())?;
-    let (latch, geometry) = Latch::read(source)?;
+    let (latch, geometry) = LatchDesign::read(source)?;
     let (forces, record) = (Forces::new()?, press::record(&latch, &geometry)?);
-    let drawn = Drawn { latch: &latch, geometry: &geometry, record: &record, forces: &forces };
+    let drawn = LatchDrawings { latch: &latch, geometry: &geometry, record: &record, forces: &forces };
     let mut report = report::report(&latch, &geometry, &forces, &record);
     if let Some(folder) = folder {
         let mut files = drawing::files(&latch, &geometry)?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
-pub enum Attribute {
+pub enum CatalogAttribute {
     /// Month of its publication.
     Introduced,
     /// Degree of passive alignment by contact or magnets.
@@ -32,23 +32,28 @@ pub enum Attribute {
 }
 
 /// Attribute, name in the table's file, other names, what a person reads above it.
-type Named = (Attribute, &'static str, &'static [&'static str], &'static str);
+type Named = (CatalogAttribute, &'static str, &'static [&'static str], &'static str);
 
 const NAMES: [Named; 11] = [
-    (Attribute::Introduced, "introduced", &["date"], "introduced"),
-    (Attribute::SelfAligningDegree, "self_aligning_degree", &["degree"], "self-aligning degree"),
-    (Attribute::Gendering, "gendering", &[], "gendering"),
-    (Attribute::ConnectionActivity, "connection_activity", &[], "connection activity"),
-    (Attribute::DisconnectionActivity, "disconnection_activity", &[], "disconnection activity"),
-    (Attribute::ConnectionAgency, "connection_agency", &[], "connection agency"),
-    (Attribute::DisconnectionAgency, "disconnection_agency", &[], "disconnection agency"),
-    (Attribute::ConnectionType, "connection_type", &["type"], "connection type"),
-    (Attribute::ConnectionMaintenance, "connection_maintenance", &["maintenance"], "connection maintenance"),
-    (Attribute::Compliance, "compliance", &[], "compliance"),
-    (Attribute::ApproachAngle, "approach_angle", &["approach"], "approach angle"),
+    (CatalogAttribute::Introduced, "introduced", &["date"], "introduced"),
+    (CatalogAttribute::SelfAligningDegree, "self_aligning_degree", &["degree"], "self-aligning degree"),
+    (CatalogAttribute::Gendering, "gendering", &[], "gendering"),
+    (CatalogAttribute::ConnectionActivity, "connection_activity", &[], "connection activity"),
+    (CatalogAttribute::DisconnectionActivity, "disconnection_activity", &[], "disconnection activity"),
+    (CatalogAttribute::ConnectionAgency, "connection_agency", &[], "connection agency"),
+    (CatalogAttribute::DisconnectionAgency, "disconnection_agency", &[], "disconnection agency"),
+    (CatalogAttribute::ConnectionType, "connection_type", &["type"], "connection type"),
+    (
+        CatalogAttribute::ConnectionMaintenance,
+        "connection_maintenance",
+        &["maintenance"],
+        "connection maintenance",
+    ),
+    (CatalogAttribute::Compliance, "compliance", &[], "compliance"),
+    (CatalogAttribute::ApproachAngle, "approach_angle", &["approach"], "approach angle"),
 ];
 
-impl Attribute {
+impl CatalogAttribute {
     /// All of them, in the order of the table.
     pub const ALL: [Self; 11] = [
         Self::Introduced,
@@ -101,7 +106,7 @@ impl Attribute {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Oddity {
     /// Attribute in which it occurs.
-    pub attribute: Attribute,
+    pub attribute: CatalogAttribute,
     /// Printed value.
     pub printed: &'static str,
     /// Our reading.
@@ -118,7 +123,7 @@ const NO_AGENCY: &str = "a dash is printed, and the text does not say what it me
 const PEBBLES: &str = "its row is a passive system that assembles itself";
 
 const fn odd(
-    attribute: Attribute,
+    attribute: CatalogAttribute,
     printed: &'static str,
     normal: &'static str,
     reason: &'static str,
@@ -129,36 +134,36 @@ const fn odd(
 /// Every printed value that has another normal form. The readings are ours.
 pub const ODDITIES: [Oddity; 11] = [
     odd(
-        Attribute::SelfAligningDegree,
+        CatalogAttribute::SelfAligningDegree,
         "Active",
         "None",
         "none of the three degrees that the text defines; a mechanism that aligns falls under its \"None\"",
     ),
-    odd(Attribute::DisconnectionActivity, "Manual", "Passive", "a hand undoes it: no module acts"),
+    odd(CatalogAttribute::DisconnectionActivity, "Manual", "Passive", "a hand undoes it: no module acts"),
     odd(
-        Attribute::ConnectionType,
+        CatalogAttribute::ConnectionType,
         "Magnet",
         "Magnetic",
         "the same mechanism is Magnetic in eight other rows",
     ),
     odd(
-        Attribute::ConnectionType,
+        CatalogAttribute::ConnectionType,
         "Mag/Latching",
         "Magnetic and latching",
         "both mechanisms; which of them carries the load is not said",
     ),
-    odd(Attribute::ConnectionMaintenance, "Low Power", "Powered", "it needs power, if little"),
+    odd(CatalogAttribute::ConnectionMaintenance, "Low Power", "Powered", "it needs power, if little"),
     odd(
-        Attribute::ConnectionMaintenance,
+        CatalogAttribute::ConnectionMaintenance,
         "Single Pump per Cluster",
         "Powered",
         "the pump that holds it runs on power, once for all modules",
     ),
-    odd(Attribute::ConnectionAgency, "-", UNSTATED, NO_AGENCY),
-    odd(Attribute::DisconnectionAgency, "-", UNSTATED, NO_AGENCY),
-    odd(Attribute::ConnectionActivity, "N/A", NOT_APPLICABLE, PEBBLES),
-    odd(Attribute::ConnectionAgency, "N/A", NOT_APPLICABLE, PEBBLES),
-    odd(Attribute::ApproachAngle, "N/A", NOT_APPLICABLE, PEBBLES),
+    odd(CatalogAttribute::ConnectionAgency, "-", UNSTATED, NO_AGENCY),
+    odd(CatalogAttribute::DisconnectionAgency, "-", UNSTATED, NO_AGENCY),
+    odd(CatalogAttribute::ConnectionActivity, "N/A", NOT_APPLICABLE, PEBBLES),
+    odd(CatalogAttribute::ConnectionAgency, "N/A", NOT_APPLICABLE, PEBBLES),
+    odd(CatalogAttribute::ApproachAngle, "N/A", NOT_APPLICABLE, PEBBLES),
 ];
 
 #[cfg(test)]
@@ -168,10 +173,10 @@ mod tests {
     #[test]
     fn every_attribute_is_found_by_its_names() {
         for (k, (attribute, key, others, _)) in NAMES.iter().enumerate() {
-            assert_eq!((attribute.index(), Attribute::ALL[k]), (k, *attribute));
-            assert_eq!(Attribute::named(&key.to_uppercase()), Some(*attribute));
-            assert!(others.iter().all(|other| Attribute::named(other) == Some(*attribute)));
+            assert_eq!((attribute.index(), CatalogAttribute::ALL[k]), (k, *attribute));
+            assert_eq!(CatalogAttribute::named(&key.to_uppercase()), Some(*attribute));
+            assert!(others.iter().all(|other| CatalogAttribute::named(other) == Some(*attribute)));
         }
-        assert_eq!(Attribute::named("colour"), None);
+        assert_eq!(CatalogAttribute::named("colour"), None);
     }
 }

@@ -1,7 +1,7 @@
 //! A design among the published systems: the catalogue entries that follow from its geometry.
 
-use super::attribute::Attribute;
-use super::data::{Catalog, Source, System};
+use super::attribute::CatalogAttribute;
+use super::data::{Catalog, RowSource, System};
 use super::facts::Fact;
 use super::rule::{Degree, Extents};
 use catchment::exec::{Cancelled, Exec};
@@ -93,14 +93,14 @@ impl Classified {
     /// Its row: what geometry does not decide is left open.
     pub fn row(&self) -> System {
         let value = |attribute| match attribute {
-            Attribute::SelfAligningDegree => self.degree.name(),
-            Attribute::Gendering => self.gendering(),
+            CatalogAttribute::SelfAligningDegree => self.degree.name(),
+            CatalogAttribute::Gendering => self.gendering(),
             _ => UNKNOWN,
         };
         System {
             name: self.name.clone(),
-            source: Source::Appended,
-            attributes: Some(Attribute::ALL.map(|attribute| value(attribute).to_owned())),
+            source: RowSource::Appended,
+            attributes: Some(CatalogAttribute::ALL.map(|attribute| value(attribute).to_owned())),
             published: None,
             computed: self.area(),
         }
@@ -189,10 +189,14 @@ mod tests {
         let with_attributes = catalog.systems.iter().filter(|system| system.attributes.is_some()).count();
         assert_eq!(with_attributes, 28);
         let row = catalog.systems.last().unwrap();
-        assert_eq!(row.printed(Attribute::Gendering), Some("Ungendered"));
-        assert_eq!((row.printed(Attribute::Introduced), row.area().map(f64::round)), (Some("-"), Some(2.0)));
+        assert_eq!(row.printed(CatalogAttribute::Gendering), Some("Ungendered"));
+        assert_eq!(
+            (row.printed(CatalogAttribute::Introduced), row.area().map(f64::round)),
+            (Some("-"), Some(2.0))
+        );
         // The printed tables stay as they are.
-        let printed = |catalog: &Catalog| catalog.as_printed(super::super::Table::Connectors).unwrap();
+        let printed =
+            |catalog: &Catalog| catalog.as_printed(super::super::PublishedTable::Connectors).unwrap();
         assert_eq!(printed(&catalog), printed(&Catalog::published().unwrap()));
     }
 }

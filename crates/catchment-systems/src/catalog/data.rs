@@ -1,6 +1,6 @@
 //! The two published tables, and the list of names that joins them.
 
-use super::attribute::Attribute;
+use super::attribute::CatalogAttribute;
 use serde::Serialize;
 
 /// The tables, as they were printed; dates are ISO months.
@@ -39,14 +39,14 @@ const X_FACE_AREA: f64 = 2.0;
 
 /// One of the published tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Table {
+pub enum PublishedTable {
     /// Table 1.1, connectors and their attributes.
     Connectors,
     /// Table 2.1, zero-rotation areas of acceptance.
     Zraa,
 }
 
-impl Table {
+impl PublishedTable {
     /// Its number.
     pub const fn name(self) -> &'static str {
         match self {
@@ -60,7 +60,7 @@ impl Table {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case", tag = "kind", content = "name")]
-pub enum Source {
+pub enum RowSource {
     /// Table 1.1, and table 2.1 under the given name if it lists the system.
     Connectors(Option<String>),
     /// Only table 2.1.
@@ -89,8 +89,8 @@ pub struct System {
     /// Its name: that of table 1.1 where it stands there.
     pub name: String,
     /// Where the row comes from.
-    pub source: Source,
-    /// The printed values by [`Attribute::index`]; `None` where table 1.1 does not have it.
+    pub source: RowSource,
+    /// The printed values by [`CatalogAttribute::index`]; `None` where table 1.1 does not have it.
     pub attributes: Option<[String; 11]>,
     /// The published area.
     pub published: Option<PublishedZraa>,
@@ -100,12 +100,12 @@ pub struct System {
 
 impl System {
     /// The printed value of an attribute.
-    pub fn printed(&self, attribute: Attribute) -> Option<&str> {
+    pub fn printed(&self, attribute: CatalogAttribute) -> Option<&str> {
         self.attributes.as_ref().map(|values| values[attribute.index()].as_str())
     }
 
     /// The value in the terms that the text defines.
-    pub fn normal(&self, attribute: Attribute) -> Option<&str> {
+    pub fn normal(&self, attribute: CatalogAttribute) -> Option<&str> {
         self.printed(attribute).map(|printed| attribute.normal(printed))
     }
 
@@ -117,9 +117,9 @@ impl System {
     /// Its name in table 2.1.
     pub fn zraa_name(&self) -> Option<&str> {
         match &self.source {
-            Source::Connectors(name) => name.as_deref(),
-            Source::ZraaAlone => Some(&self.name),
-            Source::Section412 | Source::Appended => None,
+            RowSource::Connectors(name) => name.as_deref(),
+            RowSource::ZraaAlone => Some(&self.name),
+            RowSource::Section412 | RowSource::Appended => None,
         }
     }
 }
@@ -154,13 +154,13 @@ impl Catalog {
         let mut areas = zraa_rows(ZRAA)?;
         let zraa_order = areas.iter().map(|(name, _)| name.clone()).collect();
         let mut systems = Vec::new();
-        for record in records(Table::Connectors, CONNECTORS, 1 + Attribute::ALL.len())? {
+        for record in records(PublishedTable::Connectors, CONNECTORS, 1 + CatalogAttribute::ALL.len())? {
             let (name, values) = (record.fields[0].clone(), &record.fields[1..]);
             let attributes: [String; 11] = std::array::from_fn(|k| values[k].clone());
             let alias = ALIASES.iter().find(|(own, _)| *own == name).map(|(_, alias)| *alias);
             let at = alias.and_then(|alias| areas.iter().position(|(other, _)| other == alias));
             let (alias, published) = at.map(|at| areas.remove(at)).unzip();
-            let source = Source::Connectors(alias);
+            let source = RowSource::Connectors(alias);
             systems.push(System { name, source, attributes: Some(attributes), published, computed: None });
         }
         let alone = |name: String, source, zraa| System {
@@ -170,10 +170,10 @@ impl Catalog {
             published: Some(zraa),
             computed: None,
         };
-        systems.extend(areas.into_iter().map(|(name, zraa)| alone(name, Source::ZraaAlone, zraa)));
+        systems.extend(areas.into_iter().map(|(name, zraa)| alone(name, RowSource::ZraaAlone, zraa)));
         let printed = format!("{X_FACE_AREA:.1}");
         let x_face = PublishedZraa { area_d2: X_FACE_AREA, printed, estimated: false };
-        systems.push(alone(X_FACE.to_owned(), Source::Section412, x_face));
+        systems.push(alone(X_FACE.to_owned(), RowSource::Section412, x_face));
         Ok(Self { systems, zraa_order })
     }
 
@@ -191,23 +191,23 @@ impl Catalog {
     ///
     /// # Errors
     /// None at present: every record has the columns of its table.
-    pub fn as_printed(&self, table: Table) -> Result<Vec<u8>, csv::Error> {
+    pub fn as_printed(&self, table: PublishedTable) -> Result<Vec<u8>, csv::Error> {
         let mut rows: Vec<Vec<String>> = Vec::new();
         match table {
-            Table::Connectors => {
+            PublishedTable::Connectors => {
                 rows.push(
                     std::iter::once("connector")
-                        .chain(Attribute::ALL.map(Attribute::key))
+                        .chain(CatalogAttribute::ALL.map(CatalogAttribute::key))
                         .map(str::to_owned)
                         .collect(),
                 );
                 for system in &self.systems {
-                    if let (Source::Connectors(_), Some(values)) = (&system.source, &system.attributes) {
+                    if let (RowSource::Connectors(_), Some(values)) = (&system.source, &system.attributes) {
                         rows.push(std::iter::once(&system.name).chain(values).cloned().collect());
                     }
                 }
             }
-            Table::Zraa => {
+            PublishedTable::Zraa => {
                 rows.push(["system", "normalized_zraa_sum", "estimated"].map(str::to_owned).to_vec());
                 for name in &self.zraa_order {
                     let system = self.systems.iter().find(|system| system.zraa_name() == Some(name));
@@ -228,7 +228,7 @@ struct Record {
     line: u64,
 }
 
-fn records(table: Table, text: &str, columns: usize) -> Result<Vec<Record>, DataError> {
+fn records(table: PublishedTable, text: &str, columns: usize) -> Result<Vec<Record>, DataError> {
     let refused = |line, reason| DataError { table: table.name(), line, reason };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut found = Vec::new();
@@ -257,10 +257,14 @@ fn zraa_rows(text: &str) -> Result<Vec<(String, PublishedZraa)>, DataError> {
         };
         Ok((name, PublishedZraa { area_d2, printed, estimated }))
     };
-    records(Table::Zraa, text, 3)?
+    records(PublishedTable::Zraa, text, 3)?
         .into_iter()
         .map(|record| {
-            row(record).map_err(|(line, reason)| DataError { table: Table::Zraa.name(), line, reason })
+            row(record).map_err(|(line, reason)| DataError {
+                table: PublishedTable::Zraa.name(),
+                line,
+                reason,
+            })
         })
         .collect()
 }
@@ -276,7 +280,9 @@ mod tests {
 
     #[test]
     fn both_tables_come_back_byte_for_byte() {
-        for (table, text, rows) in [(Table::Connectors, CONNECTORS, 27), (Table::Zraa, ZRAA, 11)] {
+        for (table, text, rows) in
+            [(PublishedTable::Connectors, CONNECTORS, 27), (PublishedTable::Zraa, ZRAA, 11)]
+        {
             let again = String::from_utf8(catalog().as_printed(table).unwrap()).unwrap();
             assert_eq!((again.as_str(), text.lines().count()), (text, 1 + rows), "{}", table.name());
         }
@@ -287,7 +293,7 @@ mod tests {
         let dates: Vec<String> = catalog()
             .systems
             .iter()
-            .filter_map(|system| system.printed(Attribute::Introduced).map(str::to_owned))
+            .filter_map(|system| system.printed(CatalogAttribute::Introduced).map(str::to_owned))
             .collect();
         assert!(dates.len() == 27 && dates.is_sorted());
         assert_eq!((dates[0].as_str(), dates[26].as_str()), ("1989-05", "2014-06"));
@@ -305,13 +311,13 @@ mod tests {
             }
             counts
         };
-        let expected: [(Attribute, &[(&str, usize)]); 10] = [
-            (Attribute::SelfAligningDegree, &[("High", 9), ("Low", 10), ("None", 7), ("Active", 1)]),
-            (Attribute::Gendering, &[("Gendered", 14), ("Ungendered", 13)]),
-            (Attribute::ConnectionActivity, &[("Active", 17), ("Passive", 9), ("N/A", 1)]),
-            (Attribute::DisconnectionActivity, &[("Active", 18), ("Passive", 8), ("Manual", 1)]),
+        let expected: [(CatalogAttribute, &[(&str, usize)]); 10] = [
+            (CatalogAttribute::SelfAligningDegree, &[("High", 9), ("Low", 10), ("None", 7), ("Active", 1)]),
+            (CatalogAttribute::Gendering, &[("Gendered", 14), ("Ungendered", 13)]),
+            (CatalogAttribute::ConnectionActivity, &[("Active", 17), ("Passive", 9), ("N/A", 1)]),
+            (CatalogAttribute::DisconnectionActivity, &[("Active", 18), ("Passive", 8), ("Manual", 1)]),
             (
-                Attribute::ConnectionAgency,
+                CatalogAttribute::ConnectionAgency,
                 &[
                     ("Double End", 9),
                     ("Male End", 7),
@@ -322,11 +328,11 @@ mod tests {
                 ],
             ),
             (
-                Attribute::DisconnectionAgency,
+                CatalogAttribute::DisconnectionAgency,
                 &[("Double End", 7), ("Male End", 7), ("Single End", 7), ("Female End", 3), ("-", 3)],
             ),
             (
-                Attribute::ConnectionType,
+                CatalogAttribute::ConnectionType,
                 &[
                     ("Latching", 14),
                     ("Magnetic", 8),
@@ -338,11 +344,11 @@ mod tests {
                 ],
             ),
             (
-                Attribute::ConnectionMaintenance,
+                CatalogAttribute::ConnectionMaintenance,
                 &[("Zero-Power", 23), ("Powered", 2), ("Low Power", 1), ("Single Pump per Cluster", 1)],
             ),
-            (Attribute::Compliance, &[("Rigid", 17), ("Compliant", 10)]),
-            (Attribute::ApproachAngle, &[("Perpendicular", 18), ("Non-Perpendicular", 8), ("N/A", 1)]),
+            (CatalogAttribute::Compliance, &[("Rigid", 17), ("Compliant", 10)]),
+            (CatalogAttribute::ApproachAngle, &[("Perpendicular", 18), ("Non-Perpendicular", 8), ("N/A", 1)]),
         ];
         for (attribute, values) in expected {
             let expected = values.iter().map(|(value, count)| ((*value).to_owned(), *count)).collect();
@@ -369,9 +375,9 @@ mod tests {
             assert_eq!((system.zraa_name(), system.published.is_some()), (Some(second), true), "{first}");
             assert_eq!(catalog.find(second).unwrap(), system);
         }
-        let of = |source: &Source| catalog.systems.iter().filter(|s| s.source == *source).count();
+        let of = |source: &RowSource| catalog.systems.iter().filter(|s| s.source == *source).count();
         assert_eq!(
-            (of(&Source::ZraaAlone), of(&Source::Connectors(None)), of(&Source::Section412)),
+            (of(&RowSource::ZraaAlone), of(&RowSource::Connectors(None)), of(&RowSource::Section412)),
             (3, 19, 1)
         );
         assert_eq!(catalog.systems.len(), 31);

@@ -1,7 +1,7 @@
 //! Selection and order of the catalogue's rows.
 
-use super::attribute::Attribute;
-use super::data::{Catalog, Source, System};
+use super::attribute::CatalogAttribute;
+use super::data::{Catalog, RowSource, System};
 use catchment::design::nearest;
 use std::collections::BTreeSet;
 
@@ -9,14 +9,14 @@ use std::collections::BTreeSet;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
     /// The attribute.
-    pub attribute: Attribute,
+    pub attribute: CatalogAttribute,
     /// The value, as the table or the normal form spells it.
     pub value: String,
 }
 
 /// The order of the rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub enum RowOrder {
     /// As printed, which is by date; rows without a date last.
     Introduced,
     /// By area, the largest first; rows without one last.
@@ -95,8 +95,8 @@ impl Catalog {
             return Err(UnknownError::Form { text: text.to_owned() });
         };
         let (name, value) = (name.trim(), value.trim());
-        let Some(attribute) = Attribute::named(name) else {
-            let known: Vec<String> = Attribute::ALL.map(|a| a.key().to_owned()).to_vec();
+        let Some(attribute) = CatalogAttribute::named(name) else {
+            let known: Vec<String> = CatalogAttribute::ALL.map(|a| a.key().to_owned()).to_vec();
             let (written, meant) = (name.to_owned(), likely(name, &known));
             return Err(UnknownError::Attribute { written, meant, known });
         };
@@ -109,7 +109,7 @@ impl Catalog {
     }
 
     /// Every value of an attribute, printed or normal, sorted.
-    pub fn values(&self, attribute: Attribute) -> Vec<String> {
+    pub fn values(&self, attribute: CatalogAttribute) -> Vec<String> {
         let of = |system: &System| {
             [system.printed(attribute), system.normal(attribute)]
                 .into_iter()
@@ -150,14 +150,15 @@ impl Catalog {
 
     /// The rows in another order; equal ones keep theirs.
     #[must_use]
-    pub fn sorted(mut self, order: Order) -> Self {
+    pub fn sorted(mut self, order: RowOrder) -> Self {
         match order {
-            Order::Introduced => self.systems.sort_by_key(|system| {
-                let date =
-                    system.printed(Attribute::Introduced).filter(|_| system.source != Source::Appended);
+            RowOrder::Introduced => self.systems.sort_by_key(|system| {
+                let date = system
+                    .printed(CatalogAttribute::Introduced)
+                    .filter(|_| system.source != RowSource::Appended);
                 (date.is_none(), date.map(str::to_owned))
             }),
-            Order::Zraa => self.systems.sort_by(|a, b| {
+            RowOrder::Zraa => self.systems.sort_by(|a, b| {
                 let area = |system: &System| system.area().unwrap_or(f64::NEG_INFINITY);
                 area(b).total_cmp(&area(a))
             }),
@@ -209,12 +210,13 @@ mod tests {
 
     #[test]
     fn rows_are_sorted_by_area_and_by_date() {
-        let by_area = catalog().sorted(Order::Zraa);
+        let by_area = catalog().sorted(RowOrder::Zraa);
         let first: Vec<&str> = by_area.systems.iter().take(4).map(|system| system.name.as_str()).collect();
         assert_eq!(first, ["3-D X-Face", "amour", "DRAGON", "SINGO"]);
-        assert_eq!(catalog().sorted(Order::Introduced), catalog());
-        let dates: Vec<_> = by_area.sorted(Order::Introduced).systems;
-        let dates: Vec<_> = dates.iter().filter_map(|system| system.printed(Attribute::Introduced)).collect();
+        assert_eq!(catalog().sorted(RowOrder::Introduced), catalog());
+        let dates: Vec<_> = by_area.sorted(RowOrder::Introduced).systems;
+        let dates: Vec<_> =
+            dates.iter().filter_map(|system| system.printed(CatalogAttribute::Introduced)).collect();
         assert!(dates.is_sorted());
     }
 }

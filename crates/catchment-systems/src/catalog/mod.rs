@@ -28,10 +28,10 @@ mod filter;
 pub mod report;
 mod rule;
 
-pub use attribute::{Attribute, ODDITIES, Oddity};
+pub use attribute::{CatalogAttribute, ODDITIES, Oddity};
 pub use classify::{Classified, ClassifyError, Ratio, classify};
-pub use data::{ALIASES, Catalog, DataError, PublishedZraa, Source, System, Table};
+pub use data::{ALIASES, Catalog, DataError, PublishedTable, PublishedZraa, RowSource, System};
 pub use designs::{DESIGNS, DesignText};
-pub use facts::{Fact, GEOMETRY, Number, Provenance, Shape, numbers};
-pub use filter::{Condition, Order, UnknownError};
+pub use facts::{AcceptanceShape, Fact, GEOMETRY, Number, Provenance, numbers};
+pub use filter::{Condition, RowOrder, UnknownError};
 pub use rule::{Degree, Extents, HIGH};

@@ -129,7 +129,7 @@ fn on_axis(polygon: &[DVec2], axis: DVec2) -> Option<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Attribute, Catalog};
+    use super::super::{Catalog, CatalogAttribute};
     use super::*;
 
     fn region(parts: &[[f64; 4]]) -> Zraa {
@@ -164,7 +164,8 @@ mod tests {
         let printed = |share: f64| -> Vec<(String, bool)> {
             let judged = catalog.systems.iter().filter_map(|system| {
                 let area = system.published.as_ref()?.area_d2;
-                let printed = system.printed(Attribute::SelfAligningDegree).filter(|d| *d != "None")?;
+                let printed =
+                    system.printed(CatalogAttribute::SelfAligningDegree).filter(|d| *d != "None")?;
                 Some((system.name.clone(), Degree::of(share * area.sqrt()).name() == printed))
             });
             judged.collect()

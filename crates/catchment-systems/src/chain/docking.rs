@@ -13,7 +13,7 @@
 //! guided by its centre of rotation, without the springs of the chain.
 
 use super::accumulation::Covariance;
-use super::kinematics::Body;
+use super::kinematics::ModuleDimensions;
 use catchment::acceptance::Outcome;
 use catchment::design::{Design, DesignDefect, Quantity, QuantityUnit};
 use catchment::exec::{Cancelled, Exec};
@@ -30,7 +30,7 @@ use std::f64::consts::SQRT_2;
 /// The design cannot be free so.
 pub fn as_chain_uses_it(
     design: Design,
-    body: &Body,
+    body: &ModuleDimensions,
     rotation_length: Option<f64>,
 ) -> Result<Design, DesignDefect> {
     let in_d = |value| Quantity { value, unit: QuantityUnit::D };
@@ -43,7 +43,7 @@ pub fn as_chain_uses_it(
 }
 
 /// The pose error of a chain that is off by lateral (mm), normal (mm), angle (rad).
-pub fn pose_error(body: &Body, [lateral, _, angle]: [f64; 3]) -> PoseError {
+pub fn pose_error(body: &ModuleDimensions, [lateral, _, angle]: [f64; 3]) -> PoseError {
     PoseError { x: -lateral / body.face, pitch: angle, ..PoseError::default() }
 }
 
@@ -53,7 +53,7 @@ pub fn pose_error(body: &Body, [lateral, _, angle]: [f64; 3]) -> PoseError {
 /// It was asked to stop.
 pub fn docks(
     problem: &Problem,
-    body: &Body,
+    body: &ModuleDimensions,
     cloud: &[[f64; 3]],
     exec: &Exec,
 ) -> Result<Vec<bool>, Cancelled> {
@@ -96,7 +96,7 @@ pub fn offsets_without_rotation(problem: &Problem, exec: &Exec) -> Result<[f64; 
 }
 
 /// The probability that the lateral offset alone lies between two offsets in D, to first order.
-pub fn lateral_probability(body: &Body, errors: &Covariance, [from, to]: [f64; 2]) -> f64 {
+pub fn lateral_probability(body: &ModuleDimensions, errors: &Covariance, [from, to]: [f64; 2]) -> f64 {
     let (mean, sigma) = (-errors.mean[0] / body.face, errors.sigmas()[0] / body.face);
     if sigma == 0.0 {
         return f64::from(u8::from(from < mean && mean < to));
@@ -107,7 +107,7 @@ pub fn lateral_probability(body: &Body, errors: &Covariance, [from, to]: [f64; 2
 
 #[cfg(test)]
 mod tests {
-    use super::super::accumulation::{Closing, Errors};
+    use super::super::accumulation::{ChainErrors, Closing};
     use super::*;
     use catchment::design::SourceText;
     use catchment::problem::Draft;
@@ -116,12 +116,12 @@ mod tests {
         let text =
             "[connector]\nfamily = \"x-face\"\naspect_ratio = 1.0\n[alignment]\ncenter_of_rotation = 0.5\n";
         let draft = Draft::read(SourceText::new("x.toml", text)).unwrap();
-        let change = |design| as_chain_uses_it(design, &Body::default(), Some(rotation_length));
+        let change = |design| as_chain_uses_it(design, &ModuleDimensions::default(), Some(rotation_length));
         draft.change("chain", change).unwrap().build().unwrap()
     }
 
-    fn joints(degrees: f64) -> Errors {
-        Errors { joint_sigma: degrees.to_radians(), ..Errors::default() }
+    fn joints(degrees: f64) -> ChainErrors {
+        ChainErrors { joint_sigma: degrees.to_radians(), ..ChainErrors::default() }
     }
 
     #[test]
@@ -141,8 +141,8 @@ mod tests {
         ];
         for (reach, published) in rows {
             for (n, published) in [8, 12, 16, 20].into_iter().zip(published) {
-                let errors = Closing::straight(Body::default(), n).first_order(&joints(1.0));
-                let found = lateral_probability(&Body::default(), &errors, [-reach, reach]);
+                let errors = Closing::straight(ModuleDimensions::default(), n).first_order(&joints(1.0));
+                let found = lateral_probability(&ModuleDimensions::default(), &errors, [-reach, reach]);
                 assert!((found - published).abs() < 0.6e-3, "{n}, {reach}: {found} for {published}");
             }
         }
@@ -156,7 +156,7 @@ mod tests {
     /// 0.88 for 16 modules at 0.5°, where 0.918 is published.)
     #[test]
     fn straight_chains_dock_as_published() {
-        let (problem, body, exec) = (x_face(0.5), Body::default(), Exec::new());
+        let (problem, body, exec) = (x_face(0.5), ModuleDimensions::default(), Exec::new());
         let rows = [
             (0.5, [1.00, 1.00, 0.988, 0.918, 0.746]),
             (1.0, [1.00, 0.986, 0.821, 0.565, 0.456]),
@@ -177,7 +177,7 @@ mod tests {
     /// With the other sign the answer is another one: published as 0.968 where the right one gives 0.988.
     #[test]
     fn the_sign_of_the_pitch_decides() {
-        let (problem, body, exec) = (x_face(0.5), Body::default(), Exec::new());
+        let (problem, body, exec) = (x_face(0.5), ModuleDimensions::default(), Exec::new());
         let cloud = Closing::straight(body, 16).cloud(&joints(0.5), 1, 1000, &exec).unwrap();
         let docked = |cloud: &[[f64; 3]]| Probability::of(&docks(&problem, &body, cloud, &exec).unwrap());
         let turned: Vec<[f64; 3]> = cloud.iter().map(|[l, n, a]| [-l, *n, *a]).collect();

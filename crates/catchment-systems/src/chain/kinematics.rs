@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// The dimensions of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Body {
+pub struct ModuleDimensions {
     /// Distance from a rotor to the next, in mm.
     pub pitch: f64,
     /// Width of a face and of the module: D, in mm.
@@ -25,14 +25,14 @@ pub struct Body {
     pub length: f64,
 }
 
-impl Default for Body {
+impl Default for ModuleDimensions {
     /// `CKBot` with the latching X-Face: the dissertation, section 6.1 (p. 94–95).
     fn default() -> Self {
         Self { pitch: 95.0, face: 65.5, overhang: 47.5, length: 90.4 }
     }
 }
 
-impl Body {
+impl ModuleDimensions {
     /// Where the last rotor lies, in D in front of the face: behind it, so negative.
     pub fn center_of_rotation(&self) -> f64 {
         -self.overhang / self.face
@@ -42,7 +42,7 @@ impl Body {
 /// A position in the plane with a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Frame {
+pub struct PlanarPose {
     /// Across the plane, in mm.
     pub x: f64,
     /// Up the plane, in mm.
@@ -51,7 +51,7 @@ pub struct Frame {
     pub heading: f64,
 }
 
-impl Frame {
+impl PlanarPose {
     /// The place alone.
     pub const fn place(&self) -> DVec2 {
         DVec2::new(self.x, self.y)
@@ -94,7 +94,7 @@ pub fn nearest_quarter(angle: f64) -> f64 {
 }
 
 /// Rotor of every module with the heading behind its joint, from the base on; link k is `links(k)` long, counted from 0.
-pub fn rotors_with(base: Frame, angles: &[f64], links: impl Fn(usize) -> f64) -> Vec<Frame> {
+pub fn rotors_with(base: PlanarPose, angles: &[f64], links: impl Fn(usize) -> f64) -> Vec<PlanarPose> {
     let mut next = base;
     let mut found = Vec::with_capacity(angles.len());
     for (k, angle) in angles.iter().enumerate() {
@@ -106,8 +106,8 @@ pub fn rotors_with(base: Frame, angles: &[f64], links: impl Fn(usize) -> f64) ->
 }
 
 /// Rotor of every module of a chain that starts at the origin along x.
-pub fn rotors(body: &Body, angles: &[f64]) -> Vec<Frame> {
-    rotors_with(Frame::default(), angles, |_| body.pitch)
+pub fn rotors(body: &ModuleDimensions, angles: &[f64]) -> Vec<PlanarPose> {
+    rotors_with(PlanarPose::default(), angles, |_| body.pitch)
 }
 
 /// How a point at `at`, fixed behind a joint at `rotor`, moves per radian of the joint.
@@ -128,7 +128,7 @@ mod tests {
         #[test]
         fn the_swing_is_the_derivative(angles in proptest::collection::vec(-1.7..1.7f64, 2..12), joint in 0usize..12) {
             let joint = joint % angles.len();
-            let body = Body::default();
+            let body = ModuleDimensions::default();
             let tip = |change: f64| {
                 let mut angles = angles.clone();
                 angles[joint] += change;
@@ -149,9 +149,9 @@ mod tests {
 
     #[test]
     fn a_straight_chain_lies_along_x() {
-        let found = rotors(&Body::default(), &[0.0; 4]);
+        let found = rotors(&ModuleDimensions::default(), &[0.0; 4]);
         assert_eq!(found.iter().map(|r| r.x).collect::<Vec<_>>(), [0.0, 95.0, 190.0, 285.0]);
-        assert_eq!(found[3].ahead(0.0, 47.5), Frame { x: 332.5, y: 0.0, heading: 0.0 });
-        assert!((Body::default().center_of_rotation() + 0.725_190_84).abs() < 1e-8);
+        assert_eq!(found[3].ahead(0.0, 47.5), PlanarPose { x: 332.5, y: 0.0, heading: 0.0 });
+        assert!((ModuleDimensions::default().center_of_rotation() + 0.725_190_84).abs() < 1e-8);
     }
 }

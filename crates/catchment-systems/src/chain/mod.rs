@@ -62,8 +62,8 @@ pub mod sequence;
 pub mod shape;
 pub mod study;
 
-pub use accumulation::{Covariance, Errors};
+pub use accumulation::{ChainErrors, Covariance};
 pub use file::ChainFile;
-pub use kinematics::{Body, Frame};
+pub use kinematics::{ModuleDimensions, PlanarPose};
 pub use report::ChainReport;
-pub use shape::{Latch, Shape, Side};
+pub use shape::{ChainShape, LatchingPair, ModuleFace};

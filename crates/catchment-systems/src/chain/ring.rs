@@ -10,9 +10,9 @@
 //! definition (section 6.3, p. 102); the first measure is the plain reading of it. Statics adds: all three
 //! choices have joints 3 pitches away from the approach axis, so all press equally hard along it.
 
-use super::accumulation::{Closing, Covariance, Errors};
-use super::kinematics::Body;
-use super::shape::{FIRST_CORNERS, Shape, latches};
+use super::accumulation::{ChainErrors, Closing, Covariance};
+use super::kinematics::ModuleDimensions;
+use super::shape::{ChainShape, FIRST_CORNERS, latches};
 use serde::{Deserialize, Serialize};
 
 /// Effect of a choice of corners on the closing link.
@@ -51,12 +51,12 @@ pub fn forces(closing: &Closing, torque: f64, turned: &[usize]) -> (f64, f64) {
 }
 
 /// All choices of corners.
-pub fn choices(body: &Body, errors: &Errors, torque: f64) -> Vec<Corners> {
+pub fn choices(body: &ModuleDimensions, errors: &ChainErrors, torque: f64) -> Vec<Corners> {
     /// Mirror images differ by rounding.
     const SAME: f64 = 1e-9;
     let mut found: Vec<Corners> = FIRST_CORNERS
         .filter_map(|first_corner| {
-            let shape = Shape::O { first_corner };
+            let shape = ChainShape::O { first_corner };
             let angles = shape.angles();
             let latch = *latches(&angles).first()?;
             let closing = Closing::latch(*body, &angles, &latch, &[]);
@@ -92,8 +92,8 @@ mod tests {
 
     #[test]
     fn corners_are_ranked_by_error_and_by_force() {
-        let errors = Errors { joint_sigma: 1f64.to_radians(), ..Errors::default() };
-        let found = choices(&Body::default(), &errors, 10.9);
+        let errors = ChainErrors { joint_sigma: 1f64.to_radians(), ..ChainErrors::default() };
+        let found = choices(&ModuleDimensions::default(), &errors, 10.9);
         assert_eq!(found.iter().map(|c| c.rank_by_error).collect::<Vec<_>>(), [2, 1, 2]);
         assert_eq!(found.iter().map(|c| c.rank_by_force).collect::<Vec<_>>(), [1, 3, 1]);
         // Half a pitch, a pitch and a half; three pitches along the normal for all.
@@ -107,9 +107,9 @@ mod tests {
     /// The stall force at one pitch, 114.7 N: 12 times what latches.
     #[test]
     fn the_p_presses_with_the_published_force() {
-        let angles = Shape::P.angles();
-        let closing = Closing::latch(Body::default(), &angles, &latches(&angles)[0], &[]);
-        let (press, _) = forces(&closing, 10.9, &Shape::P.turned());
+        let angles = ChainShape::P.angles();
+        let closing = Closing::latch(ModuleDimensions::default(), &angles, &latches(&angles)[0], &[]);
+        let (press, _) = forces(&closing, 10.9, &ChainShape::P.turned());
         assert!((press - 114.7).abs() < 0.05 && (press / 9.61).floor() == 11.0, "{press}");
     }
 }

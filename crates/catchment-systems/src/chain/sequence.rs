@@ -16,7 +16,7 @@
 //! similar procedure" for the O: their commands here are ours.
 
 use super::kinematics::nearest_quarter;
-use super::shape::{Latch, Reading, Shape, latches};
+use super::shape::{ChainShape, LatchingPair, Reading, latches};
 use catchment::design::{Diagnostic, DiagnosticCollector, Diagnostics, SourceText};
 use catchment::suggest::number_help;
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ impl Command {
 /// Commands to joints at one time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Step {
+pub struct CommandStep {
     /// Time, in seconds.
     pub time_s: f64,
     /// Joints, numbered from 1, and their commands.
@@ -55,11 +55,11 @@ pub struct Step {
 
 /// Commands over time, and the pairs of faces that may latch on the way.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sequence {
+pub struct CommandSequence {
     /// In the order of time.
-    pub steps: Vec<Step>,
+    pub steps: Vec<CommandStep>,
     /// Pairs that may latch.
-    pub latches: Vec<Latch>,
+    pub latches: Vec<LatchingPair>,
     /// Where the commands come from.
     pub source: &'static str,
 }
@@ -75,25 +75,25 @@ const STRAIGHT: Command = Command::Angle(0.0);
 const OPEN: Command = Command::Angle(-1.3);
 const SQUARE: Command = Command::Angle(-FRAC_PI_2);
 
-impl Sequence {
+impl CommandSequence {
     /// The sequence of a shape.
     ///
     /// # Errors
     /// None at present: the stored table is read in a test.
-    pub fn of(shape: Shape) -> Result<Self, Diagnostics> {
+    pub fn of(shape: ChainShape) -> Result<Self, Diagnostics> {
         let steps = match shape {
-            Shape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
+            ChainShape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
             // The fold presses 5 against 2, and brings 6 to 1; joint 2 presses those.
-            Shape::Block { reading: Reading::Middle } => {
+            ChainShape::Block { reading: Reading::Middle } => {
                 let mut steps = lattice_step(0.0, 3, 4);
                 steps.extend([
-                    Step { time_s: 7.0, commands: vec![(2, PUSH)] },
-                    Step { time_s: 8.0, commands: vec![(2, Command::Slack)] },
+                    CommandStep { time_s: 7.0, commands: vec![(2, PUSH)] },
+                    CommandStep { time_s: 8.0, commands: vec![(2, Command::Slack)] },
                 ]);
                 steps
             }
-            Shape::Block { reading: Reading::Tail } => {
-                let fold = |time_s, command| Step { time_s, commands: vec![(2, command)] };
+            ChainShape::Block { reading: Reading::Tail } => {
+                let fold = |time_s, command| CommandStep { time_s, commands: vec![(2, command)] };
                 let mut steps = lattice_step(0.0, 4, 5);
                 steps.extend([
                     fold(7.0, PRESS),
@@ -103,10 +103,10 @@ impl Sequence {
                 ]);
                 steps
             }
-            Shape::O { .. } => ring(&shape.turned()),
+            ChainShape::O { .. } => ring(&shape.turned()),
         };
         let source = match shape {
-            Shape::P => "the dissertation's table 6.2",
+            ChainShape::P => "the dissertation's table 6.2",
             _ => "ours, after table 6.2: the dissertation does not tabulate them",
         };
         Ok(Self { steps, latches: latches(&shape.angles()), source })
@@ -147,7 +147,7 @@ impl Sequence {
 }
 
 /// Table 6.2 for another pair of joints.
-fn lattice_step(start_s: f64, bend: usize, press: usize) -> Vec<Step> {
+fn lattice_step(start_s: f64, bend: usize, press: usize) -> Vec<CommandStep> {
     let rows = [
         (0.0, STRAIGHT, STRAIGHT),
         (1.0, L, STRAIGHT),
@@ -156,12 +156,13 @@ fn lattice_step(start_s: f64, bend: usize, press: usize) -> Vec<Step> {
         (5.0, Command::Slack, PRESS),
         (6.0, Command::Slack, Command::Slack),
     ];
-    rows.map(|(time, a, b)| Step { time_s: start_s + time, commands: vec![(bend, a), (press, b)] }).to_vec()
+    rows.map(|(time, a, b)| CommandStep { time_s: start_s + time, commands: vec![(bend, a), (press, b)] })
+        .to_vec()
 }
 
 /// All corners fold together; then the two far ones press the last face onto the first, twice. Four slack corners would shear the
 /// ring, so the first holds.
-fn ring(corners: &[usize]) -> Vec<Step> {
+fn ring(corners: &[usize]) -> Vec<CommandStep> {
     let [first, far, farther, last] = corners else { return Vec::new() };
     let all = |command| corners.iter().map(|k| (*k, command)).collect::<Vec<_>>();
     let press = || vec![(*far, PRESS), (*farther, PRESS)];
@@ -176,14 +177,14 @@ fn ring(corners: &[usize]) -> Vec<Step> {
         (7.0, press()),
         (8.0, loose()),
     ];
-    rows.map(|(time_s, commands)| Step { time_s, commands }).to_vec()
+    rows.map(|(time_s, commands)| CommandStep { time_s, commands }).to_vec()
 }
 
 /// Reads a table of commands: `time_s,module_4,module_5`, angles in radians or `slack`.
 ///
 /// # Errors
 /// Everything that is wrong with it, each in its place.
-pub fn table(source: &SourceText) -> Result<Vec<Step>, Diagnostics> {
+pub fn table(source: &SourceText) -> Result<Vec<CommandStep>, Diagnostics> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source.text.as_bytes());
     let mut wrong = DiagnosticCollector::default();
     let joints: Vec<Option<usize>> = match reader.headers() {
@@ -197,7 +198,7 @@ pub fn table(source: &SourceText) -> Result<Vec<Step>, Diagnostics> {
         let help = "the header is time_s and a column module_N for each joint".to_owned();
         wrong.push(Diagnostic::new("a column is of no module", Some(help)).at(Some(0..first_line(source))));
     }
-    let mut steps: Vec<Step> = Vec::new();
+    let mut steps: Vec<CommandStep> = Vec::new();
     for record in reader.records() {
         let record = match record {
             Ok(record) => record,
@@ -228,7 +229,7 @@ pub fn table(source: &SourceText) -> Result<Vec<Step>, Diagnostics> {
                 _ => refuse(format!("`{cell}` is neither an angle in radians nor slack"), number_help(cell)),
             }
         }
-        steps.push(Step { time_s, commands });
+        steps.push(CommandStep { time_s, commands });
     }
     if wrong.is_empty() { Ok(steps) } else { Err(wrong.of(source.clone())) }
 }
@@ -243,27 +244,27 @@ fn first_line(source: &SourceText) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kinematics::{Body, Frame, rotors, wrapped};
+    use super::super::kinematics::{ModuleDimensions, PlanarPose, rotors, wrapped};
     use super::*;
     use std::f64::consts::PI;
 
     /// Rotors 5 and 6 with rotor 3 at the origin and the link behind it along x.
-    fn seen_from_3(angles: &[f64]) -> [Frame; 2] {
-        let rotors = rotors(&Body::default(), angles);
-        [4, 5].map(|k: usize| Frame {
+    fn seen_from_3(angles: &[f64]) -> [PlanarPose; 2] {
+        let rotors = rotors(&ModuleDimensions::default(), angles);
+        [4, 5].map(|k: usize| PlanarPose {
             x: rotors[k].x - rotors[2].x,
             y: rotors[k].y - rotors[2].y,
             ..rotors[k]
         })
     }
 
-    fn near(found: Frame, x: f64, y: f64) {
+    fn near(found: PlanarPose, x: f64, y: f64) {
         assert!((found.x - x).abs() < 0.006 && (found.y - y).abs() < 0.006, "{found:?} for {x} {y}");
     }
 
     #[test]
     fn table_6_2_is_the_sequence_of_the_p() {
-        let sequence = Sequence::of(Shape::P).unwrap();
+        let sequence = CommandSequence::of(ChainShape::P).unwrap();
         assert_eq!(sequence.steps, lattice_step(0.0, 4, 5));
         assert_eq!(
             sequence.steps.iter().map(|s| s.time_s).collect::<Vec<_>>(),
@@ -287,7 +288,7 @@ mod tests {
         let [five, six] = seen_from_3(&[0.0, 0.0, 0.0, -1.67, 1.67 - PI, 0.0]);
         near(five, 85.59, -94.53);
         near(six, -9.41, -94.53);
-        let angles = Sequence::of(Shape::P).unwrap().commanded_angles(6);
+        let angles = CommandSequence::of(ChainShape::P).unwrap().commanded_angles(6);
         let [five, six] = seen_from_3(&angles[2]);
         near(five, 85.59, -94.53);
         near(six, -6.01, -69.34);
@@ -315,13 +316,16 @@ mod tests {
 
     #[test]
     fn commands_end_slack() {
-        let shapes =
-            [Shape::P, Shape::Block { reading: Reading::Middle }, Shape::Block { reading: Reading::Tail }];
-        for shape in shapes.into_iter().chain([Shape::O { first_corner: 2 }]) {
-            let told = Sequence::of(shape).unwrap().commanded(shape.modules());
+        let shapes = [
+            ChainShape::P,
+            ChainShape::Block { reading: Reading::Middle },
+            ChainShape::Block { reading: Reading::Tail },
+        ];
+        for shape in shapes.into_iter().chain([ChainShape::O { first_corner: 2 }]) {
+            let told = CommandSequence::of(shape).unwrap().commanded(shape.modules());
             let last = told.last().unwrap();
             // The first corner of a ring holds its shape.
-            let holds = usize::from(matches!(shape, Shape::O { .. }));
+            let holds = usize::from(matches!(shape, ChainShape::O { .. }));
             for joint in shape.turned().into_iter().skip(holds) {
                 assert_eq!(last[joint - 1], Command::Slack, "{shape:?} {joint}");
             }

@@ -20,7 +20,7 @@
 //! straight chain, like a zipper. The corners of the O are chosen so that the closing link lies in the middle
 //! of a side.
 
-use super::kinematics::{Body, Frame, rotors, wrapped};
+use super::kinematics::{ModuleDimensions, PlanarPose, rotors, wrapped};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,7 +28,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Side {
+pub enum ModuleFace {
     /// Front face, behind the joint.
     Front,
     /// Left face, behind the joint.
@@ -39,7 +39,7 @@ pub enum Side {
     Back,
 }
 
-impl Side {
+impl ModuleFace {
     /// How far it is turned from the heading that it is fixed to.
     pub const fn turn(self) -> f64 {
         match self {
@@ -61,7 +61,13 @@ impl Side {
     }
 
     /// The face centre with its outward direction, from the rotors of a chain and its joint angles; `module` from 1.
-    pub fn of(self, body: &Body, rotors: &[Frame], angles: &[f64], module: usize) -> Frame {
+    pub fn of(
+        self,
+        body: &ModuleDimensions,
+        rotors: &[PlanarPose],
+        angles: &[f64],
+        module: usize,
+    ) -> PlanarPose {
         let rotor = rotors[module - 1];
         // What lies before the joint does not turn with it.
         let before = if self == Self::Back { -angles[module - 1] } else { 0.0 };
@@ -72,32 +78,32 @@ impl Side {
 /// Two faces that latch; modules are numbered from 1, and `from` is the nearer to the base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Latch {
+pub struct LatchingPair {
     /// Module nearer to the base.
     pub from: usize,
     /// Module farther along the chain.
     pub to: usize,
     /// Face of `from`.
-    pub from_side: Side,
+    pub from_side: ModuleFace,
     /// Face of `to`.
-    pub to_side: Side,
+    pub to_side: ModuleFace,
 }
 
-impl Latch {
+impl LatchingPair {
     /// `3–6`.
     pub fn name(&self) -> String {
         format!("{}–{}", self.from, self.to)
     }
 
     /// Both faces, from the rotors of a chain and its joint angles.
-    pub fn faces(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> [Frame; 2] {
+    pub fn faces(&self, body: &ModuleDimensions, rotors: &[PlanarPose], angles: &[f64]) -> [PlanarPose; 2] {
         [self.from_side.of(body, rotors, angles, self.from), self.to_side.of(body, rotors, angles, self.to)]
     }
 
     /// Joints between the two faces, counted from 0.
     pub const fn joints(&self) -> std::ops::Range<usize> {
         match self.from_side {
-            Side::Back => self.from - 1..self.to,
+            ModuleFace::Back => self.from - 1..self.to,
             _ => self.from..self.to,
         }
     }
@@ -118,7 +124,7 @@ pub enum Reading {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name")]
-pub enum Shape {
+pub enum ChainShape {
     /// Six modules, one lattice step.
     P,
     /// Six modules, a cluster of 3 × 2.
@@ -138,7 +144,7 @@ pub const FIRST_CORNERS: std::ops::RangeInclusive<usize> = 1..=SIDE;
 /// Modules of a side of the O, counting each corner once.
 const SIDE: usize = 3;
 
-impl Shape {
+impl ChainShape {
     /// `P`, `Block A`, `Block B`, `O`.
     pub const fn name(self) -> &'static str {
         match self {
@@ -192,12 +198,12 @@ impl Shape {
 
 /// The cell of every rotor, in pitches; the first is (0, 0).
 pub fn cells(angles: &[f64]) -> Vec<[i64; 2]> {
-    let unit = Body { pitch: 1.0, ..Body::default() };
+    let unit = ModuleDimensions { pitch: 1.0, ..ModuleDimensions::default() };
     rotors(&unit, angles).iter().map(|r| [r.x.round() as i64, r.y.round() as i64]).collect()
 }
 
 /// All pairs of a chain folded by quarter turns that latch: nearest along the chain first.
-pub fn latches(angles: &[f64]) -> Vec<Latch> {
+pub fn latches(angles: &[f64]) -> Vec<LatchingPair> {
     let cells = cells(angles);
     let mut found = Vec::new();
     for from in 1..=cells.len() {
@@ -209,7 +215,7 @@ pub fn latches(angles: &[f64]) -> Vec<Latch> {
             let towards = |a: [i64; 2], b: [i64; 2]| ((b[1] - a[1]) as f64).atan2((b[0] - a[0]) as f64);
             let sides = (side(angles, from, towards(a, b)), side(angles, to, towards(b, a)));
             if let (Some(from_side), Some(to_side)) = sides {
-                found.push(Latch { from, to, from_side, to_side });
+                found.push(LatchingPair { from, to, from_side, to_side });
             }
         }
     }
@@ -218,38 +224,38 @@ pub fn latches(angles: &[f64]) -> Vec<Latch> {
 }
 
 /// The face of a module that looks in a direction, if it has one there.
-fn side(angles: &[f64], module: usize, towards: f64) -> Option<Side> {
+fn side(angles: &[f64], module: usize, towards: f64) -> Option<ModuleFace> {
     /// Far above rounding, far below a quarter turn.
     const SAME: f64 = 1e-6;
     let heading: f64 = angles[..module].iter().sum();
-    let looks = |heading: f64, side: Side| wrapped(heading + side.turn() - towards).abs() < SAME;
-    if module == 1 && looks(0.0, Side::Back) {
-        return Some(Side::Back);
+    let looks = |heading: f64, side: ModuleFace| wrapped(heading + side.turn() - towards).abs() < SAME;
+    if module == 1 && looks(0.0, ModuleFace::Back) {
+        return Some(ModuleFace::Back);
     }
-    [Side::Front, Side::Left, Side::Right].into_iter().find(|side| looks(heading, *side))
+    [ModuleFace::Front, ModuleFace::Left, ModuleFace::Right].into_iter().find(|side| looks(heading, *side))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const A: Shape = Shape::Block { reading: Reading::Middle };
-    const B: Shape = Shape::Block { reading: Reading::Tail };
+    const A: ChainShape = ChainShape::Block { reading: Reading::Middle };
+    const B: ChainShape = ChainShape::Block { reading: Reading::Tail };
 
-    fn latched(shape: Shape) -> Vec<(usize, usize)> {
+    fn latched(shape: ChainShape) -> Vec<(usize, usize)> {
         latches(&shape.angles()).iter().map(|l| (l.from, l.to)).collect()
     }
 
     #[test]
     fn the_shapes_have_the_published_cells_and_latches() {
-        assert_eq!(cells(&Shape::P.angles()), [[0, 0], [1, 0], [2, 0], [3, 0], [3, -1], [2, -1]]);
+        assert_eq!(cells(&ChainShape::P.angles()), [[0, 0], [1, 0], [2, 0], [3, 0], [3, -1], [2, -1]]);
         assert_eq!(cells(&A.angles()), [[0, 0], [1, 0], [2, 0], [2, -1], [1, -1], [0, -1]]);
         assert_eq!(cells(&B.angles()), [[0, 0], [1, 0], [1, -1], [1, -2], [0, -2], [0, -1]]);
-        assert_eq!(latched(Shape::P), [(3, 6)]);
+        assert_eq!(latched(ChainShape::P), [(3, 6)]);
         assert_eq!(latched(A), [(2, 5), (1, 6)]);
         assert_eq!(latched(B), [(3, 6), (1, 6)]);
         for first_corner in FIRST_CORNERS {
-            let shape = Shape::O { first_corner };
+            let shape = ChainShape::O { first_corner };
             assert_eq!(latched(shape), [(1, 12)], "{shape:?}");
             let cells = cells(&shape.angles());
             let reach = |k: usize| {
@@ -261,7 +267,7 @@ mod tests {
             assert_eq!((right - left, high - low), (3, 3), "{shape:?}");
             assert!(cells.iter().all(|c| c[0] == left || c[0] == right || c[1] == low || c[1] == high));
         }
-        for shape in [Shape::P, A, B, Shape::O { first_corner: 2 }] {
+        for shape in [ChainShape::P, A, B, ChainShape::O { first_corner: 2 }] {
             let mut cells = cells(&shape.angles());
             cells.sort_unstable();
             cells.dedup();
@@ -272,9 +278,9 @@ mod tests {
     /// Latched faces coincide and look at each other: the chain closes exactly, to the rounding of a dozen sines.
     #[test]
     fn latched_faces_coincide() {
-        let body = Body::default();
-        let shapes = [Shape::P, A, B].into_iter();
-        for shape in shapes.chain(FIRST_CORNERS.map(|first_corner| Shape::O { first_corner })) {
+        let body = ModuleDimensions::default();
+        let shapes = [ChainShape::P, A, B].into_iter();
+        for shape in shapes.chain(FIRST_CORNERS.map(|first_corner| ChainShape::O { first_corner })) {
             let angles = shape.angles();
             let rotors = rotors(&body, &angles);
             for latch in latches(&angles) {

@@ -9,12 +9,12 @@
 //! The same chains are drawn for every number of modules and every size of error, so that rows differ by
 //! their parameters and not by chance. A chain that folds docks if it docks at every latch.
 
-use super::accumulation::{Closing, Covariance, Errors};
+use super::accumulation::{ChainErrors, Closing, Covariance};
 use super::docking::{Probability, as_chain_uses_it, docks, lateral_probability, offsets_without_rotation};
 use super::file::ChainFile;
 use super::fold::{FoldError, FoldSettings, Folded, fold};
 use super::ring::{self, Corners};
-use super::shape::{Latch, Shape};
+use super::shape::{ChainShape, LatchingPair};
 use catchment::design::Diagnostics;
 use catchment::exec::{Cancelled, Exec};
 use catchment::problem::{Draft, Problem, ProblemError};
@@ -42,9 +42,9 @@ impl Default for ChainSettings {
 /// Errors of a face at its arrival.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Arrival {
+pub struct ArrivalErrors {
     /// The latch; null for the last face of a straight chain.
-    pub latch: Option<Latch>,
+    pub latch: Option<LatchingPair>,
     /// Joints that contribute errors.
     pub joints: Vec<usize>,
     /// Standard deviation across the face, to first order, in mm.
@@ -95,7 +95,7 @@ pub struct Length {
 
 /// The connector of a chain.
 #[derive(Debug, Clone)]
-pub struct Docking {
+pub struct ChainConnector {
     /// The problem, with the chain's centre of rotation.
     pub problem: Problem,
     /// The centre of rotation that the design says, in D.
@@ -112,11 +112,11 @@ pub struct Study {
     /// The settings.
     pub settings: ChainSettings,
     /// The connector, if one is named.
-    pub docking: Option<Docking>,
+    pub docking: Option<ChainConnector>,
     /// The last face of the straight chain.
-    pub straight: Arrival,
+    pub straight: ArrivalErrors,
     /// Every latch, in the order of the sequence.
-    pub arrivals: Vec<Arrival>,
+    pub arrivals: Vec<ArrivalErrors>,
     /// How the chain folds by its sequence.
     pub folded: Option<Folded>,
     /// The choices of corners, for an O.
@@ -129,7 +129,7 @@ pub struct Study {
 
 /// Why there is no answer.
 #[derive(Debug, thiserror::Error)]
-pub enum StudyError {
+pub enum ChainError {
     /// Something in the file.
     #[error(transparent)]
     Diagnostics(#[from] Diagnostics),
@@ -145,13 +145,13 @@ pub enum StudyError {
 ///
 /// # Errors
 /// A connector that cannot be read or cannot be free in x and pitch, a sequence that collides, being asked to stop.
-pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<Study, StudyError> {
+pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<Study, ChainError> {
     let folded = follow(file, exec)?;
     let docking = docking(file, exec)?;
     let work = Work { file, settings, docking: docking.as_ref(), exec };
     let straight = Closing::straight(file.body, file.modules);
     let straight = work.arrival(None, &straight, file.folding.is_none())?;
-    let mut arrivals: Vec<Arrival> = Vec::new();
+    let mut arrivals: Vec<ArrivalErrors> = Vec::new();
     if let Some(folding) = &file.folding {
         let latches = &folding.sequence.latches;
         for (k, latch) in latches.iter().enumerate() {
@@ -160,7 +160,7 @@ pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<St
         }
     }
     let corners = match file.folding.as_ref().and_then(|folding| folding.shape) {
-        Some(Shape::O { .. }) => ring::choices(&file.body, &file.errors, file.servo.torque),
+        Some(ChainShape::O { .. }) => ring::choices(&file.body, &file.errors, file.servo.torque),
         _ => Vec::new(),
     };
     let docked: Vec<&Vec<bool>> =
@@ -182,7 +182,7 @@ pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<St
     })
 }
 
-fn follow(file: &ChainFile, exec: &Exec) -> Result<Option<Folded>, StudyError> {
+fn follow(file: &ChainFile, exec: &Exec) -> Result<Option<Folded>, ChainError> {
     let Some(folding) = &file.folding else { return Ok(None) };
     let settings = FoldSettings { servo: file.servo, hooks: file.hooks, ..FoldSettings::default() };
     match fold(&file.body, file.modules, &folding.sequence, &settings, exec) {
@@ -194,7 +194,7 @@ fn follow(file: &ChainFile, exec: &Exec) -> Result<Option<Folded>, StudyError> {
     }
 }
 
-fn docking(file: &ChainFile, exec: &Exec) -> Result<Option<Docking>, StudyError> {
+fn docking(file: &ChainFile, exec: &Exec) -> Result<Option<ChainConnector>, ChainError> {
     let Some(line) = &file.connector else { return Ok(None) };
     let draft = match Draft::open(&line.path) {
         Ok(draft) => draft,
@@ -208,13 +208,13 @@ fn docking(file: &ChainFile, exec: &Exec) -> Result<Option<Docking>, StudyError>
     let change = |design| as_chain_uses_it(design, &file.body, line.rotation_length);
     let problem = draft.change("[connector] of the chain", change)?.build()?;
     let offsets = offsets_without_rotation(&problem, exec);
-    Ok(Some(Docking { problem, own_center_of_rotation, offsets }))
+    Ok(Some(ChainConnector { problem, own_center_of_rotation, offsets }))
 }
 
 struct Work<'a> {
     file: &'a ChainFile,
     settings: &'a ChainSettings,
-    docking: Option<&'a Docking>,
+    docking: Option<&'a ChainConnector>,
     exec: &'a Exec,
 }
 
@@ -224,7 +224,7 @@ impl Work<'_> {
         Some(lateral_probability(&self.file.body, errors, *offsets))
     }
 
-    fn cloud(&self, closing: &Closing, errors: &Errors) -> Result<Vec<[f64; 3]>, Cancelled> {
+    fn cloud(&self, closing: &Closing, errors: &ChainErrors) -> Result<Vec<[f64; 3]>, Cancelled> {
         closing.cloud(errors, self.settings.seed, self.settings.chains, self.exec)
     }
 
@@ -232,12 +232,17 @@ impl Work<'_> {
         self.docking.map(|d| docks(&d.problem, &self.file.body, cloud, self.exec)).transpose()
     }
 
-    fn arrival(&self, latch: Option<Latch>, closing: &Closing, decide: bool) -> Result<Arrival, Cancelled> {
+    fn arrival(
+        &self,
+        latch: Option<LatchingPair>,
+        closing: &Closing,
+        decide: bool,
+    ) -> Result<ArrivalErrors, Cancelled> {
         let cloud = self.cloud(closing, &self.file.errors)?;
         let first_order = closing.first_order(&self.file.errors);
         let [lateral_sigma_mm, normal_sigma_mm, angle_sigma_rad] = first_order.sigmas();
         let docked = if decide { self.docks(&cloud)? } else { None };
-        Ok(Arrival {
+        Ok(ArrivalErrors {
             latch,
             joints: closing.joints(),
             lateral_sigma_mm,
@@ -267,7 +272,7 @@ impl Work<'_> {
         let mut found = Vec::new();
         let count = (sigmas.len() * modules.len()) as f64;
         for joint_sigma in sigmas {
-            let errors = Errors { joint_sigma, ..*own };
+            let errors = ChainErrors { joint_sigma, ..*own };
             for modules in &modules {
                 self.exec.report(found.len() as f64 / count, "chains");
                 let closing = Closing::straight(self.file.body, *modules);

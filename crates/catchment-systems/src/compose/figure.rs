@@ -1,7 +1,7 @@
 //! Three panels: the swept region of A, the swept region of B, and the approach region.
 
 use super::report::bracket;
-use super::{Composition, Frames, Map, Region};
+use super::{Composition, OverlapMap, Region, RegionFrames};
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame, short};
 use catchment::report::figure::draw::colour::{self, Rgb, hex, mix, sequential};
 use catchment::report::figure::draw::svg::{
@@ -60,7 +60,7 @@ fn robot(svg: &mut Svg, frame: &PlotFrame, facing: Option<DVec2>) {
 }
 
 /// The overlap as an image, clear where there is none.
-fn image(map: &Map) -> Result<Vec<u8>, FigureError> {
+fn image(map: &OverlapMap) -> Result<Vec<u8>, FigureError> {
     let largest = map.values.iter().copied().fold(0.0, f64::max);
     let mut pixels = Vec::with_capacity(4 * map.values.len());
     for row in map.values.chunks(map.cells[0]).rev() {
@@ -91,8 +91,8 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
     let names = [&found.halves[0].name, &found.halves[1].name];
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &format!("{} and {}: where they meet", names[0], names[1]));
     let frames = match found.settings.frames {
-        Frames::Own => "each drawn in its own frame, facing +y; the second is mounted by a half turn",
-        Frames::World => "both drawn in one frame, as they stand before each other",
+        RegionFrames::Own => "each drawn in its own frame, facing +y; the second is mounted by a half turn",
+        RegionFrames::World => "both drawn in one frame, as they stand before each other",
     };
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, frames);
     let style = |fill: Rgb, edge: Rgb| {
@@ -114,7 +114,7 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
         if let Some(own) = own {
             svg.path(&path(&frame, own), &body);
         }
-        robot(&mut svg, &frame, (found.settings.frames == Frames::Own || k == 0).then_some(DVec2::Y));
+        robot(&mut svg, &frame, (found.settings.frames == RegionFrames::Own || k == 0).then_some(DVec2::Y));
         svg.end();
         frame.draw(&mut svg);
     }
@@ -190,7 +190,7 @@ fn meeting(svg: &mut Svg, found: &Composition, unit: &str) -> Result<(), FigureE
     Ok(())
 }
 
-fn map_bounds(map: &Map) -> Option<[DVec2; 2]> {
+fn map_bounds(map: &OverlapMap) -> Option<[DVec2; 2]> {
     let size = DVec2::new(map.cells[0] as f64, map.cells[1] as f64) * map.cell;
     (!map.values.is_empty()).then_some([map.low, map.low + size])
 }

@@ -18,8 +18,8 @@ const MOST_CELLS: usize = 100_000;
 
 /// The largest axis-parallel square in a region.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "LargestSquare"))]
-pub struct Square {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LargestSquare {
     /// Its centre.
     #[serde(serialize_with = "crate::points::point")]
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
@@ -33,7 +33,7 @@ pub struct Square {
 
 /// How far one may be off along an axis, from a point, until the region ends first.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+pub struct AxisReach {
     /// Towards −x and +x.
     pub x: [f64; 2],
     /// Towards −y and +y.
@@ -101,7 +101,7 @@ fn chessboard(a: DVec2, b: DVec2) -> f64 {
 }
 
 /// The largest axis-parallel square in a region; none where it has no area.
-pub fn largest_square(region: &Region) -> Option<Square> {
+pub fn largest_square(region: &Region) -> Option<LargestSquare> {
     let [low, high] = region.bounds()?;
     let borders = Borders::of(region);
     if borders.sides.is_empty() {
@@ -137,7 +137,7 @@ pub fn largest_square(region: &Region) -> Option<Square> {
         }
         bound = room + slack;
     }
-    (room > 0.0).then(|| Square { center, side: 2.0 * room, at_most: 2.0 * bound.max(room) })
+    (room > 0.0).then(|| LargestSquare { center, side: 2.0 * room, at_most: 2.0 * bound.max(room) })
 }
 
 /// Half the side of the largest square about a point; `None` outside of the region.
@@ -146,7 +146,7 @@ pub fn square_about(region: &Region, point: DVec2) -> Option<f64> {
 }
 
 /// How far a point may move along each axis within the region; `None` outside of it.
-pub fn reach(region: &Region, point: DVec2) -> Option<Reach> {
+pub fn reach(region: &Region, point: DVec2) -> Option<AxisReach> {
     if !region.contains(point) {
         return None;
     }
@@ -167,7 +167,7 @@ pub fn reach(region: &Region, point: DVec2) -> Option<Reach> {
         // On the border, rounding may hide a side: there is no room then.
         [below, above].map(|v| if v.is_finite() { v } else { 0.0 })
     };
-    Some(Reach { x: ends(&crossings[0]), y: ends(&crossings[1]) })
+    Some(AxisReach { x: ends(&crossings[0]), y: ends(&crossings[1]) })
 }
 
 #[cfg(test)]
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn the_largest_square_of_known_shapes() {
-        let near = |square: Square, side: f64, extent: f64| {
+        let near = |square: LargestSquare, side: f64, extent: f64| {
             assert!(square.side <= side + 1e-9 && side <= square.at_most + 1e-9, "{square:?} {side}");
             assert!(square.at_most - square.side <= SLACK * extent + 1e-9, "{square:?}");
         };

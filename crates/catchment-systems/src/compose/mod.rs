@@ -27,7 +27,7 @@
 //! removed.
 //!
 //! **Quality.** The area of A ∩ (B' + d) is the convolution proper: 0 on the border of the region, and its integral over all d
-//! is area(A)·area(B). See [`Overlap`]; its largest value lies between two bounds ([`peak`]).
+//! is area(A)·area(B). See [`RegionOverlap`]; its largest value lies between two bounds ([`peak`]).
 //!
 //! # Units
 //!
@@ -59,7 +59,7 @@ pub mod sweep;
 mod tests;
 
 pub use figure::figure;
-pub use overlap::Overlap;
+pub use overlap::RegionOverlap;
 pub use peak::{Peak, peak};
 pub use region::{REACH, Region, UNIT};
 pub use report::{ComposeBody, ComposeReport, outline_svg, report};
@@ -67,9 +67,9 @@ pub use sum::{SumError, minkowski_sum};
 
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
-use measure::{Reach, Square, largest_square, reach, square_about};
+use measure::{AxisReach, LargestSquare, largest_square, reach, square_about};
 use rayon::prelude::*;
-use read::{Measure, Read};
+use read::{Measure, ParsedRegion};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use sweep::Bracket;
@@ -78,7 +78,7 @@ use sweep::Bracket;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Frames {
+pub enum RegionFrames {
     /// Each region in the frame of its own robot, facing +y; a half turn mounts the second.
     #[default]
     Own,
@@ -91,7 +91,7 @@ pub enum Frames {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComposeSettings {
     /// In which frames the regions are drawn.
-    pub frames: Frames,
+    pub frames: RegionFrames,
     /// Relative headings of the second robot, in radians, counter-clockwise, evenly spaced; at least one.
     pub headings: Vec<f64>,
     /// Cells of the map of the overlap along the longer side of the region.
@@ -100,13 +100,13 @@ pub struct ComposeSettings {
 
 impl Default for ComposeSettings {
     fn default() -> Self {
-        Self { frames: Frames::Own, headings: vec![0.0], map_cells: 96 }
+        Self { frames: RegionFrames::Own, headings: vec![0.0], map_cells: 96 }
     }
 }
 
 /// Where the halves meet, at one heading.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slice {
+pub struct HeadingSlice {
     /// Relative heading, in radians.
     pub heading: f64,
     /// Places of the second robot, seen from the first.
@@ -115,7 +115,7 @@ pub struct Slice {
 
 /// Area of the overlap over a grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Map {
+pub struct OverlapMap {
     /// Lower left corner of the first cell.
     pub low: DVec2,
     /// Side of a cell.
@@ -130,25 +130,25 @@ pub struct Map {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Composition {
     /// The two halves.
-    pub halves: [Read; 2],
+    pub halves: [ParsedRegion; 2],
     /// The robots' bodies, where they are known.
-    pub bodies: Option<[Read; 2]>,
+    pub bodies: Option<[ParsedRegion; 2]>,
     /// What was asked.
     pub settings: ComposeSettings,
     /// One slice a heading.
-    pub slices: Vec<Slice>,
+    pub slices: Vec<HeadingSlice>,
     /// Which slice is described: the one nearest to heading 0.
     pub shown: usize,
     /// ∫ area dψ over the headings, in mm²·rad, by the trapezoidal rule; none with one heading.
     pub volume: Option<[f64; 2]>,
     /// The largest square in the inner region shown.
-    pub square: Option<Square>,
+    pub square: Option<LargestSquare>,
     /// How far each axis may be off from its centre.
-    pub reach: Option<Reach>,
+    pub reach: Option<AxisReach>,
     /// Side of the largest square about d = 0; none where that is outside.
     pub square_about_zero: Option<f64>,
     /// Overlap of the outer regions, at the heading shown; bodies take nothing from it.
-    pub map: Map,
+    pub map: OverlapMap,
     /// The largest overlap, at the heading shown; bodies take nothing from it. None where a region is empty.
     pub peak: Option<Peak>,
 }
@@ -180,11 +180,11 @@ pub enum ComposeError {
 }
 
 /// −B', the second region as it is added to the first: mounted, turned, reflected.
-fn added(second: &Bracket, frames: Frames, heading: f64) -> Bracket {
+fn added(second: &Bracket, frames: RegionFrames, heading: f64) -> Bracket {
     let angle = match frames {
         // The half turn of the mount and the reflection cancel.
-        Frames::Own => heading,
-        Frames::World => heading + PI,
+        RegionFrames::Own => heading,
+        RegionFrames::World => heading + PI,
     };
     second.map(|region| region.turned(angle))
 }
@@ -194,12 +194,12 @@ fn added(second: &Bracket, frames: Frames, heading: f64) -> Bracket {
 /// # Errors
 /// Where lengths are in different units, regions too fine or too large, or the run was stopped.
 pub fn compose(
-    halves: [Read; 2],
-    bodies: Option<[Read; 2]>,
+    halves: [ParsedRegion; 2],
+    bodies: Option<[ParsedRegion; 2]>,
     settings: &ComposeSettings,
     exec: &Exec,
 ) -> Result<Composition, ComposeError> {
-    let all: Vec<&Read> = halves.iter().chain(bodies.iter().flatten()).collect();
+    let all: Vec<&ParsedRegion> = halves.iter().chain(bodies.iter().flatten()).collect();
     if let Some(other) = all.iter().find(|read| read.measure != all[0].measure) {
         return Err(ComposeError::MixedUnits {
             first: all[0].name.clone(),
@@ -208,16 +208,17 @@ pub fn compose(
             of_second: other.measure,
         });
     }
-    let slice = |&heading: &f64| -> Result<Slice, ComposeError> {
+    let slice = |&heading: &f64| -> Result<HeadingSlice, ComposeError> {
         exec.check()?;
-        let of = |pair: &[Read; 2]| pair[0].region.sum(&added(&pair[1].region, settings.frames, heading));
+        let of =
+            |pair: &[ParsedRegion; 2]| pair[0].region.sum(&added(&pair[1].region, settings.frames, heading));
         let mut region = of(&halves)?;
         if let Some(bodies) = &bodies {
             region = region.minus(&of(bodies)?);
         }
-        Ok(Slice { heading, region })
+        Ok(HeadingSlice { heading, region })
     };
-    let slices: Vec<Slice> =
+    let slices: Vec<HeadingSlice> =
         exec.install(|| settings.headings.par_iter().map(slice).collect::<Result<_, _>>())?;
     let shown = (0..slices.len())
         .min_by(|a, b| slices[*a].heading.abs().total_cmp(&slices[*b].heading.abs()))
@@ -260,8 +261,8 @@ fn map(
     stands: &Region,
     settings: &ComposeSettings,
     exec: &Exec,
-) -> Result<Map, ComposeError> {
-    let empty = Map { low: DVec2::ZERO, cell: 0.0, cells: [0; 2], values: Vec::new() };
+) -> Result<OverlapMap, ComposeError> {
+    let empty = OverlapMap { low: DVec2::ZERO, cell: 0.0, cells: [0; 2], values: Vec::new() };
     let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), stands.bounds()) else { return Ok(empty) };
     let (low, high) = (la - hb, ha - lb);
     let cell = (high - low).max_element() / settings.map_cells as f64;
@@ -269,7 +270,7 @@ fn map(
         return Ok(empty);
     }
     let cells = [high.x - low.x, high.y - low.y].map(|extent| ((extent / cell).ceil() as usize).max(1));
-    let overlap = Overlap::new(first, stands);
+    let overlap = RegionOverlap::new(first, stands);
     let row = |j: usize| -> Result<Vec<f64>, Cancelled> {
         exec.check()?;
         let at = |i: usize| low + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * cell;
@@ -277,5 +278,5 @@ fn map(
     };
     let rows: Vec<Vec<f64>> =
         exec.install(|| (0..cells[1]).into_par_iter().map(row).collect::<Result<_, _>>())?;
-    Ok(Map { low, cell, cells, values: rows.concat() })
+    Ok(OverlapMap { low, cell, cells, values: rows.concat() })
 }

@@ -24,7 +24,7 @@ use glam::DVec2;
 /// It is the convolution of the indicator functions of A and −B: 0 outside the Minkowski sum of the two, and its integral over
 /// all d is area(A)·area(B).
 #[derive(Debug, Clone)]
-pub struct Overlap {
+pub struct RegionOverlap {
     first: Vec<Convex>,
     second: Vec<Convex>,
 }
@@ -129,7 +129,7 @@ fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64) -> Vec<Corner>
     kept
 }
 
-impl Overlap {
+impl RegionOverlap {
     /// Of two regions.
     pub fn new(a: &Region, b: &Region) -> Self {
         let parts = |region: &Region| convex_parts(region).iter().map(|part| Convex::of(part)).collect();

@@ -12,7 +12,7 @@
 //! Not promised: that the position is unique. If one region fits into the other with room to spare, every
 //! such position has the same overlap, and the first one found is returned.
 
-use super::overlap::Overlap;
+use super::overlap::RegionOverlap;
 use super::sweep::Bracket;
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
@@ -68,7 +68,7 @@ impl Ord for Cell {
 /// The run was stopped.
 pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cancelled> {
     let (Some([la, ha]), Some([lb, hb])) = (a.outer.bounds(), b.outer.bounds()) else { return Ok(None) };
-    let overlap = Overlap::new(&a.outer, &b.outer);
+    let overlap = RegionOverlap::new(&a.outer, &b.outer);
     let most = a.outer.area().min(b.outer.area());
     // Beyond these places the rectangles around the two do not meet.
     let (low, high) = (la - hb, ha - lb);
@@ -104,19 +104,19 @@ pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cance
             break;
         }
     }
-    best.value = Overlap::new(&a.inner, &b.inner).at(best.at);
+    best.value = RegionOverlap::new(&a.inner, &b.inner).at(best.at);
     Ok(Some(best))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::region::Region;
-    use super::super::sweep::Shape;
+    use super::super::sweep::SweptShape;
     use super::*;
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
-    fn of(a: &Shape, b: &Shape) -> Peak {
+    fn of(a: &SweptShape, b: &SweptShape) -> Peak {
         let [a, b] = [a, b].map(|shape| shape.bracket(DVec2::ZERO, 0.01));
         peak(&a, &b, &Exec::new()).unwrap().unwrap()
     }
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn two_discs_overlap_by_the_area_of_the_smaller() {
         for (first, second) in [(30.0, 30.0), (50.0, 30.0), (10.0, 70.0)] {
-            let found = of(&Shape::Disc { radius: first }, &Shape::Disc { radius: second });
+            let found = of(&SweptShape::Disc { radius: first }, &SweptShape::Disc { radius: second });
             let smaller: f64 = f64::min(first, second);
             let exact = PI * smaller * smaller;
             assert!(found.value <= exact && exact <= found.at_most, "{found:?} {exact}");
@@ -138,7 +138,7 @@ mod tests {
     /// Bars across and along each other, which overlap alike at many places, and an L with a square, at one.
     #[test]
     fn bars_and_corners_overlap_as_drawn() {
-        let bar = |width, height| Shape::Box { width, height };
+        let bar = |width, height| SweptShape::Box { width, height };
         let crossed = of(&bar(10.0, 2.0), &bar(1.0, 30.0));
         assert!(crossed.value == 2.0 && (crossed.at_most - 2.0).abs() < 1e-3, "{crossed:?}");
         let along = of(&bar(10.0, 2.0), &bar(20.3, 2.0));
@@ -147,7 +147,7 @@ mod tests {
             "{along:?}"
         );
         let corner = [(0.0, 0.0), (6.0, 0.0), (6.0, 2.0), (2.0, 2.0), (2.0, 6.0), (0.0, 6.0)];
-        let corner = Shape::Polygon(corner.map(|(x, y)| DVec2::new(x, y)).to_vec());
+        let corner = SweptShape::Polygon(corner.map(|(x, y)| DVec2::new(x, y)).to_vec());
         // A square of 3 in the corner covers all of it but a square of 1.
         let found = of(&corner, &bar(3.0, 3.0));
         assert!(
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn what_has_no_area_overlaps_by_nothing() {
         let line = Bracket::exact(Region::segment(DVec2::ZERO, DVec2::X));
-        let disc = Shape::Disc { radius: 3.0 }.bracket(DVec2::ZERO, 0.01);
+        let disc = SweptShape::Disc { radius: 3.0 }.bracket(DVec2::ZERO, 0.01);
         let found = peak(&line, &disc, &Exec::new()).unwrap().unwrap();
         assert_eq!((found.value, found.at_most), (0.0, 0.0));
         let nothing = Bracket::exact(Region::default());
@@ -186,7 +186,7 @@ mod tests {
             let (a, b) = (region(&a), region(&b));
             let found = peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
             if let Some(found) = found {
-                let overlap = Overlap::new(&a, &b);
+                let overlap = RegionOverlap::new(&a, &b);
                 for pair in places.windows(2) {
                     let [d, other] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
                     let value = overlap.at(d);

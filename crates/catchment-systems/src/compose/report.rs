@@ -1,8 +1,8 @@
 //! The report of a composition: JSON, text, outlines for other programs.
 
-use super::measure::Square;
-use super::read::Read;
-use super::{ComposeSettings, Composition, Frames, Slice};
+use super::measure::LargestSquare;
+use super::read::ParsedRegion;
+use super::{ComposeSettings, Composition, HeadingSlice, RegionFrames};
 use catchment::document::{Cell, Column, Document, Table, number, significant};
 use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
@@ -33,13 +33,13 @@ pub struct ComposeBody {
     /// The region at that heading.
     pub acceptance: RegionReport,
     /// The largest axis-parallel square in it.
-    pub largest_square: Option<Square>,
+    pub largest_square: Option<LargestSquare>,
     /// Tolerance towards −x, +x, −y, +y from the centre of that square.
     pub tolerance: Option<[f64; 4]>,
     /// Side of the largest square about d = 0; null if the halves do not meet there.
     pub square_about_zero: Option<f64>,
     /// Area of every slice.
-    pub slices: Vec<SliceReport>,
+    pub slices: Vec<HeadingReport>,
     /// ∫ area dψ by the trapezoidal rule.
     pub volume: Option<[f64; 2]>,
     /// Overlap of the two regions as a function of the second robot's position.
@@ -80,7 +80,7 @@ pub struct RegionReport {
 /// The region at one heading.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SliceReport {
+pub struct HeadingReport {
     /// Heading.
     pub heading_rad: f64,
     /// Area of the inner and of the outer region.
@@ -124,7 +124,7 @@ fn region(bracket: &super::sweep::Bracket) -> RegionReport {
     }
 }
 
-fn half(read: &Read) -> HalfReport {
+fn half(read: &ParsedRegion) -> HalfReport {
     HalfReport { name: read.name.clone(), region: region(&read.region), notes: read.notes.clone() }
 }
 
@@ -145,7 +145,7 @@ impl ComposeBody {
             slices: found
                 .slices
                 .iter()
-                .map(|slice| SliceReport {
+                .map(|slice| HeadingReport {
                     heading_rad: slice.heading,
                     area: slice.region.area(),
                     outlines: outlines(slice),
@@ -165,7 +165,7 @@ impl ComposeBody {
     }
 }
 
-fn outlines(slice: &Slice) -> Vec<Vec<[f64; 2]>> {
+fn outlines(slice: &HeadingSlice) -> Vec<Vec<[f64; 2]>> {
     let inner = slice.region.inner.outlines();
     inner.into_iter().map(|outline| outline.into_iter().map(|p| p.to_array()).collect()).collect()
 }
@@ -222,8 +222,8 @@ impl Printed for ComposeBody {
 impl ComposeBody {
     fn describe_regions(&self, document: &mut Document) {
         let frames = match self.settings.frames {
-            Frames::Own => "own: both face +y, the second is mounted by a half turn",
-            Frames::World => "world: the second is drawn as it stands before the first",
+            RegionFrames::Own => "own: both face +y, the second is mounted by a half turn",
+            RegionFrames::World => "world: the second is drawn as it stands before the first",
         };
         document.row("frames", frames);
         let bodies = self.keep_out.iter().flatten();

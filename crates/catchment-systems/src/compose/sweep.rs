@@ -40,7 +40,7 @@ enum Bound {
 
 /// A shape at rest, lengths in mm.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum SweptShape {
     /// A hook's reach: between two circles, from one direction to another, in radians counter-clockwise from +y.
     AnnularSector {
         /// Radius of the inner circle, 0 for a sector.
@@ -151,7 +151,7 @@ impl Bracket {
     }
 }
 
-impl Shape {
+impl SweptShape {
     /// The shape with its origin at `center`, its arcs to `chord_error` in mm.
     pub fn bracket(&self, center: DVec2, chord_error: f64) -> Bracket {
         let of = |bound| self.region(bound, chord_error).mapped(|p| p + center);
@@ -299,7 +299,8 @@ fn scaled(region: &Region, about: DVec2, [from, to]: [f64; 2]) -> Region {
 mod tests {
     use super::*;
 
-    const HOOK: Shape = Shape::AnnularSector { inner: 100.0, outer: 160.0, from: -FRAC_PI_3, to: FRAC_PI_3 };
+    const HOOK: SweptShape =
+        SweptShape::AnnularSector { inner: 100.0, outer: 160.0, from: -FRAC_PI_3, to: FRAC_PI_3 };
 
     /// Both areas around the exact one, and apart by at most twice the chord error along all arcs, whose length is given.
     fn brackets(bracket: &Bracket, exact: f64, arcs: f64, error: f64) {
@@ -312,12 +313,12 @@ mod tests {
     #[test]
     fn arcs_lie_between_chords_and_tangents() {
         for error in [1.0, 0.1, 0.01] {
-            let at = |shape: &Shape| shape.bracket(DVec2::new(3.0, -2.0), error);
+            let at = |shape: &SweptShape| shape.bracket(DVec2::new(3.0, -2.0), error);
             let third = 2.0 * FRAC_PI_3;
             brackets(&at(&HOOK), PI / 3.0 * (160f64.powi(2) - 100f64.powi(2)), third * 260.0, error);
-            brackets(&at(&Shape::Disc { radius: 50.0 }), PI * 2500.0, TAU * 50.0, error);
+            brackets(&at(&SweptShape::Disc { radius: 50.0 }), PI * 2500.0, TAU * 50.0, error);
             // An ellipse of these half-axes is no longer than a circle of the larger.
-            let shape = Shape::HalfEllipse { half_width: 100.0, reach: 120.0 };
+            let shape = SweptShape::HalfEllipse { half_width: 100.0, reach: 120.0 };
             brackets(&at(&shape), PI * 6000.0, PI * 120.0, error);
         }
     }
@@ -325,7 +326,7 @@ mod tests {
     #[test]
     fn what_turns_beside_its_pivot_sweeps_what_the_polar_integral_says() {
         // A square whose sides pass the pivot: ∫ r (width of the square at r, in angle, + the turn) dr, per radius.
-        let square = Shape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(4.0, 0.5), 1.0);
+        let square = SweptShape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(4.0, 0.5), 1.0);
         let turn = 0.4;
         let swept = Motion::Turn { pivot: DVec2::ZERO, from: 0.0, to: turn }.sweep(&square, 1e-4).unwrap();
         // Midpoints of rings, on which the square is one stretch of angles.
@@ -354,7 +355,7 @@ mod tests {
 
     #[test]
     fn a_full_turn_of_a_spoke_is_a_disc_and_of_a_side_a_ring() {
-        let spoke = Shape::AnnularSector { inner: 0.0, outer: 10.0, from: 0.0, to: TAU };
+        let spoke = SweptShape::AnnularSector { inner: 0.0, outer: 10.0, from: 0.0, to: TAU };
         brackets(&spoke.bracket(DVec2::ZERO, 0.01), PI * 100.0, TAU * 10.0, 0.01);
         // A chord of the outer circle that passes the pivot at 3.
         let bar = Bracket::exact(Region::segment(DVec2::new(3.0, -4.0), DVec2::new(3.0, 4.0)));
@@ -365,7 +366,7 @@ mod tests {
 
     #[test]
     fn growing_and_sliding_are_exact() {
-        let square = Shape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(3.0, 0.0), 1.0);
+        let square = SweptShape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(3.0, 0.0), 1.0);
         let grown = Motion::Scale { about: DVec2::ZERO, from: 1.0, to: 2.0 }.sweep(&square, 1.0).unwrap();
         // From the square at x 2…4 to the one at 4…8, between the lines y = ±x/2: a trapezoid x 2…4 widened from 2 to 4 … 8.
         // Left of x = 4 the half-height is max(1, x/2) = x/2 from x = 2; from 4 to 8 it is 2.

@@ -1,7 +1,7 @@
 //! Closed forms, references and properties of sums.
 
-use super::read::{Measure, Read, read};
-use super::sweep::{Bracket, Shape};
+use super::read::{Measure, ParsedRegion, read};
+use super::sweep::{Bracket, SweptShape};
 use super::*;
 use catchment::design::SourceText;
 use catchment::polytope::minkowski_sum_of;
@@ -25,8 +25,8 @@ fn polygon(corners: &[(f64, f64)]) -> Region {
     Region::of_outlines(&[corners.iter().map(|(x, y)| v(*x, *y)).collect()])
 }
 
-fn given(name: &str, region: Region) -> Read {
-    Read {
+fn given(name: &str, region: Region) -> ParsedRegion {
+    ParsedRegion {
         name: name.to_owned(),
         region: Bracket::exact(region),
         measure: Measure::Millimetres,
@@ -38,14 +38,14 @@ fn composed(a: &Region, b: &Region, settings: &ComposeSettings) -> Composition {
     compose([given("a", a.clone()), given("b", b.clone())], None, settings, &Exec::new()).unwrap()
 }
 
-fn at(frames: Frames, heading: f64) -> ComposeSettings {
+fn at(frames: RegionFrames, heading: f64) -> ComposeSettings {
     ComposeSettings { frames, headings: vec![heading], map_cells: 24 }
 }
 
 #[test]
 fn squares_and_discs_add_up() {
     assert_eq!(sum(&square(1.0), &square(1.0)).area(), 4.0);
-    let disc = |radius: f64| Shape::Disc { radius }.bracket(DVec2::ZERO, 1e-3);
+    let disc = |radius: f64| SweptShape::Disc { radius }.bracket(DVec2::ZERO, 1e-3);
     let both = disc(3.0).sum(&disc(5.0)).unwrap();
     let [inner, outer] = both.area();
     let exact = PI * 64.0;
@@ -113,8 +113,8 @@ fn odd_pair() -> [Region; 2] {
 fn own_and_world_frames_agree_after_a_half_turn_of_the_file() {
     let [a, b] = odd_pair();
     for heading in [0.0, 0.3, -1.0] {
-        let own = composed(&a, &b, &at(Frames::Own, heading));
-        let world = composed(&a, &b.turned(PI), &at(Frames::World, heading));
+        let own = composed(&a, &b, &at(RegionFrames::Own, heading));
+        let world = composed(&a, &b.turned(PI), &at(RegionFrames::World, heading));
         let (own, world) = (&own.slices[0].region.inner, &world.slices[0].region.inner);
         assert!(own.minus(world).area() + world.minus(own).area() < 1e-7);
         // Without the reflection it is another region altogether.
@@ -132,11 +132,11 @@ fn dice(state: &mut u64) -> f64 {
 #[test]
 fn a_place_is_in_the_sum_exactly_where_the_regions_meet() {
     let [a, b] = odd_pair();
-    for frames in [Frames::Own, Frames::World] {
+    for frames in [RegionFrames::Own, RegionFrames::World] {
         let found = composed(&a, &b, &at(frames, 0.4));
         let region = &found.slices[0].region.inner;
         // As it stands before A.
-        let stands = b.turned(if frames == Frames::Own { PI + 0.4 } else { 0.4 });
+        let stands = b.turned(if frames == RegionFrames::Own { PI + 0.4 } else { 0.4 });
         let [low, high] = region.bounds().unwrap();
         let (mut state, mut inside, mut outside) = (7, 0, 0);
         for _ in 0..50_000 {
@@ -152,7 +152,7 @@ fn a_place_is_in_the_sum_exactly_where_the_regions_meet() {
 #[test]
 fn the_overlap_is_a_convolution() {
     let [a, b] = odd_pair();
-    let found = composed(&a, &b, &ComposeSettings { map_cells: 200, ..at(Frames::World, 0.2) });
+    let found = composed(&a, &b, &ComposeSettings { map_cells: 200, ..at(RegionFrames::World, 0.2) });
     let integral: f64 = found.map.values.iter().sum::<f64>() * found.map.cell * found.map.cell;
     let exact = a.area() * b.area();
     assert!((integral - exact).abs() < 1e-3 * exact, "{integral} {exact}");
@@ -164,7 +164,7 @@ fn the_overlap_is_a_convolution() {
         assert!(*value <= a.area().min(b.area()) + 1e-9);
     }
     // Two unit squares overlap as a product of tents.
-    let squares = Overlap::new(&square(1.0), &square(1.0));
+    let squares = RegionOverlap::new(&square(1.0), &square(1.0));
     for (x, y) in [(0.0, 0.0), (0.25, -0.5), (-0.9, 0.3), (1.0, 0.0), (1.5, 0.2)] {
         let tent = |t: f64| (1.0 - f64::abs(t)).max(0.0);
         assert!((squares.at(v(x, y)) - tent(x) * tent(y)).abs() < 1e-12);
@@ -174,9 +174,11 @@ fn the_overlap_is_a_convolution() {
 #[test]
 fn bodies_are_kept_apart() {
     // Reaches of radius 5 about robots that are squares of side 2: a disc of 10 without a square of side 4.
-    let reach = Shape::Disc { radius: 5.0 }.bracket(DVec2::ZERO, 1e-3);
-    let read =
-        |name: &str, region: &Bracket| Read { region: region.clone(), ..given(name, Region::default()) };
+    let reach = SweptShape::Disc { radius: 5.0 }.bracket(DVec2::ZERO, 1e-3);
+    let read = |name: &str, region: &Bracket| ParsedRegion {
+        region: region.clone(),
+        ..given(name, Region::default())
+    };
     let body = Bracket::exact(Region::rectangle(v(-1.0, -1.0), v(1.0, 1.0)));
     let halves = [read("a", &reach), read("b", &reach)];
     let bodies = Some([read("c", &body), read("d", &body)]);
@@ -199,7 +201,7 @@ fn a_stack_of_headings_has_a_volume() {
     // A segment of length 2 against one of length 3: area 6 |sin ψ|, over a quarter turn ∫ = 6.
     let (a, b) = (Region::segment(v(-1.0, 0.0), v(1.0, 0.0)), Region::segment(v(-1.5, 0.0), v(1.5, 0.0)));
     let headings: Vec<f64> = (0..=90).map(|k| f64::from(k) * FRAC_PI_2 / 90.0).collect();
-    let found = composed(&a, &b, &ComposeSettings { headings, ..at(Frames::World, 0.0) });
+    let found = composed(&a, &b, &ComposeSettings { headings, ..at(RegionFrames::World, 0.0) });
     let [inner, outer] = found.volume.unwrap();
     // The trapezoidal rule is off by at most h²/12 · (b − a) · 6.
     let most = (FRAC_PI_2 / 90.0).powi(2) / 12.0 * FRAC_PI_2 * 6.0;
@@ -209,8 +211,8 @@ fn a_stack_of_headings_has_a_volume() {
 
 #[test]
 fn hook_and_loop_agree_with_random_places() {
-    let hook = Shape::AnnularSector { inner: 100.0, outer: 160.0, from: -FRAC_PI_3, to: FRAC_PI_3 };
-    let string = Shape::HalfEllipse { half_width: 100.0, reach: 120.0 };
+    let hook = SweptShape::AnnularSector { inner: 100.0, outer: 160.0, from: -FRAC_PI_3, to: FRAC_PI_3 };
+    let string = SweptShape::HalfEllipse { half_width: 100.0, reach: 120.0 };
     let [a, b] = [hook, string].map(|shape| shape.bracket(DVec2::ZERO, 0.01));
     let both = a.sum(&b).unwrap();
     let [inner, outer] = both.area();
@@ -248,8 +250,9 @@ fn the_shipped_example_is_the_one_of_the_page() {
         read(SourceText::new(path, text), &Exec::new()).unwrap()
     };
     let [hook, string] = [file("hook.toml"), file("loop.toml")];
-    let brackets =
-        |read: &Read, exact: f64| read.region.inner.area() < exact && exact < read.region.outer.area();
+    let brackets = |read: &ParsedRegion, exact: f64| {
+        read.region.inner.area() < exact && exact < read.region.outer.area()
+    };
     assert!(brackets(&hook, PI / 3.0 * (160f64.powi(2) - 100f64.powi(2))));
     assert!(brackets(&string, PI * 6000.0));
     let boats = Some([file("boat.toml"), file("boat.toml")]);
@@ -350,7 +353,7 @@ fn two_connectors_add_up_their_own_search() {
     let connector = read(pyramid);
     let small = square(10.0).mapped(|p| p - 5.0);
     let found =
-        compose([connector.clone(), given("square", small)], None, &at(Frames::Own, 0.0), &Exec::new())
+        compose([connector.clone(), given("square", small)], None, &at(RegionFrames::Own, 0.0), &Exec::new())
             .unwrap();
     let region = &connector.region.inner;
     // A convex set and a square of side s: area + width along y·s + width along x·s + s².

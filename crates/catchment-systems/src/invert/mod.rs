@@ -58,7 +58,7 @@ pub use figure::figure;
 pub use file::{MAX_PIECES, design_file};
 pub use heights::Heights;
 pub use measure::Shortfall;
-pub use report::{InvertBody, InvertReport, Limits, report};
+pub use report::{InvertBody, InvertReport, ManufacturingLimits, report};
 pub use table::wanted_from_table;
 pub use turns::{Between, MOST_TURNS, list_of_angles};
 

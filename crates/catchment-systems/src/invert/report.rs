@@ -22,7 +22,7 @@ pub type InvertReport = ReportOf<InvertBody>;
 /// Manufacturing limits of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Limits {
+pub struct ManufacturingLimits {
     /// Smallest width of a facet, in D.
     pub feature_d: f64,
     /// Smallest angle between the surface and the direction of pull (z), in radians.
@@ -36,7 +36,7 @@ pub struct InvertBody {
     /// The settings.
     pub settings: InvertSettings,
     /// Manufacturing limits of the part.
-    pub limits: Limits,
+    pub limits: ManufacturingLimits,
     /// Convex pieces of the moving half, as drawn (facing +z, face centre at z = 0): their corners.
     pub pieces_d: Vec<Vec<[f64; 3]>>,
     /// Whether every wanted height is reached.
@@ -64,7 +64,7 @@ pub struct InvertBody {
 }
 
 /// The report of an inverse.
-pub fn report(design: &Design, found: &Inverse, limits: Limits) -> InvertReport {
+pub fn report(design: &Design, found: &Inverse, limits: ManufacturingLimits) -> InvertReport {
     let at_zero = DVec2::ZERO;
     let body = InvertBody {
         settings: found.settings.clone(),

@@ -212,7 +212,7 @@ fn the_result_is_a_design_that_runs() {
     for name in FAMILIES {
         let problem = family(name);
         let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
-        let limits = Limits { feature_d: 0.01, draft_rad: 0.05 };
+        let limits = ManufacturingLimits { feature_d: 0.01, draft_rad: 0.05 };
         let told = report(problem.design(), &found, limits);
         assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());
         assert!(told.pieces_d.len() <= MAX_PIECES, "{name}: {} pieces", told.pieces_d.len());

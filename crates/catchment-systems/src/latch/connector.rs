@@ -18,7 +18,7 @@
 //! The dissertation states that hand trials, with compliant arms, showed no significant change against the
 //! X-Face.
 
-use super::{Geometry, Latch};
+use super::{Geometry, LatchDesign};
 use glam::DVec2;
 use std::fmt::Write;
 
@@ -64,11 +64,11 @@ fn cells(geometry: &Geometry, facets: u32) -> Vec<Vec<DVec2>> {
 }
 
 /// The design file of the face.
-pub fn design(latch: &Latch, geometry: &Geometry) -> String {
+pub fn design(latch: &LatchDesign, geometry: &Geometry) -> String {
     faceted(latch, geometry, FACETS)
 }
 
-fn faceted(latch: &Latch, geometry: &Geometry, facets: u32) -> String {
+fn faceted(latch: &LatchDesign, geometry: &Geometry, facets: u32) -> String {
     let gap = 0.5 * latch.separator;
     let slabs = [[gap, gap + latch.sheet], [-gap - latch.sheet, -gap]];
     let mut pieces = String::new();
@@ -109,7 +109,7 @@ mod tests {
     use catchment::problem::{Draft, Problem};
 
     fn problem(facets: u32) -> Problem {
-        let latch = Latch::default();
+        let latch = LatchDesign::default();
         let text = faceted(&latch, &Geometry::of(&latch).unwrap(), facets);
         Draft::read(SourceText::new("face.toml", text)).unwrap().build().unwrap()
     }

@@ -11,7 +11,7 @@
 
 use super::kerf::{KerfError, compensated};
 use super::outline::Polygon;
-use super::{Geometry, Latch};
+use super::{Geometry, LatchDesign};
 use glam::DVec2;
 use std::fmt::Write;
 
@@ -54,7 +54,7 @@ pub enum DrawingError {
 
 impl Sheet {
     /// The sheets of a latch, as they should come out.
-    pub fn all(latch: &Latch, geometry: &Geometry) -> Vec<Self> {
+    pub fn all(latch: &LatchDesign, geometry: &Geometry) -> Vec<Self> {
         let holes: Vec<(DVec2, f64)> = geometry
             .dowels
             .map(|(middles, diameter)| middles.map(|middle| (middle, diameter)).to_vec())
@@ -130,7 +130,7 @@ impl Sheet {
 ///
 /// # Errors
 /// The kerf is wider than what it cuts around.
-pub fn files(latch: &Latch, geometry: &Geometry) -> Result<Vec<(String, Vec<u8>)>, DrawingError> {
+pub fn files(latch: &LatchDesign, geometry: &Geometry) -> Result<Vec<(String, Vec<u8>)>, DrawingError> {
     let mut files = Vec::new();
     for sheet in Sheet::all(latch, geometry) {
         let cut = sheet.cut(latch.kerf)?;
@@ -188,8 +188,8 @@ fn real(value: f64) -> String {
 mod tests {
     use super::*;
 
-    fn latch() -> Latch {
-        Latch { dowel: Some(4.0), ..Latch::default() }
+    fn latch() -> LatchDesign {
+        LatchDesign { dowel: Some(4.0), ..LatchDesign::default() }
     }
 
     /// Group codes and values of a drawing, entity by entity.
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn one_layer_is_one_sheet() {
-        let latch = Latch { layers: 1, ..Latch::default() };
+        let latch = LatchDesign { layers: 1, ..LatchDesign::default() };
         assert_eq!(files(&latch, &Geometry::of(&latch).unwrap()).unwrap().len(), 3);
     }
 }

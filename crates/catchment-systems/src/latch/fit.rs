@@ -20,7 +20,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Law {
+pub enum ForceLaw {
     /// F₀ + c·o·t³.
     ConstantAndPrbm,
     /// C·oᵖ·t^q.
@@ -31,7 +31,7 @@ pub enum Law {
     Square,
 }
 
-impl Law {
+impl ForceLaw {
     /// All of them, the one that is used first.
     pub const ALL: [Self; 4] = [Self::ConstantAndPrbm, Self::Power, Self::Prbm, Self::Square];
 
@@ -57,8 +57,9 @@ impl Law {
     }
 
     /// The parameters that make the squares of the residuals least.
-    pub fn fit(self, points: &[Point]) -> Vec<f64> {
-        let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    pub fn fit(self, points: &[MeasuredForce]) -> Vec<f64> {
+        let mean =
+            |of: &dyn Fn(&MeasuredForce) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
         match self {
             Self::Prbm => vec![mean(&|p| (p.force / (p.o * p.t.powi(3))).ln()).exp()],
             Self::Square => vec![mean(&|p| (p.force / (p.o * p.t.powi(2))).ln()).exp()],
@@ -70,7 +71,7 @@ impl Law {
 
 /// A measured force.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct MeasuredForce {
     /// Overhang, in mm.
     pub o: f64,
     /// Neck, in mm.
@@ -82,9 +83,9 @@ pub struct Point {
 /// A law with its parameters and residuals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Fit {
+pub struct ForceFit {
     /// The form of the law.
-    pub law: Law,
+    pub law: ForceLaw,
     /// The formula as text.
     pub formula: &'static str,
     /// In the order of the formula; mm and N.
@@ -97,16 +98,16 @@ pub struct Fit {
     pub left_out_max: f64,
 }
 
-impl Fit {
+impl ForceFit {
     /// Fits a law.
-    pub fn of(law: Law, points: &[Point]) -> Self {
-        let residual = |parameters: &[f64], p: &Point| (p.force / law.at(parameters, p.o, p.t)).ln();
+    pub fn of(law: ForceLaw, points: &[MeasuredForce]) -> Self {
+        let residual = |parameters: &[f64], p: &MeasuredForce| (p.force / law.at(parameters, p.o, p.t)).ln();
         let parameters = law.fit(points);
         let rms = |r: &[f64]| (r.iter().map(|v| v * v).sum::<f64>() / r.len() as f64).sqrt();
         let within: Vec<f64> = points.iter().map(|p| residual(&parameters, p)).collect();
         let left_out: Vec<f64> = (0..points.len())
             .map(|k| {
-                let others: Vec<Point> =
+                let others: Vec<MeasuredForce> =
                     points.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, p)| *p).collect();
                 residual(&law.fit(&others), &points[k])
             })
@@ -123,8 +124,8 @@ impl Fit {
 }
 
 /// The forces to latch.
-pub fn latching(rows: &[Measured]) -> Vec<Point> {
-    rows.iter().map(|r| Point { o: r.overhang_mm, t: r.neck_mm, force: r.latching_force_n }).collect()
+pub fn latching(rows: &[Measured]) -> Vec<MeasuredForce> {
+    rows.iter().map(|r| MeasuredForce { o: r.overhang_mm, t: r.neck_mm, force: r.latching_force_n }).collect()
 }
 
 /// Force over neck of the designs that broke there, in N/mm: least squares through the origin.
@@ -135,7 +136,7 @@ pub fn neck_line(rows: &[Measured]) -> f64 {
 }
 
 /// C, p and q by linear least squares of the logarithms.
-fn power(points: &[Point]) -> Vec<f64> {
+fn power(points: &[MeasuredForce]) -> Vec<f64> {
     let mut normal = [[0.0; 4]; 3];
     for point in points {
         let row = [1.0, point.o.ln(), point.t.ln()];
@@ -162,11 +163,11 @@ fn power(points: &[Point]) -> Vec<f64> {
 }
 
 /// F₀ and c by Gauss and Newton on the logarithms, from a start that is positive.
-fn constant_and_slope(points: &[Point]) -> Vec<f64> {
+fn constant_and_slope(points: &[MeasuredForce]) -> Vec<f64> {
     /// It converges quadratically; from any sensible start a dozen steps are plenty.
     const STEPS: usize = 60;
     let least = points.iter().map(|p| p.force).fold(f64::INFINITY, f64::min);
-    let mut parameters = [0.5 * least, Law::Prbm.fit(points)[0] * 0.5];
+    let mut parameters = [0.5 * least, ForceLaw::Prbm.fit(points)[0] * 0.5];
     for _ in 0..STEPS {
         let (mut a, mut b, mut d, mut u, mut v) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in points {
@@ -195,9 +196,9 @@ mod tests {
     use super::super::measured::table;
     use super::*;
 
-    fn fits() -> Vec<Fit> {
+    fn fits() -> Vec<ForceFit> {
         let points = latching(&table().unwrap());
-        Law::ALL.iter().map(|law| Fit::of(*law, &points)).collect()
+        ForceLaw::ALL.iter().map(|law| ForceFit::of(*law, &points)).collect()
     }
 
     /// The recomputed numbers, to the digits that were printed for them.
@@ -299,14 +300,14 @@ mod tests {
     #[test]
     fn stiffness_in_tension_follows_a_power_law_and_in_compression_none() {
         let rows = table().unwrap();
-        let points = |of: fn(&Measured) -> f64| -> Vec<Point> {
-            rows.iter().map(|r| Point { o: r.overhang_mm, t: r.neck_mm, force: of(r) }).collect()
+        let points = |of: fn(&Measured) -> f64| -> Vec<MeasuredForce> {
+            rows.iter().map(|r| MeasuredForce { o: r.overhang_mm, t: r.neck_mm, force: of(r) }).collect()
         };
-        let tension = Fit::of(Law::Power, &points(|r| r.k_extension_n_per_mm));
+        let tension = ForceFit::of(ForceLaw::Power, &points(|r| r.k_extension_n_per_mm));
         let told: Vec<String> = tension.parameters.iter().map(|p| format!("{p:.2}")).collect();
         assert_eq!(told[1..], ["0.11", "0.80"]);
         assert_eq!(format!("{:.1} {:.2}", tension.parameters[0], tension.rms), "38.2 0.08");
-        let compression = Fit::of(Law::Power, &points(|r| r.k_compression_n_per_mm));
+        let compression = ForceFit::of(ForceLaw::Power, &points(|r| r.k_compression_n_per_mm));
         assert_eq!(format!("{:.2}", compression.rms), "0.36");
     }
 }

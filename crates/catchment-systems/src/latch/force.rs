@@ -11,9 +11,9 @@
 //! known only at o = 2.5; there its force falls with t, because a stiff neck keeps the tip from turning into
 //! the partner's trench.
 
-use super::fit::{Fit, Law, latching, neck_line};
+use super::fit::{ForceFit, ForceLaw, latching, neck_line};
 use super::measured::{Measured, Mode, table};
-use super::{Geometry, Latch, stiffness};
+use super::{Geometry, LatchDesign, stiffness};
 use serde::Serialize;
 
 /// The tip's overhang, in mm, and how near another must be to be the same.
@@ -33,7 +33,7 @@ pub struct Forces {
     /// Table 6.1.
     pub rows: Vec<Measured>,
     /// All laws of the force to latch, the one in use first.
-    pub fits: Vec<Fit>,
+    pub fits: Vec<ForceFit>,
     /// Force per thickness of neck of a design that breaks there, in N/mm, both layers.
     pub neck_line: f64,
 }
@@ -78,13 +78,13 @@ impl Forces {
     pub fn new() -> Result<Self, csv::Error> {
         let rows = table()?;
         let points = latching(&rows);
-        let fits = Law::ALL.iter().map(|law| Fit::of(*law, &points)).collect();
+        let fits = ForceLaw::ALL.iter().map(|law| ForceFit::of(*law, &points)).collect();
         let neck_line = neck_line(&rows);
         Ok(Self { rows, fits, neck_line })
     }
 
     /// The fit in use.
-    pub fn fit(&self) -> &Fit {
+    pub fn fit(&self) -> &ForceFit {
         &self.fits[0]
     }
 
@@ -94,8 +94,8 @@ impl Forces {
     }
 
     /// The force to latch a pair.
-    pub fn latching(&self, latch: &Latch, geometry: &Geometry) -> Latching {
-        let tested = Latch { neck: latch.neck, overhang: latch.overhang, ..Latch::default() };
+    pub fn latching(&self, latch: &LatchDesign, geometry: &Geometry) -> Latching {
+        let tested = LatchDesign { neck: latch.neck, overhang: latch.overhang, ..LatchDesign::default() };
         let k = stiffness::torsional(latch);
         let scale = k / stiffness::torsional(&tested);
         let parameters = &self.fit().parameters;
@@ -127,7 +127,7 @@ impl Forces {
     }
 
     /// The prototype of a latch's overhang and neck, if one was measured.
-    pub fn prototype(&self, latch: &Latch) -> Option<&Measured> {
+    pub fn prototype(&self, latch: &LatchDesign) -> Option<&Measured> {
         let near = |a: f64, b: f64| (a - b).abs() <= SLACK;
         self.rows.iter().find(|row| near(row.overhang_mm, latch.overhang) && near(row.neck_mm, latch.neck))
     }
@@ -171,10 +171,10 @@ impl Forces {
     }
 
     /// The force to break a pair.
-    pub fn failure(&self, latch: &Latch) -> Failure {
+    pub fn failure(&self, latch: &LatchDesign) -> Failure {
         let (o, t) = (latch.overhang, latch.neck);
         let (as_tested, mode, upper_bound) = self.failure_at(o, t);
-        let tested = Latch::default();
+        let tested = LatchDesign::default();
         let section = latch.sheet * f64::from(latch.layers) / (tested.sheet * f64::from(tested.layers));
         let mut doubts = outside(o, t);
         if upper_bound {
@@ -198,7 +198,7 @@ impl Forces {
 
     /// Mean stress in the necks when they break, in `MPa`.
     pub fn neck_stress(&self) -> f64 {
-        let tested = Latch::default();
+        let tested = LatchDesign::default();
         self.neck_line / (f64::from(tested.layers) * tested.sheet)
     }
 }
@@ -238,7 +238,7 @@ mod tests {
     /// Section 4 of the model: 3.6 N per layer with friction 0.3, where 16.36 and 9.61 N were measured.
     #[test]
     fn the_spring_alone_is_too_weak() {
-        let latch = Latch { overhang: 5.1, ..Latch::default() };
+        let latch = LatchDesign { overhang: 5.1, ..LatchDesign::default() };
         let forces = Forces::new().unwrap();
         let found = forces.latching(&latch, &Geometry::of(&latch).unwrap());
         assert_eq!(format!("{:.1}", found.spring_n), "3.6");
@@ -253,13 +253,13 @@ mod tests {
     #[test]
     fn other_sheets_scale_the_spring_and_are_called_an_extrapolation() {
         let forces = Forces::new().unwrap();
-        let force = |latch: &Latch| forces.latching(latch, &Geometry::of(latch).unwrap());
-        let usual = force(&Latch::default());
-        let twice = force(&Latch { modulus: 4200.0, ..Latch::default() });
+        let force = |latch: &LatchDesign| forces.latching(latch, &Geometry::of(latch).unwrap());
+        let usual = force(&LatchDesign::default());
+        let twice = force(&LatchDesign { modulus: 4200.0, ..LatchDesign::default() });
         let constant = forces.fit().parameters[0];
         assert!((twice.force_n - constant - 2.0 * (usual.force_n - constant)).abs() < 1e-9);
         assert_eq!(twice.doubts.len(), 1);
-        let thin = forces.failure(&Latch { layers: 1, ..Latch::default() });
+        let thin = forces.failure(&LatchDesign { layers: 1, ..LatchDesign::default() });
         assert!((thin.force_n - 0.5 * forces.neck_line * 3.0).abs() < 1e-9 && thin.doubts.len() == 1);
     }
 }

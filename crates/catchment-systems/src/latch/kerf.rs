@@ -44,14 +44,14 @@ pub fn compensated(outline: &[DVec2], kerf: f64) -> Result<Polygon, KerfError> {
 #[cfg(test)]
 mod tests {
     use super::super::outline::area;
-    use super::super::{Geometry, Latch};
+    use super::super::{Geometry, LatchDesign};
     use super::*;
     use i_overlay::mesh::float::outline::offset::OutlineOffset;
     use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 
     #[test]
     fn every_edge_of_the_cut_is_half_a_kerf_outside() {
-        let latch = Latch::default();
+        let latch = LatchDesign::default();
         let outline = Geometry::of(&latch).unwrap().layer();
         let cut = compensated(&outline, latch.kerf).unwrap();
         for ((a, b), (c, d)) in edges(&outline).zip(edges(&cut)) {
@@ -69,7 +69,7 @@ mod tests {
     /// Another implementation, on a grid of whole numbers: the same area, to its rounding.
     #[test]
     fn the_judge_agrees() {
-        let latch = Latch::default();
+        let latch = LatchDesign::default();
         let outline = Geometry::of(&latch).unwrap().layer();
         let points: Vec<[f64; 2]> = outline.iter().map(|p| [p.x, p.y]).collect();
         let style = OutlineStyle::new(0.09).line_join(LineJoin::Miter(0.01));

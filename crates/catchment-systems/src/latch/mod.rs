@@ -49,9 +49,9 @@ pub mod stiffness;
 pub mod table;
 
 pub use outline::{Geometry, GeometryError};
-pub use parameters::{Latch, Press};
+pub use parameters::{LatchDesign, Press};
 pub use report::{LatchBody, LatchReport};
-pub use rules::{Rule, Verdict, rules};
+pub use rules::{LatchRule, RuleCheck, rules};
 pub use table::{TableBody, TableReport};
 
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! Parameters of a latch in a design file, with the dissertation's values as defaults.
 
 use super::outline::Geometry;
-use super::rules::{Verdict, WIDEST_SLIT, rules};
-use crate::form::{Form, Section};
+use super::rules::{RuleCheck, WIDEST_SLIT, rules};
+use crate::form::{Form, FormTable};
 use catchment::design::{Diagnostics, SourceText};
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ const BASE_ONE_SIDED: f64 = 60.0;
 /// A latching X-Face: lengths in mm, angles in rad, the modulus in `MPa`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Latch {
+pub struct LatchDesign {
     /// Name of the design.
     pub name: String,
     /// Width of the face, L.
@@ -87,7 +87,7 @@ impl Default for Press {
     }
 }
 
-impl Default for Latch {
+impl Default for LatchDesign {
     /// The dissertation's part with o = 5.1 and t = 3.0, one-sided.
     fn default() -> Self {
         Self {
@@ -121,7 +121,7 @@ impl Default for Latch {
     }
 }
 
-impl Latch {
+impl LatchDesign {
     /// Reads a design file.
     ///
     /// # Errors
@@ -139,8 +139,8 @@ impl Latch {
     }
 }
 
-fn filled(form: &mut Form<'_>, root: &Section<'_>) -> Latch {
-    let d = Latch::default();
+fn filled(form: &mut Form<'_>, root: &FormTable<'_>) -> LatchDesign {
+    let d = LatchDesign::default();
     form.integer(root, "schema", 1..=1, Some(1));
     let name = form.word(root, "name").map_or(d.name, |word| word.text.to_owned());
     let s = form.table(root, "latch");
@@ -195,7 +195,7 @@ fn filled(form: &mut Form<'_>, root: &Section<'_>) -> Latch {
             None,
         );
     }
-    Latch {
+    LatchDesign {
         name,
         width,
         overhang,
@@ -226,7 +226,7 @@ fn filled(form: &mut Form<'_>, root: &Section<'_>) -> Latch {
 }
 
 /// The outline, unless a rule that must hold is broken; then the rule is told where its number stands.
-fn checked(form: &mut Form<'_>, root: &Section<'_>, latch: &Latch) -> Option<Geometry> {
+fn checked(form: &mut Form<'_>, root: &FormTable<'_>, latch: &LatchDesign) -> Option<Geometry> {
     let section = form.table(root, "latch");
     let press = form.table(root, "press");
     let geometry = match Geometry::of(latch) {
@@ -236,7 +236,7 @@ fn checked(form: &mut Form<'_>, root: &Section<'_>, latch: &Latch) -> Option<Geo
             return None;
         }
     };
-    for rule in rules(latch, &geometry).iter().filter(|rule| rule.verdict == Verdict::Broken) {
+    for rule in rules(latch, &geometry).iter().filter(|rule| rule.verdict == RuleCheck::Broken) {
         let at = if press.has(rule.key) { press.span_of(rule.key) } else { section.span_of(rule.key) };
         let message = format!("{}: {}", rule.rule, rule.found);
         form.refuse(at, message, Some(&rule.reason));
@@ -251,18 +251,18 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn read(text: &str) -> Result<Latch, String> {
-        Latch::read(SourceText::new("l.toml", text)).map(|(latch, _)| latch).map_err(|e| e.to_string())
+    fn read(text: &str) -> Result<LatchDesign, String> {
+        LatchDesign::read(SourceText::new("l.toml", text)).map(|(latch, _)| latch).map_err(|e| e.to_string())
     }
 
     #[test]
     fn an_empty_table_is_the_dissertations_part() {
-        assert_eq!(read("[latch]\n").unwrap(), Latch::default());
+        assert_eq!(read("[latch]\n").unwrap(), LatchDesign::default());
         let text = include_str!("../../../../designs/systems/latch.toml");
-        let said = Latch {
+        let said = LatchDesign {
             name: "latching X-Face, overhang 5.1, neck 3.0".to_owned(),
             dowel: Some(4.0),
-            ..Latch::default()
+            ..LatchDesign::default()
         };
         assert_eq!(read(text).unwrap(), said);
         assert_eq!(read("[latch]\nsides = 3\n").unwrap().base, 47.5);
@@ -300,7 +300,7 @@ mod tests {
                  spline_start = '{start} deg'\nbend = {bend}\nmodule_width = 500\nrotor_distance = 500\nbase = 400\n\
                  [press]\nfriction = {friction}\n"
             );
-            match Latch::read(SourceText::new("l.toml", text)) {
+            match LatchDesign::read(SourceText::new("l.toml", text)) {
                 Ok((latch, geometry)) => {
                     prop_assert!(record(&latch, &geometry).unwrap().peak > 0.0);
                     prop_assert!(files(&latch, &geometry).unwrap().len() == 9);

@@ -21,7 +21,7 @@
 //! speed, and the compliance of the machine.
 
 use super::outline::Geometry;
-use super::{Latch, stiffness};
+use super::{LatchDesign, stiffness};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ const SETTLED: f64 = 1e-13;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Contact {
+pub enum LayerContact {
     /// No contact yet.
     Apart,
     /// The profiles slide on each other.
@@ -51,7 +51,7 @@ pub enum Contact {
     Latched,
 }
 
-impl Contact {
+impl LayerContact {
     /// Its name, as in JSON.
     pub const fn name(self) -> &'static str {
         match self {
@@ -66,9 +66,9 @@ impl Contact {
 /// One layer at one position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Hold {
+pub struct LayerForce {
     /// Contact state.
-    pub contact: Contact,
+    pub contact: LayerContact,
     /// Swing of each arm, in rad.
     pub swing: f64,
     /// Force on the layer, in N.
@@ -82,7 +82,7 @@ pub struct Position {
     /// Height of one half above its seat, in mm; negative beyond it.
     pub above: f64,
     /// Each layer.
-    pub layers: Vec<Hold>,
+    pub layers: Vec<LayerForce>,
     /// Force on all layers, in N.
     pub force: f64,
 }
@@ -174,18 +174,18 @@ impl Layer<'_> {
     }
 
     /// How the layer holds; `passed` where it has latched already.
-    fn hold(&self, above: f64, passed: bool) -> Result<Hold, Jammed> {
-        let free = |contact| Hold { contact, swing: 0.0, force: 0.0 };
+    fn hold(&self, above: f64, passed: bool) -> Result<LayerForce, Jammed> {
+        let free = |contact| LayerForce { contact, swing: 0.0, force: 0.0 };
         if passed {
-            return Ok(free(Contact::Latched));
+            return Ok(free(LayerContact::Latched));
         }
         let (middle, profile) = (self.middle(above), &self.geometry.profile);
         if middle.y >= profile.height(middle.x) {
-            return Ok(free(Contact::Apart));
+            return Ok(free(LayerContact::Apart));
         }
         let wall = self.at_wall(middle);
         let (contact, swing) = if self.seen(middle, wall).y <= profile.hook {
-            (Contact::Wall, wall)
+            (LayerContact::Wall, wall)
         } else {
             // Newton's steps for C on the profile, kept between a swing that is too small and one that is too large.
             let (mut inside, mut outside) = (0.0, wall);
@@ -206,10 +206,10 @@ impl Layer<'_> {
                 }
                 swing = kept;
             }
-            (Contact::Profile, swing)
+            (LayerContact::Profile, swing)
         };
         let angle = match contact {
-            Contact::Profile => profile.angle(self.seen(middle, swing).x),
+            LayerContact::Profile => profile.angle(self.seen(middle, swing).x),
             _ => std::f64::consts::FRAC_PI_2,
         };
         // Down the slope of the arm as it stands, and out of it.
@@ -222,7 +222,7 @@ impl Layer<'_> {
             return Err(Jammed { friction: self.friction, above });
         }
         let force = self.stiffness * swing / lever * -push.y;
-        Ok(Hold { contact, swing, force })
+        Ok(LayerForce { contact, swing, force })
     }
 }
 
@@ -230,7 +230,7 @@ impl Layer<'_> {
 ///
 /// # Errors
 /// Friction holds an arm: the halves jam.
-pub fn record(latch: &Latch, geometry: &Geometry) -> Result<Record, Jammed> {
+pub fn record(latch: &LatchDesign, geometry: &Geometry) -> Result<Record, Jammed> {
     let press = latch.press;
     let layer = |sign: f64| Layer {
         geometry,
@@ -247,7 +247,7 @@ pub fn record(latch: &Latch, geometry: &Geometry) -> Result<Record, Jammed> {
     let contacts = layers.iter().enumerate().map(|(k, layer)| layer.first_contact() - lift(k));
     let first_contact = contacts.fold(f64::NEG_INFINITY, f64::max);
     let at = |above: f64, passed: &dyn Fn(usize) -> bool| -> Result<Position, Jammed> {
-        let held: Result<Vec<Hold>, Jammed> =
+        let held: Result<Vec<LayerForce>, Jammed> =
             layers.iter().enumerate().map(|(k, layer)| layer.hold(above + lift(k), passed(k))).collect();
         let layers = held?;
         let force = layers.iter().map(|hold| hold.force).sum();
@@ -299,8 +299,8 @@ mod tests {
             .sum()
     }
 
-    fn centred(friction: f64, offset: f64) -> Latch {
-        Latch { press: Press { friction, offset, tilt: 0.0 }, layers: 1, ..Latch::default() }
+    fn centred(friction: f64, offset: f64) -> LatchDesign {
+        LatchDesign { press: Press { friction, offset, tilt: 0.0 }, layers: 1, ..LatchDesign::default() }
     }
 
     /// Without friction, work is what the springs hold: two arms, k·θ²/2 each, at every position.
@@ -311,7 +311,7 @@ mod tests {
         let record = record(&latch, &geometry).unwrap();
         let (mut work, mut most) = (0.0, 0.0f64);
         for pair in record.positions.windows(2) {
-            if pair[1].layers[0].contact == Contact::Latched {
+            if pair[1].layers[0].contact == LayerContact::Latched {
                 break;
             }
             work += 0.5 * (pair[0].force + pair[1].force) * (pair[0].above - pair[1].above);
@@ -346,7 +346,7 @@ mod tests {
             };
             for position in record.positions.iter().step_by(8) {
                 let hold = position.layers[0];
-                if !matches!(hold.contact, Contact::Profile | Contact::Wall) {
+                if !matches!(hold.contact, LayerContact::Profile | LayerContact::Wall) {
                     continue;
                 }
                 let over = overlap(hold.swing, position.above);
@@ -371,7 +371,7 @@ mod tests {
     #[test]
     fn layers_that_are_not_level_snap_one_after_the_other() {
         let dips = |press: Press| {
-            let latch = Latch { press, ..Latch::default() };
+            let latch = LatchDesign { press, ..LatchDesign::default() };
             record(&latch, &Geometry::of(&latch).unwrap()).unwrap()
         };
         let tilted = dips(Press::default());
@@ -394,12 +394,12 @@ mod tests {
         #[test]
         fn forces_scale_with_the_modulus(o in 2.5f64..6.0, t in 2.0f64..4.6, friction in 0.0f64..0.5) {
             let press = Press { friction, ..Press::default() };
-            let latch = Latch { overhang: o, neck: t, press, ..Latch::default() };
+            let latch = LatchDesign { overhang: o, neck: t, press, ..LatchDesign::default() };
             let geometry = Geometry::of(&latch).unwrap();
             let one = record(&latch, &geometry).unwrap();
-            let two = record(&Latch { modulus: 4200.0, ..latch.clone() }, &geometry).unwrap();
+            let two = record(&LatchDesign { modulus: 4200.0, ..latch.clone() }, &geometry).unwrap();
             prop_assert!((two.peak - 2.0 * one.peak).abs() < 1e-9 * two.peak);
-            let rough = Latch { press: Press { friction: friction + 0.1, ..press }, ..latch };
+            let rough = LatchDesign { press: Press { friction: friction + 0.1, ..press }, ..latch };
             prop_assert!(record(&rough, &geometry).unwrap().peak > one.peak);
         }
     }

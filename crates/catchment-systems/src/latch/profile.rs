@@ -9,7 +9,7 @@
 //! negative curvature; any increasing φ fulfils this, and this family is ours. The exponent n controls the
 //! bend: the larger n, the later the curve bends, and the lower it is at the outer edge.
 
-use super::Latch;
+use super::LatchDesign;
 
 /// Panels of the quadrature of f; with five points each the error is far below a nanometre for every n allowed.
 const PANELS: usize = 32;
@@ -24,7 +24,7 @@ const GAUSS: [(f64, f64); 5] = [
 
 /// The profile of an arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Profile {
+pub struct ArmProfile {
     /// Where it ends, at the hook, in mm from the outer edge.
     pub x_end: f64,
     /// Its height there, in mm.
@@ -37,9 +37,9 @@ pub struct Profile {
     pub bend: f64,
 }
 
-impl Profile {
+impl ArmProfile {
     /// The profile of a latch, for an angle at the hook.
-    pub fn of(latch: &Latch, end: f64) -> Self {
+    pub fn of(latch: &LatchDesign, end: f64) -> Self {
         let x_end = 0.5 * (latch.width + latch.overhang);
         Self { x_end, hook: latch.hook, start: latch.spline_start, end, bend: latch.bend }
     }
@@ -84,9 +84,9 @@ mod tests {
     /// With no bend at all the integral has a closed form; with one, halved steps of a plain sum agree.
     #[test]
     fn heights_are_integrals_of_slopes() {
-        let straight = Profile { x_end: 35.3, hook: 3.0, start: 0.7, end: 0.7, bend: 6.0 };
+        let straight = ArmProfile { x_end: 35.3, hook: 3.0, start: 0.7, end: 0.7, bend: 6.0 };
         assert!((straight.height(10.0) - (3.0 + 25.3 * 0.7f64.tan())).abs() < 1e-12);
-        let bent = Profile { end: 1.32, start: 0.61, ..straight };
+        let bent = ArmProfile { end: 1.32, start: 0.61, ..straight };
         let steps = 200_000;
         for x in [0.0, 17.75, 34.9] {
             let width = (bent.x_end - x) / f64::from(steps);

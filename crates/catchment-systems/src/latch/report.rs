@@ -4,7 +4,7 @@ use super::force::{Failure, Forces, Latching};
 use super::measured::{THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
 use super::press::{Dip, Position, Record};
 use super::rules::{play, rules};
-use super::{Geometry, Latch, Rule, Verdict, stiffness};
+use super::{Geometry, LatchDesign, LatchRule, RuleCheck, stiffness};
 use catchment::document::{Cell, Column, Document, Table};
 use catchment::report::document::Printed;
 use catchment::report::schema::WarningReport;
@@ -23,11 +23,11 @@ const MILLI: f64 = 1e-3;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LatchBody {
     /// The design as in the file, with defaults.
-    pub design: Latch,
+    pub design: LatchDesign,
     /// The outline in numbers.
     pub outline: OutlineReport,
     /// The rules for the design, and whether it fulfils them.
-    pub rules: Vec<Rule>,
+    pub rules: Vec<LatchRule>,
     /// Stiffness of a layer's neck, in N·m/rad.
     pub stiffness_nm_per_rad: f64,
     /// Stiffness of a neck that cannot narrow sideways: an upper bound.
@@ -99,12 +99,12 @@ impl ReportBody for LatchBody {
 }
 
 /// The report of a latch whose geometry and press are known, without files.
-pub fn report(latch: &Latch, geometry: &Geometry, forces: &Forces, record: &Record) -> LatchReport {
+pub fn report(latch: &LatchDesign, geometry: &Geometry, forces: &Forces, record: &Record) -> LatchReport {
     let (lever, profile) = (geometry.lever(), &geometry.profile);
     let (latching, failure) = (forces.latching(latch, geometry), forces.failure(latch));
     let [low, high] = latching.interval_n;
     let rules = rules(latch, geometry);
-    let doubts = rules.iter().filter(|rule| rule.verdict == Verdict::Doubt);
+    let doubts = rules.iter().filter(|rule| rule.verdict == RuleCheck::Doubt);
     let mut warnings: Vec<String> =
         doubts.map(|rule| format!("not met: {} ({}); {}", rule.rule, rule.found, rule.reason)).collect();
     for (name, doubts) in [("force to latch", &latching.doubts), ("force to break", &failure.doubts)] {
@@ -274,11 +274,11 @@ impl LatchBody {
 
     fn rule_table(&self) -> Table {
         let mut table = Table::new(["verdict", "basis", "rule"].map(|title| Column::new(title).left()));
-        for Rule { verdict, basis, rule, found, reason, .. } in &self.rules {
+        for LatchRule { verdict, basis, rule, found, reason, .. } in &self.rules {
             let verdict = match verdict {
-                Verdict::Holds => "ok",
-                Verdict::Doubt => "doubt",
-                Verdict::Broken => "broken",
+                RuleCheck::Holds => "ok",
+                RuleCheck::Doubt => "doubt",
+                RuleCheck::Broken => "broken",
             };
             let rule = format!("{rule}: {found}, because {reason}");
             table.push([verdict.into(), basis.letter().into(), rule.into()]);
@@ -310,7 +310,7 @@ mod tests {
     use super::super::press::record;
     use super::*;
 
-    fn report(latch: &Latch) -> LatchReport {
+    fn report(latch: &LatchDesign) -> LatchReport {
         let geometry = Geometry::of(latch).unwrap();
         let record = record(latch, &geometry).unwrap();
         super::report(latch, &geometry, &Forces::new().unwrap(), &record)
@@ -318,7 +318,7 @@ mod tests {
 
     #[test]
     fn the_defaults_are_without_doubt_and_fit_eighty_columns() {
-        let report = report(&Latch::default());
+        let report = report(&LatchDesign::default());
         let text = report.table();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         assert!(
@@ -334,7 +334,7 @@ mod tests {
     /// The record of a press comes from springs and friction alone, and stays below what was measured: the report says by how much.
     #[test]
     fn a_record_below_the_measured_force_says_so() {
-        let usual = report(&Latch::default());
+        let usual = report(&LatchDesign::default());
         let press = &usual.press;
         assert_eq!(press.measured_latching_n, Some(16.36));
         assert!((press.peak_share_of_latching - press.peak_n / usual.latching.force_n).abs() < 1e-12);
@@ -344,18 +344,18 @@ mod tests {
             words.contains("0.59 of the 13.4 N to latch, which are fitted to measurements; the prototype of these sizes took 16.36 N"),
             "{words}"
         );
-        let other = report(&Latch { overhang: 4.0, ..Latch::default() });
+        let other = report(&LatchDesign { overhang: 4.0, ..LatchDesign::default() });
         assert_eq!(other.press.measured_latching_n, None);
         assert!(other.table().contains("not its height") && !other.table().contains("prototype of"));
     }
 
     #[test]
     fn doubts_travel_with_their_reasons() {
-        let small = report(&Latch { overhang: 1.27, ..Latch::default() });
+        let small = report(&LatchDesign { overhang: 1.27, ..LatchDesign::default() });
         let said = small.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>().join("\n");
         assert!(said.contains("less than 1 mm") && said.contains("upper bound"), "{said}");
         assert!(small.table().contains("at most"));
-        let three = report(&Latch { sides: 3, base: 47.5, ..Latch::default() });
+        let three = report(&LatchDesign { sides: 3, base: 47.5, ..LatchDesign::default() });
         assert!(three.warnings.iter().any(|w| w.message.contains("9.61 N")));
     }
 }

@@ -3,14 +3,14 @@
 use super::kerf::compensated;
 use super::measured::REJECTED_OVERHANG;
 use super::outline::is_simple;
-use super::{Basis, Geometry, Latch};
+use super::{Basis, Geometry, LatchDesign};
 use serde::Serialize;
 
 /// Verdict on a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum RuleCheck {
     /// The rule holds.
     Holds,
     /// The rule does not hold, but the part may still work: the report warns.
@@ -22,13 +22,13 @@ pub enum Verdict {
 /// A rule, the finding, and the reason for the rule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Rule {
+pub struct LatchRule {
     /// The rule.
     pub rule: &'static str,
     /// The finding.
     pub found: String,
     /// Whether it holds.
-    pub verdict: Verdict,
+    pub verdict: RuleCheck,
     /// Reason for the rule.
     pub reason: String,
     /// Basis of the rule.
@@ -56,7 +56,7 @@ pub fn swing(geometry: &Geometry) -> f64 {
     0.5 * geometry.overhang / geometry.lever().y
 }
 
-struct List(Vec<Rule>);
+struct List(Vec<LatchRule>);
 
 impl List {
     #[expect(clippy::too_many_arguments, reason = "a rule has that many sides")]
@@ -66,17 +66,17 @@ impl List {
         key: &'static str,
         basis: Basis,
         holds: bool,
-        otherwise: Verdict,
+        otherwise: RuleCheck,
         found: String,
         reason: &str,
     ) {
-        let verdict = if holds { Verdict::Holds } else { otherwise };
-        self.0.push(Rule { rule, found, verdict, reason: reason.to_owned(), basis, key });
+        let verdict = if holds { RuleCheck::Holds } else { otherwise };
+        self.0.push(LatchRule { rule, found, verdict, reason: reason.to_owned(), basis, key });
     }
 }
 
 /// All rules, in the order of the dissertation, then those of our outline.
-pub fn rules(latch: &Latch, geometry: &Geometry) -> Vec<Rule> {
+pub fn rules(latch: &LatchDesign, geometry: &Geometry) -> Vec<LatchRule> {
     let mut list = List(Vec::new());
     of_the_profile(&mut list, latch, geometry);
     of_the_slit(&mut list, latch, geometry);
@@ -84,9 +84,9 @@ pub fn rules(latch: &Latch, geometry: &Geometry) -> Vec<Rule> {
     list.0
 }
 
-fn of_the_profile(list: &mut List, latch: &Latch, geometry: &Geometry) {
+fn of_the_profile(list: &mut List, latch: &LatchDesign, geometry: &Geometry) {
     use Basis::{Inferred, Stated};
-    use Verdict::{Broken, Doubt};
+    use RuleCheck::{Broken, Doubt};
     let profile = &geometry.profile;
     let start_key = if latch.spline_end.is_some() { "spline_end" } else { "spline_start" };
     let (start, end) = (profile.start.to_degrees(), profile.end.to_degrees());
@@ -147,13 +147,13 @@ fn of_the_profile(list: &mut List, latch: &Latch, geometry: &Geometry) {
 }
 
 /// Whether the push of the partner opens the arm along the whole way.
-fn friction_lets_go(latch: &Latch, geometry: &Geometry) -> bool {
+fn friction_lets_go(latch: &LatchDesign, geometry: &Geometry) -> bool {
     super::press::record(latch, geometry).is_ok()
 }
 
-fn of_the_slit(list: &mut List, latch: &Latch, geometry: &Geometry) {
+fn of_the_slit(list: &mut List, latch: &LatchDesign, geometry: &Geometry) {
     use Basis::{Inferred, Stated};
-    use Verdict::{Broken, Doubt};
+    use RuleCheck::{Broken, Doubt};
     let below = geometry.cutout[0] - geometry.slit_end;
     list.check(
         "the stop slit ends below the cut-out",
@@ -218,14 +218,14 @@ fn of_the_slit(list: &mut List, latch: &Latch, geometry: &Geometry) {
 }
 
 /// How far tension turns the arm before the slit is closed, in rad.
-pub fn play(latch: &Latch, geometry: &Geometry) -> f64 {
+pub fn play(latch: &LatchDesign, geometry: &Geometry) -> f64 {
     let above = -geometry.profile.height(latch.width - geometry.slit[0]) - geometry.pivot.y;
     (latch.slit_gap / above).atan()
 }
 
-fn of_the_whole(list: &mut List, latch: &Latch, geometry: &Geometry) {
+fn of_the_whole(list: &mut List, latch: &LatchDesign, geometry: &Geometry) {
     use Basis::{Inferred, Stated};
-    use Verdict::{Broken, Doubt};
+    use RuleCheck::{Broken, Doubt};
     list.check(
         "the separator is as thick as a layer",
         "separator",
@@ -305,41 +305,41 @@ fn of_the_whole(list: &mut List, latch: &Latch, geometry: &Geometry) {
 mod tests {
     use super::*;
 
-    fn broken(latch: &Latch) -> Vec<&'static str> {
+    fn broken(latch: &LatchDesign) -> Vec<&'static str> {
         let geometry = Geometry::of(latch).unwrap();
-        rules(latch, &geometry).iter().filter(|r| r.verdict == Verdict::Broken).map(|r| r.key).collect()
+        rules(latch, &geometry).iter().filter(|r| r.verdict == RuleCheck::Broken).map(|r| r.key).collect()
     }
 
-    fn doubted(latch: &Latch) -> Vec<&'static str> {
+    fn doubted(latch: &LatchDesign) -> Vec<&'static str> {
         let geometry = Geometry::of(latch).unwrap();
-        rules(latch, &geometry).iter().filter(|r| r.verdict == Verdict::Doubt).map(|r| r.key).collect()
+        rules(latch, &geometry).iter().filter(|r| r.verdict == RuleCheck::Doubt).map(|r| r.key).collect()
     }
 
     #[test]
     fn the_defaults_meet_every_rule() {
-        assert!(broken(&Latch::default()).is_empty() && doubted(&Latch::default()).is_empty());
+        assert!(broken(&LatchDesign::default()).is_empty() && doubted(&LatchDesign::default()).is_empty());
     }
 
     /// Each rule can be broken by the number that it names.
     #[test]
     fn every_rule_has_a_number_that_breaks_it() {
-        let d = Latch::default;
+        let d = LatchDesign::default;
         let angle = |deg: f64| Some(deg.to_radians());
-        assert_eq!(broken(&Latch { spline_start: -0.1, ..d() }), ["spline_start"]);
-        assert_eq!(broken(&Latch { spline_end: angle(30.0), ..d() }), ["spline_end", "spline_end"]);
-        assert_eq!(broken(&Latch { spline_end: angle(70.0), ..d() }), ["spline_end"]);
-        assert_eq!(broken(&Latch { slit_depth: 15.0, ..d() }), ["slit_depth"]);
-        assert_eq!(broken(&Latch { slit_gap: 0.1, ..d() }), ["slit_gap", "kerf"]);
-        assert_eq!(broken(&Latch { slit_gap: 0.5, ..d() }), ["slit_gap"]);
-        assert!(broken(&Latch { slit_gap: 0.5, wide_slit: true, ..d() }).is_empty());
-        assert_eq!(broken(&Latch { l_eq: 1.0, ..d() }), ["l_eq"]);
-        assert!(broken(&Latch { cutout_depth: 8.5, ..d() }).contains(&"cutout_depth"));
-        assert_eq!(broken(&Latch { base: 81.0, ..d() }), ["base"]);
-        assert_eq!(broken(&Latch { base: 40.0, ..d() })[0], "base");
-        assert_eq!(broken(&Latch { sides: 3, base: 48.0, ..d() }), ["base"]);
-        assert!(broken(&Latch { sides: 3, base: 47.5, ..d() }).is_empty());
-        assert_eq!(broken(&Latch { width: 80.0, module_width: 65.5, ..d() })[0], "width");
-        assert_eq!(broken(&Latch { dowel: Some(9.0), ..d() }), ["dowel"]);
+        assert_eq!(broken(&LatchDesign { spline_start: -0.1, ..d() }), ["spline_start"]);
+        assert_eq!(broken(&LatchDesign { spline_end: angle(30.0), ..d() }), ["spline_end", "spline_end"]);
+        assert_eq!(broken(&LatchDesign { spline_end: angle(70.0), ..d() }), ["spline_end"]);
+        assert_eq!(broken(&LatchDesign { slit_depth: 15.0, ..d() }), ["slit_depth"]);
+        assert_eq!(broken(&LatchDesign { slit_gap: 0.1, ..d() }), ["slit_gap", "kerf"]);
+        assert_eq!(broken(&LatchDesign { slit_gap: 0.5, ..d() }), ["slit_gap"]);
+        assert!(broken(&LatchDesign { slit_gap: 0.5, wide_slit: true, ..d() }).is_empty());
+        assert_eq!(broken(&LatchDesign { l_eq: 1.0, ..d() }), ["l_eq"]);
+        assert!(broken(&LatchDesign { cutout_depth: 8.5, ..d() }).contains(&"cutout_depth"));
+        assert_eq!(broken(&LatchDesign { base: 81.0, ..d() }), ["base"]);
+        assert_eq!(broken(&LatchDesign { base: 40.0, ..d() })[0], "base");
+        assert_eq!(broken(&LatchDesign { sides: 3, base: 48.0, ..d() }), ["base"]);
+        assert!(broken(&LatchDesign { sides: 3, base: 47.5, ..d() }).is_empty());
+        assert_eq!(broken(&LatchDesign { width: 80.0, module_width: 65.5, ..d() })[0], "width");
+        assert_eq!(broken(&LatchDesign { dowel: Some(9.0), ..d() }), ["dowel"]);
         let mut aside = d();
         aside.press.offset = 5.2;
         assert_eq!(broken(&aside), ["offset"]);
@@ -347,20 +347,20 @@ mod tests {
 
     #[test]
     fn what_may_work_is_doubted() {
-        let d = Latch::default;
-        assert_eq!(doubted(&Latch { overhang: 1.27, ..d() }), ["overhang"]);
-        assert_eq!(doubted(&Latch { separator: 3.0, ..d() }), ["separator"]);
-        assert_eq!(doubted(&Latch { spline_start: 0.5, ..d() }), ["spline_start"]);
-        assert_eq!(doubted(&Latch { slit_distance: 14.0, ..d() }), ["slit_depth"]);
+        let d = LatchDesign::default;
+        assert_eq!(doubted(&LatchDesign { overhang: 1.27, ..d() }), ["overhang"]);
+        assert_eq!(doubted(&LatchDesign { separator: 3.0, ..d() }), ["separator"]);
+        assert_eq!(doubted(&LatchDesign { spline_start: 0.5, ..d() }), ["spline_start"]);
+        assert_eq!(doubted(&LatchDesign { slit_distance: 14.0, ..d() }), ["slit_depth"]);
     }
 
     /// A wider slit lets the arm turn farther in tension.
     #[test]
     fn free_play_grows_with_the_slit() {
-        let geometry = Geometry::of(&Latch::default()).unwrap();
-        let narrow = play(&Latch::default(), &geometry);
+        let geometry = Geometry::of(&LatchDesign::default()).unwrap();
+        let narrow = play(&LatchDesign::default(), &geometry);
         // 0.36 mm, 16.0 mm above P.
         assert!((narrow - 0.36 / 16.0).abs() < 1e-5, "{narrow}");
-        assert!(play(&Latch { slit_gap: 0.5, ..Latch::default() }, &geometry) > narrow);
+        assert!(play(&LatchDesign { slit_gap: 0.5, ..LatchDesign::default() }, &geometry) > narrow);
     }
 }

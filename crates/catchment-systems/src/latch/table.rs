@@ -1,6 +1,6 @@
 //! Table 6.1 compared with the model.
 
-use super::fit::{Fit, Law, Point, latching};
+use super::fit::{ForceFit, ForceLaw, MeasuredForce, latching};
 use super::force::Forces;
 use super::measured::{Measured, Mode, THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
 use catchment::document::{Column, ColumnFormat, Document, Table};
@@ -19,15 +19,15 @@ pub struct TableBody {
     /// The nine designs.
     pub rows: Vec<TableRow>,
     /// Laws of the force to latch; the first is in use.
-    pub fits: Vec<Fit>,
+    pub fits: Vec<ForceFit>,
     /// Force per thickness of a neck that breaks, in N/mm, over both layers.
     pub neck_line_n_per_mm: f64,
     /// The same as a stress, in `MPa`.
     pub neck_strength_mpa: f64,
     /// Law of the spring constant in tension, C·oᵖ·t^q.
-    pub k_extension: Fit,
+    pub k_extension: ForceFit,
     /// Law of the spring constant in compression; its scatter is too large for use.
-    pub k_compression: Fit,
+    pub k_compression: ForceFit,
     /// Contradictions in the dissertation or its numbers.
     pub contradictions: Vec<&'static str>,
 }
@@ -73,7 +73,7 @@ pub fn report(forces: &Forces) -> TableReport {
     let points = latching(&forces.rows);
     let row = |(k, measured): (usize, &Measured)| {
         let (o, t) = (measured.overhang_mm, measured.neck_mm);
-        let others: Vec<Point> =
+        let others: Vec<MeasuredForce> =
             points.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, p)| *p).collect();
         let law = forces.fit().law;
         let (latching_model_n, (failure_model_n, ..)) = (forces.latching_at(o, t), forces.failure_at(o, t));
@@ -88,8 +88,8 @@ pub fn report(forces: &Forces) -> TableReport {
         }
     };
     let stiffness = |of: fn(&Measured) -> f64| {
-        let point = |r: &Measured| Point { o: r.overhang_mm, t: r.neck_mm, force: of(r) };
-        Fit::of(Law::Power, &forces.rows.iter().map(point).collect::<Vec<_>>())
+        let point = |r: &Measured| MeasuredForce { o: r.overhang_mm, t: r.neck_mm, force: of(r) };
+        ForceFit::of(ForceLaw::Power, &forces.rows.iter().map(point).collect::<Vec<_>>())
     };
     let body = TableBody {
         rows: forces.rows.iter().enumerate().map(row).collect(),

@@ -5,7 +5,7 @@ use catchment::exec::Exec;
 use catchment_systems::chain::{ChainFile, sequence};
 use catchment_systems::compose::read::{ReadError, read};
 use catchment_systems::invert::wanted_from_table;
-use catchment_systems::latch::Latch;
+use catchment_systems::latch::LatchDesign;
 
 /// The first line names what the rest is: `latch`, `chain`, `steps`, `heights`, or `csv`, `svg`, `toml` for a region. What is refused has its
 /// places in the text.
@@ -15,7 +15,7 @@ pub(crate) fn file(bytes: &[u8]) {
     let source = |ending: &str| SourceText::new(format!("file.{ending}"), text);
     let exec = Exec::new().with_memory_budget(32 << 20);
     let refused = match kind.trim() {
-        "latch" => Latch::read(source("toml")).err(),
+        "latch" => LatchDesign::read(source("toml")).err(),
         "chain" => ChainFile::read(source("toml")).err(),
         "steps" => sequence::table(&source("csv")).err(),
         "heights" => wanted_from_table(source("csv")).err(),

@@ -1,7 +1,7 @@
 //! Facts about published areas besides the printed number: shapes, our computations, our readings,
 //! contradictions.
 
-use super::data::{Source, System};
+use super::data::{RowSource, System};
 use serde::Serialize;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
@@ -49,7 +49,7 @@ pub struct Number {
 
 /// A zero-rotation area of acceptance with a closed form, in D.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum AcceptanceShape {
     /// A disc of this radius.
     Disc(f64),
     /// An axis-parallel square of this edge.
@@ -58,7 +58,7 @@ pub enum Shape {
     Diamond(f64),
 }
 
-impl Shape {
+impl AcceptanceShape {
     /// Its area, in D².
     pub fn area(self) -> f64 {
         match self {
@@ -84,7 +84,7 @@ pub struct Fact {
     /// Its name in the catalogue.
     pub system: &'static str,
     /// Its region, where the geometry is given, or where nothing but the number is and the region is a reading.
-    pub shape: Option<(Shape, Provenance)>,
+    pub shape: Option<(AcceptanceShape, Provenance)>,
     /// What the shape rests on.
     pub basis: &'static str,
     /// The ONAA that the dissertation states, in D.
@@ -102,7 +102,11 @@ const DRAGON_REACH: f64 = 1.0 / 5.0;
 /// Radius of the circle around a square of edge 1.
 const AROUND: f64 = FRAC_1_SQRT_2;
 
-const fn read(system: &'static str, shape: Option<(Shape, Provenance)>, basis: &'static str) -> Fact {
+const fn read(
+    system: &'static str,
+    shape: Option<(AcceptanceShape, Provenance)>,
+    basis: &'static str,
+) -> Fact {
     Fact { system, shape, basis, onaa: None, doubt: None }
 }
 
@@ -117,7 +121,7 @@ pub const GEOMETRY: [Fact; 13] = [
         doubt: Some("the chamfers of the holes are not counted in the printed number"),
         ..read(
             "Polybot G3",
-            Some((Shape::Disc(POLYBOT_REACH), Provenance::Recomputed)),
+            Some((AcceptanceShape::Disc(POLYBOT_REACH), Provenance::Recomputed)),
             "4 pairs of pins and holes, pins 4 mm across on a face of 50 mm: a circle of the pin's radius",
         )
     },
@@ -128,7 +132,7 @@ pub const GEOMETRY: [Fact; 13] = [
         ),
         ..read(
             "M-TRAN III",
-            Some((Shape::Square(1.0 / 13.0), Provenance::Inferred)),
+            Some((AcceptanceShape::Square(1.0 / 13.0), Provenance::Inferred)),
             "a square of edge 1/13 agrees to three digits: 5 mm on a module of 65 mm",
         )
     },
@@ -136,7 +140,7 @@ pub const GEOMETRY: [Fact; 13] = [
         doubt: Some("the same number is printed for M-TRAN III; no geometry is given for either"),
         ..read(
             "JHU",
-            Some((Shape::Square(1.0 / 13.0), Provenance::Inferred)),
+            Some((AcceptanceShape::Square(1.0 / 13.0), Provenance::Inferred)),
             "a square of edge 1/13 agrees to three digits",
         )
     },
@@ -161,7 +165,7 @@ pub const GEOMETRY: [Fact; 13] = [
     },
     read(
         "ACOR (unpaired)",
-        Some((Shape::Square(4.0 / 15.0), Provenance::Inferred)),
+        Some((AcceptanceShape::Square(4.0 / 15.0), Provenance::Inferred)),
         "a square of edge 4/15 agrees to three digits",
     ),
     Fact {
@@ -189,7 +193,7 @@ pub const GEOMETRY: [Fact; 13] = [
         ),
         ..read(
             "amour",
-            Some((Shape::Disc(AROUND), Provenance::Recomputed)),
+            Some((AcceptanceShape::Disc(AROUND), Provenance::Recomputed)),
             "probe and drogue around the unit square: a circle of radius √2/2",
         )
     },
@@ -197,7 +201,7 @@ pub const GEOMETRY: [Fact; 13] = [
         onaa: Some(1.0),
         ..read(
             "3-D X-Face",
-            Some((Shape::Diamond(1.0), Provenance::Recomputed)),
+            Some((AcceptanceShape::Diamond(1.0), Provenance::Recomputed)),
             "the saddle accepts |x| + |y| < D",
         )
     },
@@ -206,7 +210,7 @@ pub const GEOMETRY: [Fact; 13] = [
 impl Fact {
     /// Of a row of the catalogue.
     pub fn of(system: &System) -> Option<&'static Self> {
-        if system.source == Source::Appended {
+        if system.source == RowSource::Appended {
             return None;
         }
         GEOMETRY.iter().find(|fact| fact.system == system.name)
@@ -220,7 +224,7 @@ pub fn numbers(system: &System) -> Vec<Number> {
         found.push(Number { name, value, unit, provenance, basis: basis.to_owned() });
     };
     if let Some(zraa) = &system.published {
-        let place = if system.source == Source::Section412 { "section 4.1.2" } else { "table 2.1" };
+        let place = if system.source == RowSource::Section412 { "section 4.1.2" } else { "table 2.1" };
         let basis = if zraa.estimated { format!("{place}, marked as estimated") } else { place.to_owned() };
         add("area", zraa.area_d2, "D²", Provenance::Stated, &basis);
         add("radius", (zraa.area_d2 / PI).sqrt(), "D", Provenance::Recomputed, "of the circle of that area");
@@ -239,9 +243,9 @@ pub fn numbers(system: &System) -> Vec<Number> {
     }
     match fact.system {
         "DRAGON" => {
-            let circle = Shape::Disc((DRAGON_AREA / PI).sqrt());
+            let circle = AcceptanceShape::Disc((DRAGON_AREA / PI).sqrt());
             add("ONAA", circle.onaa(), "D", Provenance::Recomputed, fact.basis);
-            let stated = Shape::Disc(DRAGON_REACH);
+            let stated = AcceptanceShape::Disc(DRAGON_REACH);
             add("area", stated.area(), "D²", Provenance::Recomputed, "of a circle of the stated reach, Ø/5");
         }
         "amour" => {

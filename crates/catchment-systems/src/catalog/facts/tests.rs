@@ -1,6 +1,6 @@
 //! Every number of the source that can be recomputed, and closed forms compared with the program's results.
 
-use super::super::{Catalog, Table};
+use super::super::{Catalog, PublishedTable};
 use super::*;
 use catchment::design::family::PinHole;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
@@ -42,7 +42,10 @@ fn every_published_area_has_its_line() {
     // CEBOT is only named.
     let known = |s: &System| s.published.is_some() || s.name == "CEBOT Mark II";
     assert!(catalog.systems.iter().all(|s| known(s) == Fact::of(s).is_some()));
-    assert_eq!(String::from_utf8(catalog.as_printed(Table::Zraa).unwrap()).unwrap().lines().count(), 12);
+    assert_eq!(
+        String::from_utf8(catalog.as_printed(PublishedTable::Zraa).unwrap()).unwrap().lines().count(),
+        12
+    );
 }
 
 /// What each area is as a circle and as a square, to the printed digits.
@@ -92,7 +95,7 @@ fn where_the_geometry_is_given_the_area_agrees_within_two_per_mille() {
 fn closed_forms_are_what_the_program_computes() {
     // The saddle and the pyramid are polygons: exact.
     let (_, zraa, square) = computed(FamilySpec::new(Family::XFace3d));
-    assert!((area(&zraa) - Shape::Diamond(1.0).area()).abs() < 1e-9);
+    assert!((area(&zraa) - AcceptanceShape::Diamond(1.0).area()).abs() < 1e-9);
     assert!((square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
     let (_, zraa, square) = computed(FamilySpec::new(Family::Pyramid));
     assert!((area(&zraa) - 1.0).abs() < 1e-9 && (square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
@@ -101,7 +104,7 @@ fn closed_forms_are_what_the_program_computes() {
         let (design, zraa, square) = computed(FamilySpec::new(Family::Cone).with_chord_error(chord_error));
         let [low, high] = circle_bounds(&design, &zraa).unwrap();
         let [less, more] = circle_square(&design, &zraa, &square).unwrap();
-        let (inscribed, around) = (Shape::Disc(0.5), Shape::Disc(AROUND));
+        let (inscribed, around) = (AcceptanceShape::Disc(0.5), AcceptanceShape::Disc(AROUND));
         assert!(low <= inscribed.area() && inscribed.area() <= high);
         assert!(
             less <= inscribed.onaa() + AcceptedSquare::TOLERANCE && inscribed.onaa() <= more,
@@ -147,10 +150,10 @@ fn planar_faces_have_twice_their_bound() {
 
 #[test]
 fn stated_edges_and_ratios_come_out_to_their_digits() {
-    assert!((Shape::Disc(AROUND).onaa() - 1.0).abs() < 1e-12);
-    assert!((Shape::Disc(0.5).onaa() - FRAC_1_SQRT_2).abs() < 1e-12);
-    assert!((Shape::Disc(POLYBOT_REACH).onaa() - 0.0566).abs() < 5e-5);
-    assert!((Shape::Disc(POLYBOT_REACH).area() - 0.005_027).abs() < 5e-7);
+    assert!((AcceptanceShape::Disc(AROUND).onaa() - 1.0).abs() < 1e-12);
+    assert!((AcceptanceShape::Disc(0.5).onaa() - FRAC_1_SQRT_2).abs() < 1e-12);
+    assert!((AcceptanceShape::Disc(POLYBOT_REACH).onaa() - 0.0566).abs() < 5e-5);
+    assert!((AcceptanceShape::Disc(POLYBOT_REACH).area() - 0.005_027).abs() < 5e-7);
     let catalog = Catalog::published().unwrap();
     let of = |name: &str| numbers(catalog.find(name).unwrap());
     let ratios: Vec<f64> = of("X-Face").iter().filter(|n| n.unit == "%").map(|n| n.value).collect();

@@ -1,6 +1,6 @@
 //! Content of the figure's cells: regions in D, and a face seen along the approach.
 
-use super::super::facts::Shape;
+use super::super::facts::AcceptanceShape;
 use catchment::connector::Half;
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
@@ -59,16 +59,18 @@ pub(super) fn filled(fill: colour::Rgb) -> String {
 }
 
 /// The corners that are drawn for a shape.
-pub(super) fn corners(shape: Shape) -> Vec<DVec2> {
+pub(super) fn corners(shape: AcceptanceShape) -> Vec<DVec2> {
     match shape {
-        Shape::Disc(radius) => {
+        AcceptanceShape::Disc(radius) => {
             (0..ROUND).map(|k| radius * DVec2::from_angle(f64::from(k) * TAU / f64::from(ROUND))).collect()
         }
-        Shape::Square(edge) => {
+        AcceptanceShape::Square(edge) => {
             let half = edge / 2.0;
             [(-half, -half), (half, -half), (half, half), (-half, half)].map(DVec2::from).to_vec()
         }
-        Shape::Diamond(reach) => [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y].map(|p| reach * p).to_vec(),
+        AcceptanceShape::Diamond(reach) => {
+            [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y].map(|p| reach * p).to_vec()
+        }
     }
 }
 
@@ -120,9 +122,9 @@ pub fn cone_over_x_face() -> Picture {
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
     let view = View::new(rect, REACH);
     let cone = mix(colour::FIXED, colour::FIXED_EDGE, 0.5);
-    let (around, inside) = (Shape::Disc(FRAC_1_SQRT_2), Shape::Disc(0.5));
+    let (around, inside) = (AcceptanceShape::Disc(FRAC_1_SQRT_2), AcceptanceShape::Disc(0.5));
     let styles = [
-        (Shape::Diamond(1.0), filled(mix(ACCEPTED, [255; 3], 0.45))),
+        (AcceptanceShape::Diamond(1.0), filled(mix(ACCEPTED, [255; 3], 0.45))),
         (around, format!(r#"fill="{0}" fill-opacity="0.35" stroke="{0}" stroke-width="1.6""#, hex(cone))),
         (inside, format!(r#"fill="{0}" fill-opacity="0.45" stroke="{0}" stroke-width="1.6""#, hex(cone))),
     ];

@@ -1,7 +1,7 @@
 //! The rows of figure 2.1: connectors with a known region.
 
 use super::super::data::PublishedZraa;
-use super::super::facts::{Fact, Shape};
+use super::super::facts::{AcceptanceShape, Fact};
 use super::super::{Catalog, GEOMETRY};
 use super::cells::{ACCEPTED, View, corners, dashed, dotted, face, filled};
 use super::{DrawError, problem};
@@ -42,9 +42,9 @@ pub(super) struct Row {
 
 enum Region {
     Computed(Zraa, AcceptedSquare),
-    Closed(Shape),
+    Closed(AcceptanceShape),
     /// The circle of a printed area.
-    OfNumber(Shape),
+    OfNumber(AcceptanceShape),
 }
 
 /// Families, their names here, and how wide they are drawn.
@@ -81,7 +81,7 @@ pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError>
     }
     let dragon = catalog.find("DRAGON").and_then(|system| system.published.as_ref());
     if let Some(&PublishedZraa { area_d2, .. }) = dragon {
-        let shape = Shape::Disc((area_d2 / std::f64::consts::PI).sqrt());
+        let shape = AcceptanceShape::Disc((area_d2 / std::f64::consts::PI).sqrt());
         let words = ["circle of the published", "area: drawn from the", "number, not from geometry"];
         rows.insert(
             6,
@@ -132,7 +132,7 @@ fn of_family(
         }
         // What is printed is the circle's.
         (Zraa::Region { .. }, Family::Cone) => {
-            let shape = Shape::Disc(0.5 * width);
+            let shape = AcceptanceShape::Disc(0.5 * width);
             let area = if width > 1.0 { "π/2, as amour is published" } else { "π/4" };
             told(&[area, words], shape.area(), shape.onaa())
         }

@@ -1,6 +1,6 @@
 //! Every published area on one logarithmic scale.
 
-use super::super::data::{Catalog, Source, System};
+use super::super::data::{Catalog, RowSource, System};
 use super::super::facts::{Fact, Provenance};
 use super::cells::ACCEPTED;
 use catchment::report::figure::draw::axis::tick_label;
@@ -36,7 +36,7 @@ fn shape_of(system: &System) -> &'static str {
     match Fact::of(system).and_then(|fact| fact.shape) {
         Some((_, Provenance::Inferred)) => "shape unknown; a square agrees [I]",
         Some(_) => "shape known",
-        None if system.source == Source::Appended => "a design, computed",
+        None if system.source == RowSource::Appended => "a design, computed",
         None if system.name == "SINGO" => "shape unknown, but for its concave X",
         None => "shape unknown",
     }
@@ -71,7 +71,7 @@ pub(super) fn draw(svg: &mut Svg, catalog: &Catalog, rect: Rect) {
         svg.text([left - 10.0, y + 8.0], LABEL, Anchor::End, INK, &short(name));
         let known = shape_of(system) == "shape known";
         let (fill, edge) = match (known, &system.source) {
-            (_, Source::Appended) => (hex(MOVING), hex(MOVING_EDGE)),
+            (_, RowSource::Appended) => (hex(MOVING), hex(MOVING_EDGE)),
             (true, _) => (hex(ACCEPTED), hex(ACCEPTED)),
             (false, _) => ("#ffffff".to_owned(), hex(ACCEPTED)),
         };

@@ -1,8 +1,8 @@
 //! Reports of the catalogue, of a single system, and of a design among them.
 
-use super::attribute::{Attribute, Oddity};
+use super::attribute::{CatalogAttribute, Oddity};
 use super::classify::{Classified, Ratio};
-use super::data::{Catalog, Source, System};
+use super::data::{Catalog, RowSource, System};
 use super::facts::{Fact, Number, numbers};
 use super::rule::{Extents, HIGH};
 use catchment::design::Design;
@@ -29,8 +29,12 @@ const NOTHING: &str = "–";
 const ESTIMATED: &str = "* marked as an estimate in the source";
 
 /// The attributes that say most.
-const OVERVIEW: [Attribute; 4] =
-    [Attribute::Introduced, Attribute::SelfAligningDegree, Attribute::Gendering, Attribute::ConnectionType];
+const OVERVIEW: [CatalogAttribute; 4] = [
+    CatalogAttribute::Introduced,
+    CatalogAttribute::SelfAligningDegree,
+    CatalogAttribute::Gendering,
+    CatalogAttribute::ConnectionType,
+];
 
 /// Rows of the catalogue.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,7 +51,7 @@ pub struct SystemBody {
     /// Its name.
     pub system: String,
     /// Source of the row.
-    pub source: Source,
+    pub source: RowSource,
     /// Values of table 1.1 by attribute; null if the table does not list the system.
     pub attributes: Option<BTreeMap<&'static str, ValueReport>>,
     /// Stated area in D², or the computed area of an appended design; null without an area.
@@ -106,13 +110,17 @@ impl ReportBody for SystemBody {
 impl SystemBody {
     /// Of a row.
     pub fn of(system: &System) -> Self {
-        let value = |attribute: Attribute, printed: &str| ValueReport {
+        let value = |attribute: CatalogAttribute, printed: &str| ValueReport {
             printed: printed.to_owned(),
             normal: attribute.normal(printed).to_owned(),
             reason: attribute.oddity(printed).map(|oddity| oddity.reason),
         };
         let attributes = system.attributes.as_ref().map(|values| {
-            Attribute::ALL.into_iter().zip(values).map(|(a, printed)| (a.key(), value(a, printed))).collect()
+            CatalogAttribute::ALL
+                .into_iter()
+                .zip(values)
+                .map(|(a, printed)| (a.key(), value(a, printed)))
+                .collect()
         });
         Self {
             system: system.name.clone(),
@@ -125,16 +133,16 @@ impl SystemBody {
         }
     }
 
-    fn value(&self, attribute: Attribute) -> Option<&ValueReport> {
+    fn value(&self, attribute: CatalogAttribute) -> Option<&ValueReport> {
         self.attributes.as_ref()?.get(attribute.key())
     }
 
     /// Why the printed value of an attribute has another normal form. What an appended design leaves open is no oddity of the source.
-    fn oddity(&self, attribute: Attribute) -> Option<&'static Oddity> {
-        attribute.oddity(self.printed(attribute)).filter(|_| self.source != Source::Appended)
+    fn oddity(&self, attribute: CatalogAttribute) -> Option<&'static Oddity> {
+        attribute.oddity(self.printed(attribute)).filter(|_| self.source != RowSource::Appended)
     }
 
-    fn printed(&self, attribute: Attribute) -> &str {
+    fn printed(&self, attribute: CatalogAttribute) -> &str {
         self.value(attribute).map_or(NOTHING, |value| value.printed.as_str())
     }
 
@@ -177,7 +185,7 @@ impl Printed for CatalogBody {
             let attribute = attribute.title();
             document.paragraph(format!("! {printed} ({attribute}) is read as {normal} [I]: {reason}"));
         }
-        if self.systems.iter().any(|system| system.source == Source::Appended) {
+        if self.systems.iter().any(|system| system.source == RowSource::Appended) {
             document.paragraph("The area, degree and gendering of an appended design are computed.");
         }
         document.table(self.data());
@@ -212,13 +220,14 @@ impl CatalogBody {
 
     /// Every attribute as printed and in its normal form, and the area, for programs.
     fn data(&self) -> Table {
-        let attributes =
-            Attribute::ALL.into_iter().flat_map(|a| [a.key().to_owned(), format!("{}_normal", a.key())]);
+        let attributes = CatalogAttribute::ALL
+            .into_iter()
+            .flat_map(|a| [a.key().to_owned(), format!("{}_normal", a.key())]);
         let first = ["system", "source"].map(str::to_owned);
         let last = ["zraa_d2", "estimated", "provenance", "stated_onaa_d"].map(str::to_owned);
         let mut table = Table::new(first.into_iter().chain(attributes).chain(last).map(Column::data));
         for system in &self.systems {
-            let values = Attribute::ALL.into_iter().flat_map(|attribute| -> [Cell; 2] {
+            let values = CatalogAttribute::ALL.into_iter().flat_map(|attribute| -> [Cell; 2] {
                 let value = system.value(attribute);
                 [value.map(|v| v.printed.clone()).into(), value.map(|v| v.normal.clone()).into()]
             });
@@ -238,19 +247,19 @@ impl CatalogBody {
     /// Every attribute as a table in Markdown; a normal form that differs stands behind an arrow.
     pub fn markdown(&self) -> String {
         let text = &mut String::new();
-        let titles: Vec<&str> = Attribute::ALL.map(Attribute::title).to_vec();
+        let titles: Vec<&str> = CatalogAttribute::ALL.map(CatalogAttribute::title).to_vec();
         line(text, &format!("| system | {} | ZRAA [D²] |", titles.join(" | ")));
         line(text, &format!("|{}", " --- |".repeat(titles.len() + 2)));
         for system in &self.systems {
             let cell = |attribute| match system.value(attribute) {
                 None => NOTHING.to_owned(),
-                Some(value) if value.normal == value.printed || system.source == Source::Appended => {
+                Some(value) if value.normal == value.printed || system.source == RowSource::Appended => {
                     value.printed.clone()
                 }
                 Some(value) => format!("{} → {}", value.printed, value.normal),
             };
             let mut cells = vec![system.system.clone()];
-            cells.extend(Attribute::ALL.map(cell));
+            cells.extend(CatalogAttribute::ALL.map(cell));
             cells.push(system.zraa().replace('*', "\\*"));
             let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
             line(text, &format!("| {} |", cells.join(" | ")));
@@ -260,13 +269,13 @@ impl CatalogBody {
 }
 
 /// Where a row comes from, in a word.
-const fn source(source: &Source) -> &'static str {
+const fn source(source: &RowSource) -> &'static str {
     match source {
-        Source::Connectors(None) => "table 1.1",
-        Source::Connectors(Some(_)) => "tables 1.1 and 2.1",
-        Source::ZraaAlone => "table 2.1",
-        Source::Section412 => "section 4.1.2",
-        Source::Appended => "design",
+        RowSource::Connectors(None) => "table 1.1",
+        RowSource::Connectors(Some(_)) => "tables 1.1 and 2.1",
+        RowSource::ZraaAlone => "table 2.1",
+        RowSource::Section412 => "section 4.1.2",
+        RowSource::Appended => "design",
     }
 }
 
@@ -286,7 +295,7 @@ impl SystemBody {
 
     fn attribute_table(&self) -> Table {
         let mut table = Table::new(["attribute", "value"].map(|title| Column::new(title).left()));
-        for attribute in Attribute::ALL {
+        for attribute in CatalogAttribute::ALL {
             let Some(ValueReport { printed, normal, reason }) = self.value(attribute) else { continue };
             let value = match reason {
                 None => printed.clone(),
@@ -311,7 +320,7 @@ impl SystemBody {
 impl Printed for SystemBody {
     fn title(&self) -> Cow<'_, str> {
         let other = match &self.source {
-            Source::Connectors(Some(name)) if *name != self.system => format!(" (as {name})"),
+            RowSource::Connectors(Some(name)) if *name != self.system => format!(" (as {name})"),
             _ => String::new(),
         };
         format!("{}: {}{other}", self.system, source(&self.source)).into()
@@ -323,7 +332,7 @@ impl Printed for SystemBody {
             document.table(self.attribute_table());
         } else {
             let known = match self.source {
-                Source::Section412 => "section 4.1 calls it ungendered and states nothing else",
+                RowSource::Section412 => "section 4.1 calls it ungendered and states nothing else",
                 _ => "its attributes are not stated",
             };
             document.paragraph(format!("table 1.1 does not have it: {known}"));

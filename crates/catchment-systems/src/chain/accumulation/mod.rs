@@ -19,9 +19,9 @@
 //!
 //! Millimetres, radians. Source: the dissertation gives no formula; these are elementary.
 
-use super::kinematics::{Body, Frame, direction, left, rotors, rotors_with, swing, wrapped};
+use super::kinematics::{ModuleDimensions, PlanarPose, direction, left, rotors, rotors_with, swing, wrapped};
 use super::random::{Draws, Term};
-use super::shape::{Latch, Side};
+use super::shape::{LatchingPair, ModuleFace};
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ use std::f64::consts::PI;
 /// Sizes of the errors of a chain: the joint's own first, all others optional.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Errors {
+pub struct ChainErrors {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma: f64,
     /// Step of the encoders, in radians: a uniform angle error of up to half a step.
@@ -51,11 +51,11 @@ pub struct Errors {
 /// A face that arrives where another waits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Closing {
-    body: Body,
+    body: ModuleDimensions,
     angles: Vec<f64>,
-    waiting: Frame,
+    waiting: PlanarPose,
     module: usize,
-    side: Side,
+    side: ModuleFace,
     /// Joints and links that may be wrong, counted from 0.
     joints: Vec<usize>,
     links: Vec<usize>,
@@ -103,14 +103,14 @@ impl Covariance {
 
 impl Closing {
     /// The last face of a straight chain of `modules`, where its partner waits without error.
-    pub fn straight(body: Body, modules: usize) -> Self {
+    pub fn straight(body: ModuleDimensions, modules: usize) -> Self {
         let angles = vec![0.0; modules];
-        let tip = Side::Front.of(&body, &rotors(&body, &angles), &angles, modules);
+        let tip = ModuleFace::Front.of(&body, &rotors(&body, &angles), &angles, modules);
         Self {
             body,
             waiting: tip.ahead(PI, 0.0),
             module: modules,
-            side: Side::Front,
+            side: ModuleFace::Front,
             joints: (0..modules).collect(),
             links: (0..modules.saturating_sub(1)).collect(),
             with_base: true,
@@ -119,7 +119,12 @@ impl Closing {
     }
 
     /// A latch of a folded chain, after those of `earlier` hold.
-    pub fn latch(body: Body, angles: &[f64], latch: &Latch, earlier: &[Latch]) -> Self {
+    pub fn latch(
+        body: ModuleDimensions,
+        angles: &[f64],
+        latch: &LatchingPair,
+        earlier: &[LatchingPair],
+    ) -> Self {
         let rotors = rotors(&body, angles);
         let held = |joint: usize| earlier.iter().any(|e| e.joints().contains(&joint));
         let spanned = |link: usize| earlier.iter().any(|e| (e.from - 1..e.to - 1).contains(&link));
@@ -153,14 +158,14 @@ impl Closing {
         self.joints.iter().map(of).collect()
     }
 
-    fn nominal(&self) -> (Vec<Frame>, DVec2) {
+    fn nominal(&self) -> (Vec<PlanarPose>, DVec2) {
         let rotors = rotors(&self.body, &self.angles);
         let at = self.side.of(&self.body, &rotors, &self.angles, self.module).place();
         (rotors, at)
     }
 
     /// Lateral, normal and angle of an arriving face.
-    fn seen(&self, arriving: Frame) -> [f64; 3] {
+    fn seen(&self, arriving: PlanarPose) -> [f64; 3] {
         let normal = direction(self.waiting.heading);
         let apart = arriving.place() - self.waiting.place();
         let angle = wrapped(arriving.heading - self.waiting.heading - PI);
@@ -168,7 +173,7 @@ impl Closing {
     }
 
     /// How far each joint yields to the side force, in their order.
-    fn bent(&self, errors: &Errors) -> Vec<f64> {
+    fn bent(&self, errors: &ChainErrors) -> Vec<f64> {
         const METRE: f64 = 1e3;
         let (rotors, at) = self.nominal();
         let across = -left(direction(self.waiting.heading));
@@ -177,7 +182,7 @@ impl Closing {
     }
 
     /// Mean and covariance, to first order in the errors.
-    pub fn first_order(&self, errors: &Errors) -> Covariance {
+    pub fn first_order(&self, errors: &ChainErrors) -> Covariance {
         /// Variance of a uniform error of full width 1.
         const UNIFORM: f64 = 1.0 / 12.0;
         let (rotors, at) = self.nominal();
@@ -204,11 +209,11 @@ impl Closing {
     }
 
     /// Lateral, normal and angle of one random chain, by exact kinematics.
-    pub fn drawn(&self, errors: &Errors, draws: Draws) -> [f64; 3] {
+    pub fn drawn(&self, errors: &ChainErrors, draws: Draws) -> [f64; 3] {
         self.drawn_bent(errors, &self.bent(errors), draws)
     }
 
-    fn drawn_bent(&self, errors: &Errors, bent: &[f64], draws: Draws) -> [f64; 3] {
+    fn drawn_bent(&self, errors: &ChainErrors, bent: &[f64], draws: Draws) -> [f64; 3] {
         let mut angles = self.angles.clone();
         for (k, bent) in self.joints.iter().zip(bent) {
             angles[*k] += errors.joint_sigma * draws.normal(Term::Joint(*k)) + bent;
@@ -218,13 +223,13 @@ impl Closing {
         }
         let base = if self.with_base {
             let [heading, x, y] = [0, 1, 2].map(|k| draws.normal(Term::Base(k)));
-            Frame {
+            PlanarPose {
                 x: errors.base_offset_sigma * x,
                 y: errors.base_offset_sigma * y,
                 heading: errors.base_sigma * heading,
             }
         } else {
-            Frame::default()
+            PlanarPose::default()
         };
         let link = |k: usize| {
             let off = if errors.link_sigma > 0.0 && self.links.contains(&k) {
@@ -244,7 +249,7 @@ impl Closing {
     /// It was asked to stop.
     pub fn cloud(
         &self,
-        errors: &Errors,
+        errors: &ChainErrors,
         seed: u64,
         chains: u64,
         exec: &Exec,
@@ -259,7 +264,7 @@ impl Closing {
 /// Standard deviation of the last face's lateral offset, in mm: a straight chain with independent joint errors `sigma`.
 ///
 /// Σ (j a + b)² over j < n; `σ a √(n (4n² − 1) / 12)` for b = ½ a.
-pub fn lateral_sigma(body: &Body, modules: usize, sigma: f64) -> f64 {
+pub fn lateral_sigma(body: &ModuleDimensions, modules: usize, sigma: f64) -> f64 {
     let (n, a, b) = (modules as f64, body.pitch, body.overhang);
     let squares = a * a * (n - 1.0) * n * (2.0 * n - 1.0) / 6.0 + a * b * n * (n - 1.0) + n * b * b;
     sigma * squares.sqrt()

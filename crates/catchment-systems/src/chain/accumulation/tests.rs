@@ -1,13 +1,13 @@
 //! Accumulated errors compared with closed forms, random chains and the published table.
 
-use super::super::shape::{FIRST_CORNERS, Reading, Shape, latches};
+use super::super::shape::{ChainShape, FIRST_CORNERS, Reading, latches};
 use super::*;
 use proptest::prelude::*;
 
 const DEGREE: f64 = PI / 180.0;
 
-fn joints(degrees: f64) -> Errors {
-    Errors { joint_sigma: degrees * DEGREE, ..Errors::default() }
+fn joints(degrees: f64) -> ChainErrors {
+    ChainErrors { joint_sigma: degrees * DEGREE, ..ChainErrors::default() }
 }
 
 /// Every number of the specification's table, to its last digit (half a unit and its rounding).
@@ -20,7 +20,7 @@ fn the_table_of_lateral_and_heading_deviations_is_ours() {
         (2.0, [0.0800, 0.1498, 0.2320, 0.4281, 0.6601, 1.2140, 1.8698, 2.6136]),
     ];
     let headings = [1.41, 1.73, 2.00, 2.45, 2.83, 3.46, 4.00, 4.47];
-    let body = Body::default();
+    let body = ModuleDimensions::default();
     for (sigma, lateral) in rows {
         for ((n, lateral), heading) in modules.into_iter().zip(lateral).zip(headings) {
             let ours = lateral_sigma(&body, n, sigma * DEGREE) / body.face;
@@ -36,8 +36,8 @@ fn the_table_of_lateral_and_heading_deviations_is_ours() {
 
 #[test]
 fn the_closed_form_is_the_first_order_of_a_straight_chain() {
-    let body = Body { pitch: 80.0, face: 50.0, overhang: 31.0, length: 70.0 };
-    for body in [body, Body::default()] {
+    let body = ModuleDimensions { pitch: 80.0, face: 50.0, overhang: 31.0, length: 70.0 };
+    for body in [body, ModuleDimensions::default()] {
         for n in 1..=20 {
             let found = Closing::straight(body, n).first_order(&joints(1.0));
             let [lateral, normal, angle] = found.sigmas();
@@ -47,7 +47,7 @@ fn the_closed_form_is_the_first_order_of_a_straight_chain() {
         }
     }
     // √3/2 in the limit of many modules.
-    let found = Closing::straight(Body::default(), 200).first_order(&joints(1.0));
+    let found = Closing::straight(ModuleDimensions::default(), 200).first_order(&joints(1.0));
     assert!((found.correlation() - 0.75f64.sqrt()).abs() < 1e-3);
 }
 
@@ -55,7 +55,7 @@ fn the_closed_form_is_the_first_order_of_a_straight_chain() {
 /// chains is 0.29 %; what is beyond first order takes 0.2 % of the lateral deviation at 20 modules.
 #[test]
 fn random_chains_agree_with_the_formula_within_a_percent() {
-    let (body, exec) = (Body::default(), Exec::new());
+    let (body, exec) = (ModuleDimensions::default(), Exec::new());
     for n in 2..=20 {
         let cloud = Closing::straight(body, n).cloud(&joints(1.0), 1, 60_000, &exec).unwrap();
         let [lateral, _, angle] = Covariance::of(&cloud).sigmas();
@@ -67,8 +67,8 @@ fn random_chains_agree_with_the_formula_within_a_percent() {
 
 #[test]
 fn threads_and_the_number_of_chains_change_nothing() {
-    let errors = Errors { encoder_step: 0.01, link_sigma: 0.3, base_sigma: 0.01, ..joints(2.0) };
-    let closing = Closing::straight(Body::default(), 9);
+    let errors = ChainErrors { encoder_step: 0.01, link_sigma: 0.3, base_sigma: 0.01, ..joints(2.0) };
+    let closing = Closing::straight(ModuleDimensions::default(), 9);
     let cloud =
         |threads, chains| closing.cloud(&errors, 5, chains, &Exec::new().with_threads(threads).unwrap());
     let one = cloud(1, 2000).unwrap();
@@ -81,16 +81,17 @@ fn threads_and_the_number_of_chains_change_nothing() {
 #[test]
 fn the_ring_closes_with_the_published_covariance() {
     for (first_corner, lateral, correlation) in [(1, 9.23, 0.62), (2, 7.23, 0.0), (3, 9.23, -0.62)] {
-        let angles = Shape::O { first_corner }.angles();
+        let angles = ChainShape::O { first_corner }.angles();
         let latch = latches(&angles)[0];
-        let found = Closing::latch(Body::default(), &angles, &latch, &[]).first_order(&joints(1.0));
+        let found =
+            Closing::latch(ModuleDimensions::default(), &angles, &latch, &[]).first_order(&joints(1.0));
         let sigmas = found.sigmas();
         assert!((sigmas[0] - lateral).abs() < 0.006, "{first_corner}: {sigmas:?}");
         assert!((sigmas[1] - 11.25).abs() < 0.006 && (sigmas[2] / DEGREE - 3.46).abs() < 0.006);
         assert!((found.correlation() - correlation).abs() < 0.006, "{first_corner}: {found:?}");
     }
     // 5.5 times less than a straight chain of as many modules.
-    let straight = lateral_sigma(&Body::default(), 12, DEGREE);
+    let straight = lateral_sigma(&ModuleDimensions::default(), 12, DEGREE);
     assert!((straight / 7.23 - 5.5).abs() < 0.01, "{}", straight / 7.23);
 }
 
@@ -98,9 +99,9 @@ fn the_ring_closes_with_the_published_covariance() {
 #[test]
 fn what_a_latch_holds_cannot_be_wrong() {
     let of = |reading| {
-        let angles = Shape::Block { reading }.angles();
+        let angles = ChainShape::Block { reading }.angles();
         let latches = latches(&angles);
-        Closing::latch(Body::default(), &angles, &latches[1], &latches[..1])
+        Closing::latch(ModuleDimensions::default(), &angles, &latches[1], &latches[..1])
     };
     assert_eq!(of(Reading::Middle).joints(), [2, 6]);
     assert_eq!(of(Reading::Tail).joints(), [2, 3]);
@@ -113,24 +114,24 @@ fn what_a_latch_holds_cannot_be_wrong() {
 
 #[test]
 fn every_optional_term_has_its_closed_form() {
-    let body = Body::default();
-    let of = |errors: Errors, n| Closing::straight(body, n).first_order(&errors);
+    let body = ModuleDimensions::default();
+    let of = |errors: ChainErrors, n| Closing::straight(body, n).first_order(&errors);
     let n = 8;
     // Links lengthen a straight chain, and nothing else.
-    let found = of(Errors { link_sigma: 0.2, ..Errors::default() }, n);
+    let found = of(ChainErrors { link_sigma: 0.2, ..ChainErrors::default() }, n);
     assert!((found.sigmas()[1] - 0.2 * 7f64.sqrt()).abs() < 1e-12 && found.sigmas()[0] < 1e-12);
     // A turned base is a joint at the first rotor.
-    let found = of(Errors { base_sigma: DEGREE, ..Errors::default() }, n);
+    let found = of(ChainErrors { base_sigma: DEGREE, ..ChainErrors::default() }, n);
     assert!((found.sigmas()[0] - 7.5 * 95.0 * DEGREE).abs() < 1e-9 && found.sigmas()[2] == DEGREE);
-    let found = of(Errors { base_offset_sigma: 3.0, ..Errors::default() }, n);
+    let found = of(ChainErrors { base_offset_sigma: 3.0, ..ChainErrors::default() }, n);
     assert!(
         (found.sigmas()[0] - 3.0).abs() + (found.sigmas()[1] - 3.0).abs() < 1e-12 && found.sigmas()[2] == 0.0
     );
     // A uniform error of width s has the deviation s/√12.
-    let found = of(Errors { encoder_step: 12f64.sqrt() * DEGREE, ..Errors::default() }, n);
+    let found = of(ChainErrors { encoder_step: 12f64.sqrt() * DEGREE, ..ChainErrors::default() }, n);
     assert!((found.sigmas()[0] / lateral_sigma(&body, n, DEGREE) - 1.0).abs() < 1e-12);
     // A side force bends every joint by its lever: c F Σ l², with Σ l² = 575 a² for 12 modules.
-    let found = of(Errors { compliance: 1e-3, side_force: 2.0, ..Errors::default() }, 12);
+    let found = of(ChainErrors { compliance: 1e-3, side_force: 2.0, ..ChainErrors::default() }, 12);
     assert!((found.mean[0] - 2e-3 * 575.0 * 95.0 * 95.0 / 1e3).abs() < 1e-9, "{:?}", found.mean);
     assert!((found.mean[2] - 2e-3 * 72.0 * 0.095).abs() < 1e-12, "{:?}", found.mean);
 }
@@ -142,9 +143,9 @@ proptest! {
     fn first_order_agrees_with_random_chains(
         first_corner in FIRST_CORNERS, seed in 0u64..1000, link in 0.1..1.0f64, step in 0.0..0.01f64,
     ) {
-        let angles = Shape::O { first_corner }.angles();
-        let errors = Errors { link_sigma: link, encoder_step: step, compliance: 1e-4, side_force: 3.0, ..joints(0.3) };
-        let closing = Closing::latch(Body::default(), &angles, &latches(&angles)[0], &[]);
+        let angles = ChainShape::O { first_corner }.angles();
+        let errors = ChainErrors { link_sigma: link, encoder_step: step, compliance: 1e-4, side_force: 3.0, ..joints(0.3) };
+        let closing = Closing::latch(ModuleDimensions::default(), &angles, &latches(&angles)[0], &[]);
         let expected = closing.first_order(&errors);
         let found = Covariance::of(&closing.cloud(&errors, seed, 4000, &Exec::new()).unwrap());
         for ((found, expected), k) in found.sigmas().into_iter().zip(expected.sigmas()).zip(0..) {

@@ -2,7 +2,7 @@
 
 use super::super::accumulation::Covariance;
 use super::super::report::ChainReport;
-use super::super::study::Arrival;
+use super::super::study::ArrivalErrors;
 use catchment::acceptance::Outcome;
 use catchment::document::percent;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
@@ -13,7 +13,7 @@ use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, p
 const MOST: usize = 2000;
 
 /// Draws x and pitch of the chains with the ellipses of one and two standard deviations.
-pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &Arrival) {
+pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &ArrivalErrors) {
     let face = report.body.body.face;
     let at = |e: &[f64; 3]| [-e[0] / face, e[2].to_degrees()];
     let shown = &arrival.cloud[..arrival.cloud.len().min(MOST)];

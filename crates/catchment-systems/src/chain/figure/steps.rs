@@ -1,9 +1,9 @@
 //! A chain after every step, its joint angles over time, and the errors at its first docking.
 
 use super::super::fold::State;
-use super::super::kinematics::{Body, Frame as Pose, direction, left};
-use super::super::report::{ChainReport, FoldingReport, ModuleReport, StepReport};
-use super::super::shape::Side;
+use super::super::kinematics::{ModuleDimensions, PlanarPose, direction, left};
+use super::super::report::{ChainReport, FoldStepReport, FoldingReport, ModuleReport};
+use super::super::shape::ModuleFace;
 use super::super::study::Study;
 use super::{SIDE, TOP, WIDTH, cloud, degrees, headed};
 use catchment::report::figure::Picture;
@@ -30,7 +30,7 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     let [left, right] = bounds(&folding.steps, body).map(|corner| corner.x);
     let scale = (cell - 16.0) / (right - left);
     // Rows are as high as what they show.
-    let rows: Vec<(&[StepReport], [f64; 2])> =
+    let rows: Vec<(&[FoldStepReport], [f64; 2])> =
         folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
     let height = |[low, high]: [f64; 2]| scale * (high - low);
     let charts = TOP + rows.iter().map(|(_, span)| height(*span) + WORDS).sum::<f64>() + 34.0;
@@ -83,7 +83,7 @@ fn legend(svg: &mut Svg) {
 const STALLED: &str = "#b3261e";
 
 /// The corners of some steps, in mm.
-fn bounds(steps: &[StepReport], body: &Body) -> [DVec2; 2] {
+fn bounds(steps: &[FoldStepReport], body: &ModuleDimensions) -> [DVec2; 2] {
     let reach = DVec2::splat(body.overhang.hypot(0.5 * body.face).max(0.5 * body.length));
     let all = steps.iter().flat_map(|step| &step.modules).map(|m| DVec2::new(m.x_mm, m.y_mm));
     let (low, high) = all
@@ -95,8 +95,8 @@ fn bounds(steps: &[StepReport], body: &Body) -> [DVec2; 2] {
 
 fn chain(
     svg: &mut Svg,
-    body: &Body,
-    step: &StepReport,
+    body: &ModuleDimensions,
+    step: &FoldStepReport,
     folding: &FoldingReport,
     scale: f64,
     place: &impl Fn(DVec2) -> [f64; 2],
@@ -131,7 +131,7 @@ fn chain(
     for (latch, layers) in folding.latches.iter().zip(&step.layers) {
         let Some(pair) = latch.latch else { continue };
         if *layers > 0 {
-            let face = |module: usize, side: Side| face(body, &step.modules[module - 1], side);
+            let face = |module: usize, side: ModuleFace| face(body, &step.modules[module - 1], side);
             let at = place(0.5 * (face(pair.from, pair.from_side) + face(pair.to, pair.to_side)));
             diamond(svg, at, *layers == 2);
         }
@@ -139,9 +139,9 @@ fn chain(
 }
 
 /// The centre of a module's face.
-fn face(body: &Body, m: &ModuleReport, side: Side) -> DVec2 {
-    let rotor = Pose { x: m.x_mm, y: m.y_mm, heading: m.heading_rad };
-    let before = if side == Side::Back { -m.angle_rad } else { 0.0 };
+fn face(body: &ModuleDimensions, m: &ModuleReport, side: ModuleFace) -> DVec2 {
+    let rotor = PlanarPose { x: m.x_mm, y: m.y_mm, heading: m.heading_rad };
+    let before = if side == ModuleFace::Back { -m.angle_rad } else { 0.0 };
     rotor.ahead(before + side.turn(), body.overhang).place()
 }
 
@@ -158,8 +158,8 @@ fn diamond(svg: &mut Svg, [x, y]: [f64; 2], full: bool) {
 /// What is new in a step, in one line of text or two.
 fn words(
     svg: &mut Svg,
-    step: &StepReport,
-    before: Option<&StepReport>,
+    step: &FoldStepReport,
+    before: Option<&FoldStepReport>,
     folding: &FoldingReport,
     [x, y]: [f64; 2],
 ) {

@@ -19,12 +19,12 @@
 //! `base_offset_sigma`, `compliance` (rad/(N·m)) with `side_force` (N). `[servo]` takes `torque` and `stiffness`, `[latch]` `force`,
 //! `overhang`, `extension` and `compression` (N/mm). Lengths are in mm and angles in radians unless they have a unit.
 
-use super::accumulation::Errors;
+use super::accumulation::ChainErrors;
 use super::fold::{Hooks, Servo};
-use super::kinematics::{Body, nearest_quarter};
-use super::sequence::{Command, Sequence, Step};
-use super::shape::{FIRST_CORNERS, Latch, Reading, Shape, latches};
-use crate::form::{Form, Section};
+use super::kinematics::{ModuleDimensions, nearest_quarter};
+use super::sequence::{Command, CommandSequence, CommandStep};
+use super::shape::{ChainShape, FIRST_CORNERS, LatchingPair, Reading, latches};
+use crate::form::{Form, FormTable};
 use catchment::design::{Diagnostic, Diagnostics, SourceText};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
@@ -36,11 +36,11 @@ pub struct ChainFile {
     /// What the person called it.
     pub name: String,
     /// Dimensions of a module.
-    pub body: Body,
+    pub body: ModuleDimensions,
     /// Modules of the chain.
     pub modules: usize,
     /// How large the errors are.
-    pub errors: Errors,
+    pub errors: ChainErrors,
     /// What a servo can do.
     pub servo: Servo,
     /// What a pair of latching faces does.
@@ -56,9 +56,9 @@ pub struct ChainFile {
 #[derive(Debug, Clone)]
 pub struct Folding {
     /// The named shape.
-    pub shape: Option<Shape>,
+    pub shape: Option<ChainShape>,
     /// The commands.
-    pub sequence: Sequence,
+    pub sequence: CommandSequence,
     /// Angles of the lattice that they end on.
     pub lattice: Vec<f64>,
     /// Where each step stands in the file.
@@ -137,8 +137,8 @@ fn whole(count: usize) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }
 
-fn body(form: &mut Form<'_>, chain: &Section<'_>) -> Body {
-    let own = Body::default();
+fn body(form: &mut Form<'_>, chain: &FormTable<'_>) -> ModuleDimensions {
+    let own = ModuleDimensions::default();
     let pitch = form.length(chain, "pitch", 1.0..=10_000.0, Some(own.pitch));
     let face = form.length(chain, "face", 1.0..=10_000.0, Some(own.face));
     // The published module's face lies half a pitch beyond its rotor, and its shell is a little shorter than the pitch.
@@ -156,12 +156,12 @@ fn body(form: &mut Form<'_>, chain: &Section<'_>) -> Body {
         let message = format!("faces {face} mm wide do not fit a lattice of {pitch} mm");
         form.refuse(chain.span_of("face"), message, None);
     }
-    Body { pitch, face, overhang, length }
+    ModuleDimensions { pitch, face, overhang, length }
 }
 
-fn errors(form: &mut Form<'_>, chain: &Section<'_>) -> Errors {
+fn errors(form: &mut Form<'_>, chain: &FormTable<'_>) -> ChainErrors {
     const LARGE: f64 = 0.5;
-    Errors {
+    ChainErrors {
         joint_sigma: form.angle(chain, "joint_sigma", 0.0..=LARGE, Some(0.0)),
         encoder_step: form.angle(chain, "encoder_step", 0.0..=LARGE, Some(0.0)),
         link_sigma: form.length(chain, "link_sigma", 0.0..=1000.0, Some(0.0)),
@@ -172,7 +172,7 @@ fn errors(form: &mut Form<'_>, chain: &Section<'_>) -> Errors {
     }
 }
 
-fn servo(form: &mut Form<'_>, root: &Section<'_>) -> Servo {
+fn servo(form: &mut Form<'_>, root: &FormTable<'_>) -> Servo {
     let (table, own) = (form.table(root, "servo"), Servo::default());
     let torque = form.number(&table, "torque", 1e-3..=1e4, Some(own.torque));
     let stiffness = form.number(&table, "stiffness", 1e-1..=1e6, Some(own.stiffness));
@@ -180,7 +180,7 @@ fn servo(form: &mut Form<'_>, root: &Section<'_>) -> Servo {
     Servo { torque, stiffness }
 }
 
-fn hooks(form: &mut Form<'_>, root: &Section<'_>) -> Hooks {
+fn hooks(form: &mut Form<'_>, root: &FormTable<'_>) -> Hooks {
     let (table, own) = (form.table(root, "latch"), Hooks::default());
     let hooks = Hooks {
         force: form.number(&table, "force", 1e-2..=1e5, Some(own.force)),
@@ -199,7 +199,7 @@ enum Named {
     O,
 }
 
-fn shape(form: &mut Form<'_>, section: &Section<'_>) -> Option<Shape> {
+fn shape(form: &mut Form<'_>, section: &FormTable<'_>) -> Option<ChainShape> {
     let named = section
         .has("name")
         .then(|| form.choice(section, "name", &[("P", Named::P), ("Block", Named::Block), ("O", Named::O)]));
@@ -216,17 +216,17 @@ fn shape(form: &mut Form<'_>, section: &Section<'_>) -> Option<Shape> {
         }
     }
     Some(match named? {
-        Named::P => Shape::P,
-        Named::Block => Shape::Block { reading },
-        Named::O => Shape::O { first_corner },
+        Named::P => ChainShape::P,
+        Named::Block => ChainShape::Block { reading },
+        Named::O => ChainShape::O { first_corner },
     })
 }
 
 fn folding(
     form: &mut Form<'_>,
-    root: &Section<'_>,
-    named: &Section<'_>,
-    shape: Option<Shape>,
+    root: &FormTable<'_>,
+    named: &FormTable<'_>,
+    shape: Option<ChainShape>,
     modules: usize,
 ) -> Option<Folding> {
     let (steps, places) = steps(form, root, modules);
@@ -244,15 +244,15 @@ fn folding(
     }
     let own = !steps.is_empty();
     let sequence = match shape {
-        Some(shape) => match Sequence::of(shape) {
-            Ok(known) if own => Sequence { steps, latches: known.latches, source: OWN },
+        Some(shape) => match CommandSequence::of(shape) {
+            Ok(known) if own => CommandSequence { steps, latches: known.latches, source: OWN },
             Ok(known) => known,
             Err(diagnostics) => {
                 form.refuse(named.span(), diagnostics.to_string(), None);
                 return None;
             }
         },
-        None if own => Sequence { steps, latches: Vec::new(), source: OWN },
+        None if own => CommandSequence { steps, latches: Vec::new(), source: OWN },
         None if named.is_written() => {
             let message = "[sequence] names no shape, and there is no [[step]]";
             form.refuse(named.span(), message, Some("write name = \"P\", \"Block\" or \"O\", or the steps"));
@@ -265,7 +265,7 @@ fn folding(
             let last = sequence.commanded_angles(modules).pop().unwrap_or_default();
             last.into_iter().map(nearest_quarter).collect()
         },
-        Shape::angles,
+        ChainShape::angles,
     );
     let places = if own { places } else { vec![named.span_of("name"); sequence.steps.len()] };
     let mut folding = Folding { shape, sequence, lattice, places };
@@ -279,7 +279,7 @@ fn folding(
 const OWN: &str = "the chain file";
 
 /// `3-6, 1-6`, each of which must be two faces that look at each other on the lattice.
-fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[f64]) -> Vec<Latch> {
+fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[f64]) -> Vec<LatchingPair> {
     let possible = latches(lattice);
     let mut found = Vec::new();
     for pair in text.split(',').map(str::trim) {
@@ -298,8 +298,8 @@ fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[
     found
 }
 
-fn steps(form: &mut Form<'_>, root: &Section<'_>, modules: usize) -> (Vec<Step>, Vec<Range<usize>>) {
-    let (mut steps, mut places): (Vec<Step>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+fn steps(form: &mut Form<'_>, root: &FormTable<'_>, modules: usize) -> (Vec<CommandStep>, Vec<Range<usize>>) {
+    let (mut steps, mut places): (Vec<CommandStep>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     let mut commanded = vec![false; modules];
     let written = form.tables(root, "step");
     if let Some(beyond) = written.get(MOST_STEPS) {
@@ -334,7 +334,7 @@ fn steps(form: &mut Form<'_>, root: &Section<'_>, modules: usize) -> (Vec<Step>,
                 form.refuse(entry.span_of("time"), message, Some("write the steps in the order of time"));
             }
             _ => {
-                steps.push(Step { time_s, commands: vec![(known, command)] });
+                steps.push(CommandStep { time_s, commands: vec![(known, command)] });
                 places.push(entry.span());
             }
         }
@@ -343,7 +343,7 @@ fn steps(form: &mut Form<'_>, root: &Section<'_>, modules: usize) -> (Vec<Step>,
 }
 
 /// An angle, or `"slack"`.
-fn command(form: &mut Form<'_>, entry: &Section<'_>) -> Option<Command> {
+fn command(form: &mut Form<'_>, entry: &FormTable<'_>) -> Option<Command> {
     if !entry.has("command") {
         // Says that it is missing.
         form.angle(entry, "command", -PI..=PI, None);
@@ -365,7 +365,7 @@ fn command(form: &mut Form<'_>, entry: &Section<'_>) -> Option<Command> {
     Some(Command::Angle(form.angle(entry, "command", -2.0 * FRAC_PI_2..=2.0 * FRAC_PI_2, None)))
 }
 
-fn connector(form: &mut Form<'_>, root: &Section<'_>, folder: &std::path::Path) -> Option<ConnectorLine> {
+fn connector(form: &mut Form<'_>, root: &FormTable<'_>, folder: &std::path::Path) -> Option<ConnectorLine> {
     let table = form.table(root, "connector");
     let design = form.word(&table, "design");
     let rotation_length =

@@ -13,10 +13,10 @@ fn told(text: &str) -> String {
 #[test]
 fn defaults_are_the_published_module() {
     let file = read("name = 'x'").unwrap();
-    assert_eq!((file.modules, file.body, file.folding.is_none()), (12, Body::default(), true));
+    assert_eq!((file.modules, file.body, file.folding.is_none()), (12, ModuleDimensions::default(), true));
     let file = read("[sequence]\nname = 'block'\nreading = 'B'\n[chain]\njoint_sigma = '1 deg'").unwrap();
     let folding = file.folding.unwrap();
-    assert_eq!((file.modules, folding.shape), (6, Some(Shape::Block { reading: Reading::Tail })));
+    assert_eq!((file.modules, folding.shape), (6, Some(ChainShape::Block { reading: Reading::Tail })));
     assert!((file.errors.joint_sigma - 0.017_453).abs() < 1e-6);
     let file = read("[chain]\npitch = 50\nface = '2 cm'\n[connector]\ndesign = 'x.toml'").unwrap();
     assert_eq!((file.body.overhang, file.body.face), (25.0, 20.0));
@@ -32,7 +32,7 @@ fn own_steps_fold_onto_a_lattice_of_their_own() {
         .concat();
     let file = read(&format!("[chain]\nmodules = 6\n[sequence]\nlatches = '3-6'\n{fold}")).unwrap();
     let folding = file.folding.unwrap();
-    assert_eq!(folding.lattice, Shape::P.angles());
+    assert_eq!(folding.lattice, ChainShape::P.angles());
     assert_eq!(folding.sequence.steps.len(), 3);
     assert_eq!(folding.sequence.latches.len(), 1);
     assert_eq!(folding.sequence.steps[1].commands.len(), 2);

@@ -9,8 +9,8 @@
 //! Halves of the same module may overlap (its joint is there), as may halves joined by a link, and modules
 //! that latch with each other: those press. Faces and their brackets are ignored.
 
-use super::super::kinematics::{Body, Frame, direction, left};
-use super::super::shape::Latch;
+use super::super::kinematics::{ModuleDimensions, PlanarPose, direction, left};
+use super::super::shape::LatchingPair;
 use glam::DVec2;
 
 /// A rectangle: centre and half axes.
@@ -23,7 +23,11 @@ struct Block {
 const TOUCH: f64 = 1e-6;
 
 /// The first two modules that do not latch with each other and whose rotors are nearer than half a pitch.
-pub(super) fn in_one_cell(body: &Body, rotors: &[Frame], latches: &[Latch]) -> Option<(usize, usize)> {
+pub(super) fn in_one_cell(
+    body: &ModuleDimensions,
+    rotors: &[PlanarPose],
+    latches: &[LatchingPair],
+) -> Option<(usize, usize)> {
     let mut pairs = (1..rotors.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
     let near = |(a, b): &(usize, usize)| {
         let pressed = latches.iter().any(|l| (l.from, l.to) == (a + 1, b + 1));
@@ -34,10 +38,10 @@ pub(super) fn in_one_cell(body: &Body, rotors: &[Frame], latches: &[Latch]) -> O
 
 /// The first two modules that overlap.
 pub(super) fn first(
-    body: &Body,
-    rotors: &[Frame],
+    body: &ModuleDimensions,
+    rotors: &[PlanarPose],
     angles: &[f64],
-    latches: &[Latch],
+    latches: &[LatchingPair],
 ) -> Option<(usize, usize)> {
     let halves: Vec<[Block; 2]> =
         rotors.iter().zip(angles).map(|(r, angle)| halves(body, r, *angle)).collect();
@@ -62,7 +66,7 @@ pub(super) fn first(
 }
 
 /// Back and front of a module.
-fn halves(body: &Body, rotor: &Frame, angle: f64) -> [Block; 2] {
+fn halves(body: &ModuleDimensions, rotor: &PlanarPose, angle: f64) -> [Block; 2] {
     let half = |heading: f64| {
         let along = 0.25 * body.length * direction(heading);
         let across = 0.5 * body.face * left(direction(heading));
@@ -89,7 +93,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     fn collides(angles: &[f64]) -> Option<(usize, usize)> {
-        let body = Body::default();
+        let body = ModuleDimensions::default();
         first(&body, &rotors(&body, angles), angles, &[])
     }
 
@@ -99,7 +103,9 @@ mod tests {
         assert_eq!(collides(&[0.0; 20]), None);
         assert_eq!(collides(&[0.0, 0.0, 0.0, q, q, 0.0]), None);
         assert_eq!(collides(&[0.0, q, q, q, q]), Some((1, 5)));
-        let cell = |angles: &[f64]| in_one_cell(&Body::default(), &rotors(&Body::default(), angles), &[]);
+        let cell = |angles: &[f64]| {
+            in_one_cell(&ModuleDimensions::default(), &rotors(&ModuleDimensions::default(), angles), &[])
+        };
         assert_eq!((cell(&[0.0, q, q, q, q]), cell(&[0.0, 0.0, 2.6, 0.0])), (Some((1, 5)), None));
         // A fold of 150° lays a module on the one before it.
         assert!(collides(&[0.0, 0.0, 2.6, 0.0]).is_some());

@@ -30,11 +30,11 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use pair::Layers;
+pub use pair::LatchedLayers;
 
-use super::kinematics::{Body, Frame, rotors, wrapped};
-use super::sequence::{Command, Sequence};
-use super::shape::Latch;
+use super::kinematics::{ModuleDimensions, PlanarPose, rotors, wrapped};
+use super::sequence::{Command, CommandSequence};
+use super::shape::LatchingPair;
 use catchment::exec::{Cancelled, Exec};
 use pair::Pair;
 use serde::{Deserialize, Serialize};
@@ -132,7 +132,7 @@ pub struct Event {
 
 /// The chain at the end of a step's ramp.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moment {
+pub struct FoldMoment {
     /// Time of the step.
     pub time_s: f64,
     /// What every joint is told.
@@ -142,7 +142,7 @@ pub struct Moment {
     /// What every joint does.
     pub states: Vec<State>,
     /// Rotors.
-    pub rotors: Vec<Frame>,
+    pub rotors: Vec<PlanarPose>,
     /// Layers that hold, for each pair of the sequence.
     pub latched: Vec<usize>,
 }
@@ -151,7 +151,7 @@ pub struct Moment {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Folded {
     /// After every step.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<FoldMoment>,
     /// What latched, in order.
     pub events: Vec<Event>,
     /// Time and joint angles at the start of every ramp and after every sub-step.
@@ -200,9 +200,9 @@ const RAMP_S: f64 = 1.0;
 /// # Errors
 /// Modules collide, or it was asked to stop.
 pub fn fold(
-    body: &Body,
+    body: &ModuleDimensions,
     modules: usize,
-    sequence: &Sequence,
+    sequence: &CommandSequence,
     settings: &FoldSettings,
     exec: &Exec,
 ) -> Result<Folded, FoldError> {
@@ -234,7 +234,7 @@ pub fn fold(
             }
             found.track.push((time_s, chain.angles.clone()));
         }
-        found.moments.push(Moment {
+        found.moments.push(FoldMoment {
             time_s: step.time_s,
             commands: commands.clone(),
             angles: chain.angles.clone(),
@@ -292,7 +292,7 @@ fn settle(chain: &mut Chain, time_s: f64, events: &mut Vec<Event>) {
 }
 
 /// How far the rotors of a chain are from those of wanted angles: the largest distance in mm, the largest turn in radians.
-pub fn off_lattice(body: &Body, angles: &[f64], wanted: &[f64]) -> (f64, f64) {
+pub fn off_lattice(body: &ModuleDimensions, angles: &[f64], wanted: &[f64]) -> (f64, f64) {
     let (found, wanted) = (rotors(body, angles), rotors(body, wanted));
     found.iter().zip(&wanted).fold((0.0, 0.0), |(far, turn), (a, b)| {
         let turned = wrapped(a.heading - b.heading).abs();
@@ -301,7 +301,7 @@ pub fn off_lattice(body: &Body, angles: &[f64], wanted: &[f64]) -> (f64, f64) {
 }
 
 /// Pairs of a sequence that do not hold with both layers in the end.
-pub fn open_latches<'a>(folded: &Folded, latches: &'a [Latch]) -> Vec<&'a Latch> {
+pub fn open_latches<'a>(folded: &Folded, latches: &'a [LatchingPair]) -> Vec<&'a LatchingPair> {
     let Some(last) = folded.moments.last() else { return latches.iter().collect() };
     latches.iter().zip(&last.latched).filter(|(_, layers)| **layers < 2).map(|(latch, _)| latch).collect()
 }

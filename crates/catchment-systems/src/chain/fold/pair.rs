@@ -1,7 +1,7 @@
 //! A pair of faces: its contact, its latches, and the snapping of a layer.
 
-use super::super::kinematics::{Body, Frame, direction, left, swing, wrapped};
-use super::super::shape::Latch;
+use super::super::kinematics::{ModuleDimensions, PlanarPose, direction, left, swing, wrapped};
+use super::super::shape::LatchingPair;
 use super::Hooks;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Latched layers of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Layers {
+pub enum LatchedLayers {
     /// No layer.
     None,
     /// One layer; the pair rests `offset` mm across the face from its aligned pose while the other layer
@@ -25,9 +25,9 @@ pub enum Layers {
 /// A pair of faces of a chain.
 #[derive(Debug, Clone)]
 pub(super) struct Pair {
-    pub(super) latch: Latch,
+    pub(super) latch: LatchingPair,
     pub(super) hooks: Hooks,
-    pub(super) held: Layers,
+    pub(super) held: LatchedLayers,
     /// Largest pressing force so far.
     pub(super) most: f64,
 }
@@ -55,20 +55,20 @@ const FACING: f64 = 1.0;
 const LAYERS: f64 = 2.0;
 
 impl Pair {
-    pub(super) const fn new(latch: Latch, hooks: Hooks) -> Self {
-        Self { latch, hooks, held: Layers::None, most: 0.0 }
+    pub(super) const fn new(latch: LatchingPair, hooks: Hooks) -> Self {
+        Self { latch, hooks, held: LatchedLayers::None, most: 0.0 }
     }
 
     pub(super) const fn layers(&self) -> usize {
         match self.held {
-            Layers::None => 0,
-            Layers::One { .. } => 1,
-            Layers::Both => 2,
+            LatchedLayers::None => 0,
+            LatchedLayers::One { .. } => 1,
+            LatchedLayers::Both => 2,
         }
     }
 
     /// Lateral offset, gap and angle of the arriving face, and the axes of the waiting one.
-    fn seen([waiting, arriving]: [Frame; 2]) -> ([f64; 3], glam::DVec2, glam::DVec2) {
+    fn seen([waiting, arriving]: [PlanarPose; 2]) -> ([f64; 3], glam::DVec2, glam::DVec2) {
         let normal = direction(waiting.heading);
         let across = -left(normal);
         let apart = arriving.place() - waiting.place();
@@ -80,12 +80,17 @@ impl Pair {
     }
 
     /// Lateral offset in mm, gap in mm, angle in radians.
-    pub(super) fn error(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> [f64; 3] {
+    pub(super) fn error(&self, body: &ModuleDimensions, rotors: &[PlanarPose], angles: &[f64]) -> [f64; 3] {
         Self::seen(self.latch.faces(body, rotors, angles)).0
     }
 
     /// What acts between the two faces now.
-    pub(super) fn springs(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> Vec<Spring> {
+    pub(super) fn springs(
+        &self,
+        body: &ModuleDimensions,
+        rotors: &[PlanarPose],
+        angles: &[f64],
+    ) -> Vec<Spring> {
         let faces = self.latch.faces(body, rotors, angles);
         let ([lateral, gap, angle], across, normal) = Self::seen(faces);
         let slopes = |at: glam::DVec2, along: glam::DVec2| {
@@ -102,7 +107,7 @@ impl Pair {
         };
         let at = faces[1].place();
         match self.held {
-            Layers::None => {
+            LatchedLayers::None => {
                 // Faces that lie behind each other do not touch, such as the two ends of a straight chain.
                 if lateral.abs() >= body.face || angle.abs() >= FACING || gap <= -body.overhang {
                     return Vec::new();
@@ -117,9 +122,9 @@ impl Pair {
                     })
                     .collect()
             }
-            Layers::One { .. } | Layers::Both => {
+            LatchedLayers::One { .. } | LatchedLayers::Both => {
                 let (offset, layers) = match self.held {
-                    Layers::One { offset } => (offset, 1.0),
+                    LatchedLayers::One { offset } => (offset, 1.0),
                     _ => (0.0, LAYERS),
                 };
                 let stiffness = self.hooks.extension * layers / LAYERS;
@@ -135,11 +140,11 @@ impl Pair {
     }
 
     /// How hard the faces press, in N.
-    pub(super) fn press(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> f64 {
+    pub(super) fn press(&self, body: &ModuleDimensions, rotors: &[PlanarPose], angles: &[f64]) -> f64 {
         let springs = self.springs(body, rotors, angles);
         let of = |s: &Spring| (-s.stiffness * s.stretch).max(0.0);
         match self.held {
-            Layers::None => springs.iter().map(of).sum(),
+            LatchedLayers::None => springs.iter().map(of).sum(),
             _ => springs.get(1).map_or(0.0, of),
         }
     }
@@ -148,11 +153,11 @@ impl Pair {
     pub(super) fn threshold(&self, lateral: f64) -> Option<f64> {
         let Hooks { force, overhang, .. } = self.hooks;
         match self.held {
-            Layers::None if lateral.abs() > 0.5 * overhang => Some(force),
-            Layers::None => Some(LAYERS * force),
-            Layers::One { offset } if offset != 0.0 => None,
-            Layers::One { .. } => Some(force),
-            Layers::Both => None,
+            LatchedLayers::None if lateral.abs() > 0.5 * overhang => Some(force),
+            LatchedLayers::None => Some(LAYERS * force),
+            LatchedLayers::One { offset } if offset != 0.0 => None,
+            LatchedLayers::One { .. } => Some(force),
+            LatchedLayers::Both => None,
         }
     }
 
@@ -161,9 +166,9 @@ impl Pair {
         self.most = self.most.max(press);
         let overhang = self.hooks.overhang;
         let Some(needed) = self.threshold(lateral) else {
-            let rides = matches!(self.held, Layers::One { .. });
+            let rides = matches!(self.held, LatchedLayers::One { .. });
             if rides && !driven {
-                self.held = Layers::One { offset: 0.0 };
+                self.held = LatchedLayers::One { offset: 0.0 };
                 return Change::Realigned;
             }
             return Change::Nothing;
@@ -173,8 +178,10 @@ impl Pair {
         }
         let off_centre = lateral.abs() > 0.5 * overhang;
         self.held = match self.held {
-            Layers::None if off_centre => Layers::One { offset: lateral.clamp(-overhang, overhang) },
-            _ => Layers::Both,
+            LatchedLayers::None if off_centre => {
+                LatchedLayers::One { offset: lateral.clamp(-overhang, overhang) }
+            }
+            _ => LatchedLayers::Both,
         };
         Change::Snapped(self.layers())
     }

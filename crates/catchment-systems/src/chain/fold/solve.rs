@@ -8,8 +8,8 @@
 //! A slack joint without a load keeps its angle: without a gradient nothing moves. Millimetres, newtons:
 //! torques in N·mm.
 
-use super::super::kinematics::{Body, Frame, rotors};
-use super::super::shape::Latch;
+use super::super::kinematics::{ModuleDimensions, PlanarPose, rotors};
+use super::super::shape::LatchingPair;
 use super::pair::{Change, Pair};
 use super::{Event, FoldSettings, State};
 
@@ -18,7 +18,7 @@ const MILLI: f64 = 1e3;
 
 /// A chain on its way.
 pub(super) struct Chain {
-    body: Body,
+    body: ModuleDimensions,
     settings: FoldSettings,
     pub(super) angles: Vec<f64>,
     /// What every joint is told now; `None` is slack.
@@ -27,7 +27,12 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    pub(super) fn new(body: Body, modules: usize, latches: &[Latch], settings: &FoldSettings) -> Self {
+    pub(super) fn new(
+        body: ModuleDimensions,
+        modules: usize,
+        latches: &[LatchingPair],
+        settings: &FoldSettings,
+    ) -> Self {
         Self {
             body,
             settings: *settings,
@@ -37,7 +42,7 @@ impl Chain {
         }
     }
 
-    pub(super) fn rotors(&self) -> Vec<Frame> {
+    pub(super) fn rotors(&self) -> Vec<PlanarPose> {
         rotors(&self.body, &self.angles)
     }
 
@@ -189,8 +194,8 @@ fn solved(m: &[Vec<f64>], damping: f64, b: &[f64]) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::shape::{Shape, latches};
-    use super::super::pair::Layers;
+    use super::super::super::shape::{ChainShape, latches};
+    use super::super::pair::LatchedLayers;
     use super::*;
     use proptest::prelude::*;
 
@@ -199,11 +204,11 @@ mod tests {
         #[test]
         fn the_gradient_is_that_of_the_energy(off in proptest::collection::vec(-0.2..0.2f64, 6), held in 0usize..4) {
             const STEP: f64 = 1e-6;
-            let angles = Shape::P.angles();
-            let mut chain = Chain::new(Body::default(), 6, &latches(&angles), &FoldSettings::default());
+            let angles = ChainShape::P.angles();
+            let mut chain = Chain::new(ModuleDimensions::default(), 6, &latches(&angles), &FoldSettings::default());
             chain.told = vec![Some(0.0), Some(0.01), None, Some(-1.67), Some(-1.74), Some(0.0)];
             chain.pairs[0].held =
-                [Layers::None, Layers::One { offset: 3.0 }, Layers::One { offset: 0.0 }, Layers::Both][held];
+                [LatchedLayers::None, LatchedLayers::One { offset: 3.0 }, LatchedLayers::One { offset: 0.0 }, LatchedLayers::Both][held];
             let at: Vec<f64> = angles.iter().zip(&off).map(|(a, o)| a + o).collect();
             let (energy, gradient, _) = chain.energy(&at);
             for k in 0..6 {

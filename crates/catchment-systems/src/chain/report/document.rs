@@ -4,7 +4,7 @@ use super::{ChainBody, FoldingReport};
 use crate::chain::accumulation::{heading_sigma, lateral_sigma};
 use crate::chain::fold::State;
 use crate::chain::sequence::Command;
-use crate::chain::study::Arrival;
+use crate::chain::study::ArrivalErrors;
 use catchment::document::{Cell, Column, ColumnFormat, Document, Table, percent, rounded};
 use catchment::report::document::Printed;
 use std::borrow::Cow;
@@ -181,7 +181,7 @@ impl ChainBody {
     }
 }
 
-impl Arrival {
+impl ArrivalErrors {
     fn describe(&self, document: &mut Document) {
         document
             .row(

@@ -1,12 +1,12 @@
 //! The report of a chain: JSON, text, tables for programs.
 
-use super::accumulation::Errors;
+use super::accumulation::ChainErrors;
 use super::docking::Probability;
 use super::fold::{Event, Hooks, Servo, State, off_lattice, open_latches};
-use super::kinematics::{Body, rotors};
+use super::kinematics::{ModuleDimensions, rotors};
 use super::ring::Corners;
-use super::shape::{Shape, cells};
-use super::study::{Arrival, Length, Study};
+use super::shape::{ChainShape, cells};
+use super::study::{ArrivalErrors, Length, Study};
 use catchment::document::{number, rounded};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{ReportBody, ReportEnvelope};
@@ -27,9 +27,9 @@ pub struct ChainBody {
     /// Number of modules.
     pub modules: usize,
     /// Dimensions of a module.
-    pub body: Body,
+    pub body: ModuleDimensions,
     /// Sizes of the errors.
-    pub errors: Errors,
+    pub errors: ChainErrors,
     /// Properties of a servo.
     pub servo: Servo,
     /// Properties of a pair of latching faces.
@@ -45,7 +45,7 @@ pub struct ChainBody {
     /// Its 95 % interval.
     pub ci95: Option<[f64; 2]>,
     /// The last face of the straight chain.
-    pub straight: Arrival,
+    pub straight: ArrivalErrors,
     /// Folding of the chain, if it folds.
     pub folding: Option<FoldingReport>,
     /// Choices of corners, for an O.
@@ -53,7 +53,7 @@ pub struct ChainBody {
     /// The table over numbers of modules.
     pub lengths: Vec<Length>,
     /// Number of modules up to which a requirement is met, for each joint error of the table.
-    pub reach: Vec<Reach>,
+    pub reach: Vec<ChainReach>,
 }
 
 /// The connector as the chain uses it.
@@ -77,7 +77,7 @@ pub struct ConnectorReport {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FoldingReport {
     /// The shape, if the file names a shape.
-    pub shape: Option<Shape>,
+    pub shape: Option<ChainShape>,
     /// Our reading of the source in it.
     pub reading: String,
     /// Source of the commands.
@@ -87,9 +87,9 @@ pub struct FoldingReport {
     /// Cells of the rotors.
     pub cells: Vec<[i64; 2]>,
     /// Every latch in the order of the sequence.
-    pub latches: Vec<Arrival>,
+    pub latches: Vec<ArrivalErrors>,
     /// The chain after every step.
-    pub steps: Vec<StepReport>,
+    pub steps: Vec<FoldStepReport>,
     /// Latching events.
     pub events: Vec<Event>,
     /// Largest pressing force on each pair, in N.
@@ -105,7 +105,7 @@ pub struct FoldingReport {
 /// The chain at the end of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct StepReport {
+pub struct FoldStepReport {
     /// Time of the step, in seconds.
     pub time_s: f64,
     /// Number of layers that hold, for each latch.
@@ -139,7 +139,7 @@ pub struct ModuleReport {
 /// Number of modules up to which a requirement is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Reach {
+pub struct ChainReach {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma_rad: f64,
     /// The requirement.
@@ -162,7 +162,7 @@ impl FoldingReport {
         let (folding, folded) = (study.file.folding.as_ref()?, study.folded.as_ref()?);
         let body = &study.file.body;
         let commanded = folding.sequence.commanded_angles(study.file.modules);
-        let steps = folded.moments.iter().zip(&commanded).map(|(moment, commanded)| StepReport {
+        let steps = folded.moments.iter().zip(&commanded).map(|(moment, commanded)| FoldStepReport {
             time_s: moment.time_s,
             layers: moment.latched.clone(),
             modules: (0..study.file.modules)
@@ -235,7 +235,7 @@ impl ChainBody {
 }
 
 /// How many modules still meet every requirement about `probability`.
-fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<Reach> {
+fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<ChainReach> {
     let about = |requirement: &&Requirement| requirement.to_string().starts_with("probability ");
     let mut wanted: Vec<Requirement> = requirements.iter().filter(about).cloned().collect();
     if wanted.is_empty() {
@@ -252,7 +252,7 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<Reach> {
                 rows.iter().take_while(meets).last().map(|row| row.modules)
             };
             let met = |value: f64| requirement.is_met_by(value);
-            found.push(Reach {
+            found.push(ChainReach {
                 joint_sigma_rad: first.joint_sigma_rad,
                 requirement: requirement.clone(),
                 modules: up_to(&|docking| met(docking.probability)),

@@ -1,7 +1,7 @@
 //! Rings as a table: `x,y` or `x,y,ring`, a corner per line. Lines that begin with `#` are ignored.
 
 use super::rings::{MOST_CORNERS, Ring, region, too_many};
-use super::{Measure, Read, ReadError};
+use super::{Measure, ParsedRegion, ReadError};
 use catchment::design::{
     Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText, nearest,
 };
@@ -122,7 +122,7 @@ fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> 
     Some(Columns { x, y, ring: ring.map(|(k, _)| k), unit: of_x })
 }
 
-pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
+pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, ReadError> {
     let mut found = DiagnosticCollector::default();
     let mut rings: Vec<Ring> = Vec::new();
     let mut measure = Measure::Millimetres;

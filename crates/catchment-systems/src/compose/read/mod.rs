@@ -18,7 +18,7 @@ mod sweep;
 use super::region::Region;
 use super::sum::SumError;
 use super::sweep::Bracket;
-use crate::form::{Form, Section};
+use crate::form::{Form, FormTable};
 use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
 use catchment::exec::Exec;
 use catchment::method::zraa::{self, Zraa, ZraaError};
@@ -51,7 +51,7 @@ impl Measure {
 
 /// A region that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Read {
+pub struct ParsedRegion {
     /// What it is called.
     pub name: String,
     /// The region.
@@ -89,14 +89,14 @@ enum Toml {
 ///
 /// # Errors
 /// Everything that is wrong with the file.
-pub fn read(source: SourceText, exec: &Exec) -> Result<Read, ReadError> {
+pub fn read(source: SourceText, exec: &Exec) -> Result<ParsedRegion, ReadError> {
     let ending = source.path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let stem = source.path.file_stem().and_then(|s| s.to_str()).unwrap_or("region").to_owned();
     match ending.as_str() {
         "csv" => csv::read(source, stem),
         "svg" => svg::read(source, stem),
         "toml" => {
-            let kind = Form::read(source.clone(), |form: &mut Form<'_>, root: &Section<'_>| {
+            let kind = Form::read(source.clone(), |form: &mut Form<'_>, root: &FormTable<'_>| {
                 if root.has("connector") {
                     Toml::Connector
                 } else {
@@ -118,7 +118,7 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<Read, ReadError> {
 }
 
 /// The offsets that a connector corrects without rotation, in mm where it has a unit.
-fn of_connector(draft: Draft, exec: &Exec) -> Result<Read, ReadError> {
+fn of_connector(draft: Draft, exec: &Exec) -> Result<ParsedRegion, ReadError> {
     let problem = draft.build()?;
     let design = problem.design();
     let zraa = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
@@ -140,5 +140,5 @@ fn of_connector(draft: Draft, exec: &Exec) -> Result<Read, ReadError> {
         }
     };
     let notes = vec!["offsets that the connector corrects without rotation".to_owned()];
-    Ok(Read { name: design.name.clone(), region: Bracket::exact(region), measure, notes })
+    Ok(ParsedRegion { name: design.name.clone(), region: Bracket::exact(region), measure, notes })
 }

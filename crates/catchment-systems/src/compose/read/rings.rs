@@ -2,7 +2,7 @@
 
 use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;
-use super::{Measure, Read, ReadError};
+use super::{Measure, ParsedRegion, ReadError};
 use catchment::budget::Limit;
 use catchment::design::{Diagnostic, DiagnosticCollector, SourceText};
 use glam::DVec2;
@@ -31,7 +31,7 @@ pub(super) fn region(
     mut rings: Vec<Ring>,
     mut found: DiagnosticCollector,
     notes: Vec<String>,
-) -> Result<Read, ReadError> {
+) -> Result<ParsedRegion, ReadError> {
     if found.is_empty() {
         for ring in &mut rings {
             ring.corners.dedup_by(|a, b| node(a.0) == node(b.0));
@@ -55,7 +55,7 @@ pub(super) fn region(
         }
     }
     if found.is_empty() {
-        return Ok(Read { name, region: Bracket::exact(region), measure, notes });
+        return Ok(ParsedRegion { name, region: Bracket::exact(region), measure, notes });
     }
     Err(found.of(source).into())
 }

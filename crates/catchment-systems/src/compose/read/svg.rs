@@ -2,7 +2,7 @@
 
 use super::super::region::REACH;
 use super::rings::{CORNERS, Ring, region};
-use super::{Measure, Read, ReadError};
+use super::{Measure, ParsedRegion, ReadError};
 use catchment::budget::{Budget, Overspent};
 use catchment::design::{Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText};
 use catchment::xml::svg::{self, Refusal, SvgShape};
@@ -14,7 +14,7 @@ use std::ops::{ControlFlow, Range};
 /// Curves of a path are replaced by chords that leave them by at most this, in mm.
 const CHORD_ERROR: f64 = 0.01;
 
-pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
+pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, ReadError> {
     let (mut found, mut rings, mut curved, mut hidden) =
         (DiagnosticCollector::default(), Vec::new(), false, 0);
     let mut measure = Measure::Millimetres;

@@ -1,9 +1,9 @@
 //! `[sweep]`: a shape and its motion, as a form.
 
 use super::super::sum::SumError;
-use super::super::sweep::{Bracket, Motion, Shape};
-use super::{Measure, Read};
-use crate::form::{Form, Section};
+use super::super::sweep::{Bracket, Motion, SweptShape};
+use super::{Measure, ParsedRegion};
+use crate::form::{Form, FormTable};
 use glam::DVec2;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -44,7 +44,7 @@ const KINDS: [(&str, Kind); 5] = [
 #[derive(Debug, Clone)]
 pub(super) struct Swept {
     name: String,
-    shape: Shape,
+    shape: SweptShape,
     center: DVec2,
     motions: Vec<Motion>,
     chord_error: f64,
@@ -52,17 +52,17 @@ pub(super) struct Swept {
 
 impl Swept {
     /// The region that is swept: motions one after another.
-    pub(super) fn read(self) -> Result<Read, SumError> {
+    pub(super) fn read(self) -> Result<ParsedRegion, SumError> {
         let mut region: Bracket = self.shape.bracket(self.center, self.chord_error);
         for motion in &self.motions {
             region = motion.sweep(&region, self.chord_error)?;
         }
-        Ok(Read { name: self.name, region, measure: Measure::Millimetres, notes: Vec::new() })
+        Ok(ParsedRegion { name: self.name, region, measure: Measure::Millimetres, notes: Vec::new() })
     }
 }
 
 /// Reads the file.
-pub(super) fn fill(form: &mut Form<'_>, root: &Section<'_>, stem: &str) -> Swept {
+pub(super) fn fill(form: &mut Form<'_>, root: &FormTable<'_>, stem: &str) -> Swept {
     let name = form.word(root, "name").map_or_else(|| stem.to_owned(), |word| word.text.to_owned());
     if !root.has("sweep") && !form.is_refused() {
         form.refuse(
@@ -81,7 +81,7 @@ pub(super) fn fill(form: &mut Form<'_>, root: &Section<'_>, stem: &str) -> Swept
         // What else there is depends on the shape.
         return Swept {
             name,
-            shape: Shape::Disc { radius: 1.0 },
+            shape: SweptShape::Disc { radius: 1.0 },
             center: DVec2::ZERO,
             motions: Vec::new(),
             chord_error: 1.0,
@@ -99,7 +99,7 @@ pub(super) fn fill(form: &mut Form<'_>, root: &Section<'_>, stem: &str) -> Swept
     Swept { name, shape, center, motions, chord_error }
 }
 
-fn shape(form: &mut Form<'_>, table: &Section<'_>, kind: Kind) -> Shape {
+fn shape(form: &mut Form<'_>, table: &FormTable<'_>, kind: Kind) -> SweptShape {
     match kind {
         Kind::AnnularSector => {
             let inner = form.length(table, "inner_radius", 0.0..=1e5, Some(0.0));
@@ -112,14 +112,14 @@ fn shape(form: &mut Form<'_>, table: &Section<'_>, kind: Kind) -> Shape {
                 );
             }
             let [from, to] = angles(form, table);
-            Shape::AnnularSector { inner, outer, from, to }
+            SweptShape::AnnularSector { inner, outer, from, to }
         }
-        Kind::HalfEllipse => Shape::HalfEllipse {
+        Kind::HalfEllipse => SweptShape::HalfEllipse {
             half_width: form.length(table, "half_width", LENGTHS, None),
             reach: form.length(table, "reach", LENGTHS, None),
         },
-        Kind::Disc => Shape::Disc { radius: form.length(table, "radius", LENGTHS, None) },
-        Kind::Box => Shape::Box {
+        Kind::Disc => SweptShape::Disc { radius: form.length(table, "radius", LENGTHS, None) },
+        Kind::Box => SweptShape::Box {
             width: form.length(table, "width", LENGTHS, None),
             height: form.length(table, "height", LENGTHS, None),
         },
@@ -127,7 +127,7 @@ fn shape(form: &mut Form<'_>, table: &Section<'_>, kind: Kind) -> Shape {
     }
 }
 
-fn polygon(form: &mut Form<'_>, table: &Section<'_>) -> Shape {
+fn polygon(form: &mut Form<'_>, table: &FormTable<'_>) -> SweptShape {
     let lists = ["x", "y"].map(|key| {
         form.lengths(table, key).unwrap_or_else(|| {
             if !form.is_refused() {
@@ -147,7 +147,7 @@ fn polygon(form: &mut Form<'_>, table: &Section<'_>) -> Shape {
         form.refuse(table.span_of("x"), message, Some("give it as a .csv"));
     }
     let corners: Vec<DVec2> = x.iter().zip(y).map(|((x, _), (y, _))| DVec2::new(*x, *y)).collect();
-    let shape = Shape::Polygon(corners.clone());
+    let shape = SweptShape::Polygon(corners.clone());
     if !form.is_refused() {
         let n = corners.len();
         let cross = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
@@ -167,7 +167,7 @@ fn polygon(form: &mut Form<'_>, table: &Section<'_>) -> Shape {
 }
 
 /// `from` and `to`, at most a full turn apart.
-fn angles(form: &mut Form<'_>, table: &Section<'_>) -> [f64; 2] {
+fn angles(form: &mut Form<'_>, table: &FormTable<'_>) -> [f64; 2] {
     let from = form.angle(table, "from", ANGLES, None);
     let to = form.angle(table, "to", ANGLES, None);
     let sound = from < to && to - from <= TAU + 1e-9;
@@ -177,7 +177,7 @@ fn angles(form: &mut Form<'_>, table: &Section<'_>) -> [f64; 2] {
     [from, to.min(from + TAU)]
 }
 
-fn motions(form: &mut Form<'_>, table: &Section<'_>) -> Vec<Motion> {
+fn motions(form: &mut Form<'_>, table: &FormTable<'_>) -> Vec<Motion> {
     let mut motions = Vec::new();
     let scale = form.table(table, "scale");
     if scale.is_written() {
@@ -206,7 +206,7 @@ fn motions(form: &mut Form<'_>, table: &Section<'_>) -> Vec<Motion> {
     motions
 }
 
-fn point(form: &mut Form<'_>, table: &Section<'_>, keys: [&'static str; 2]) -> DVec2 {
+fn point(form: &mut Form<'_>, table: &FormTable<'_>, keys: [&'static str; 2]) -> DVec2 {
     let [x, y] = keys.map(|key| form.length(table, key, PLACES, Some(0.0)));
     DVec2::new(x, y)
 }

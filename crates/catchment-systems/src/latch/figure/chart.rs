@@ -1,7 +1,7 @@
 //! Bonding ratio over overhang and neck, with the nine measured designs, and the region in which the model
 //! extrapolates.
 
-use super::super::Latch;
+use super::super::LatchDesign;
 use super::super::force::{Forces, outside};
 use super::super::measured::REJECTED_OVERHANG;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
@@ -25,7 +25,7 @@ fn colour(ratio: f64) -> Rgb {
 }
 
 /// Draws the chart into a rectangle; title above, scale of colours to the right.
-pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&Latch>) {
+pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&LatchDesign>) {
     svg.bold(
         [rect.x - 46.0, rect.y - 36.0],
         LABEL,

@@ -14,15 +14,15 @@ mod record;
 
 use super::force::Forces;
 use super::press::Record;
-use super::{Geometry, Latch};
+use super::{Geometry, LatchDesign};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
 /// Everything that is drawn of one latch.
 #[derive(Debug, Clone, Copy)]
-pub struct Drawn<'a> {
+pub struct LatchDrawings<'a> {
     /// The latch.
-    pub latch: &'a Latch,
+    pub latch: &'a LatchDesign,
     /// Its outline.
     pub geometry: &'a Geometry,
     /// A pair of them pressed together.
@@ -34,7 +34,7 @@ pub struct Drawn<'a> {
 /// Left side of everything.
 const LEFT: f64 = 30.0;
 
-impl Drawn<'_> {
+impl LatchDrawings<'_> {
     /// Every picture, by the name of its file.
     pub fn all(&self) -> Vec<(&'static str, Picture)> {
         vec![
@@ -98,7 +98,7 @@ impl Drawn<'_> {
 }
 
 /// Bonding ratio over overhang and neck; a design's own place in it.
-pub fn chart(forces: &Forces, latch: Option<&Latch>) -> Picture {
+pub fn chart(forces: &Forces, latch: Option<&LatchDesign>) -> Picture {
     let mut svg = Svg::new(640.0, 480.0);
     chart::draw(&mut svg, Rect { x: 76.0, y: 80.0, w: 440.0, h: 320.0 }, forces, latch);
     Picture::of(svg)
@@ -110,11 +110,11 @@ mod tests {
 
     #[test]
     fn every_picture_is_drawn_without_a_hole_in_its_numbers() {
-        let latch = Latch::default();
+        let latch = LatchDesign::default();
         let geometry = Geometry::of(&latch).unwrap();
         let record = super::super::press::record(&latch, &geometry).unwrap();
         let forces = Forces::new().unwrap();
-        let drawn = Drawn { latch: &latch, geometry: &geometry, record: &record, forces: &forces };
+        let drawn = LatchDrawings { latch: &latch, geometry: &geometry, record: &record, forces: &forces };
         for (name, picture) in drawn.all() {
             assert!(!picture.svg().contains("NaN") && picture.svg().len() > 4000, "{name}");
             assert!(picture.png(0.5).unwrap().len() > 2000, "{name}");

@@ -1,8 +1,8 @@
 //! The part itself: its outline with names, and two of them in the four steps of latching.
 
 use super::super::outline::Polygon;
-use super::super::{Geometry, Latch};
-use super::Drawn;
+use super::super::{Geometry, LatchDesign};
+use super::LatchDrawings;
 use catchment::report::figure::draw::colour::{FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, Rgb, hex};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 use glam::DVec2;
@@ -31,7 +31,7 @@ const DOTTED: &str = r##"stroke="#5f6b7a" stroke-width="0.9" stroke-dasharray="2
 const MEASURE: &str = r##"stroke="#1f2933" stroke-width="0.9""##;
 
 /// Draws a layer with the names of its parts.
-pub(super) fn outline(svg: &mut Svg, rect: Rect, latch: &Latch, geometry: &Geometry) {
+pub(super) fn outline(svg: &mut Svg, rect: Rect, latch: &LatchDesign, geometry: &Geometry) {
     let (top, bottom) = (geometry.height(), geometry.bottom);
     // Room for lengths on the right and below.
     let scale = ((rect.w - 70.0) / geometry.width).min((rect.h - 50.0) / (top - bottom));
@@ -122,7 +122,7 @@ fn half(geometry: &Geometry, swing: f64) -> Vec<Polygon> {
 }
 
 /// Draws approach, contact, arms pushed outward and the latched pair, one layer of each.
-pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &Drawn<'_>) {
+pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>) {
     const GAP: f64 = 18.0;
     /// Above the first contact when halves approach, in mm.
     const CLEAR: f64 = 5.0;

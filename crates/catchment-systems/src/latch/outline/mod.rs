@@ -17,8 +17,8 @@
 //! Curves are polylines whose corners lie on the curve; chords deviate by less than [`CHORD`]. Both halves
 //! share their corners, so that they mate without gap or overlap.
 
-use super::Latch;
-use super::profile::Profile;
+use super::LatchDesign;
+use super::profile::ArmProfile;
 use glam::DVec2;
 
 /// Steps of the profile.
@@ -96,7 +96,7 @@ pub struct Geometry {
     /// Overhang.
     pub overhang: f64,
     /// The arm's profile.
-    pub profile: Profile,
+    pub profile: ArmProfile,
     /// The middle of the neck, about which the arm turns.
     pub pivot: DVec2,
     /// Thickness of the neck.
@@ -118,7 +118,7 @@ impl Geometry {
     ///
     /// # Errors
     /// No profile meets them.
-    pub fn of(latch: &Latch) -> Result<Self, GeometryError> {
+    pub fn of(latch: &LatchDesign) -> Result<Self, GeometryError> {
         let middle = 0.5 * latch.width;
         let x_end = middle + 0.5 * latch.overhang;
         let near = middle + latch.slit_distance;
@@ -130,13 +130,13 @@ impl Geometry {
         if slit[1] >= latch.width {
             return Err(GeometryError::SlitOutside { slit: slit[1], width: latch.width });
         }
-        let face = |profile: &Profile| -profile.height(latch.width - near);
-        let pivot_y = |profile: &Profile| face(profile) - latch.cutout_depth + 0.5 * latch.l_eq;
+        let face = |profile: &ArmProfile| -profile.height(latch.width - near);
+        let pivot_y = |profile: &ArmProfile| face(profile) - latch.cutout_depth + 0.5 * latch.l_eq;
         let end = match latch.spline_end {
             Some(end) => end,
             None => through_pivot(latch, pivot_x, &pivot_y)?,
         };
-        let profile = Profile::of(latch, end);
+        let profile = ArmProfile::of(latch, end);
         let (face, bottom) = (face(&profile), -latch.base);
         let slit_end = face - latch.slit_depth;
         let dowels = latch.dowel.map(|diameter| {
@@ -287,12 +287,12 @@ impl Geometry {
 /// The angle at the hook with which the tangent there passes through P. P moves with the angle, because the slit is measured
 /// from the face.
 fn through_pivot(
-    latch: &Latch,
+    latch: &LatchDesign,
     pivot_x: f64,
-    pivot_y: &impl Fn(&Profile) -> f64,
+    pivot_y: &impl Fn(&ArmProfile) -> f64,
 ) -> Result<f64, GeometryError> {
     let flatter_than_p = |end: f64| {
-        let profile = Profile::of(latch, end);
+        let profile = ArmProfile::of(latch, end);
         end.tan() * (pivot_x - profile.x_end) < profile.hook - pivot_y(&profile)
     };
     // Beyond the steepest angle the tangent is steeper than any line to P.

@@ -24,7 +24,7 @@ fn turned(geometry: &Geometry, polygon: &Polygon) -> Polygon {
 /// The numbers that were computed by hand from the same sentences.
 #[test]
 fn the_defaults_give_the_recomputed_geometry() {
-    let geometry = Geometry::of(&Latch::default()).unwrap();
+    let geometry = Geometry::of(&LatchDesign::default()).unwrap();
     let lever = geometry.lever();
     let told = [
         geometry.profile.end.to_degrees(),
@@ -43,7 +43,7 @@ fn the_defaults_give_the_recomputed_geometry() {
 
 #[test]
 fn chords_are_near_the_curve() {
-    let geometry = Geometry::of(&Latch::default()).unwrap();
+    let geometry = Geometry::of(&LatchDesign::default()).unwrap();
     for pair in geometry.arm_profile().windows(2) {
         let middle = 0.5 * (pair[0] + pair[1]);
         let drop = geometry.profile.height(middle.x) - middle.y;
@@ -57,7 +57,7 @@ fn chords_are_near_the_curve() {
 #[test]
 fn halves_mate_without_gap_or_overlap() {
     for overhang in [2.5, 3.8, 5.1] {
-        let latch = Latch { overhang, ..Latch::default() };
+        let latch = LatchDesign { overhang, ..LatchDesign::default() };
         let geometry = Geometry::of(&latch).unwrap();
         let (solid, layer) = (geometry.solid(), geometry.layer());
         let full = latch.width * latch.base;
@@ -78,7 +78,7 @@ fn halves_mate_without_gap_or_overlap() {
 
 #[test]
 fn outlines_are_closed_simple_and_made_of_their_parts() {
-    let geometry = Geometry::of(&Latch::default()).unwrap();
+    let geometry = Geometry::of(&LatchDesign::default()).unwrap();
     let layer = geometry.layer();
     assert!(is_simple(&layer) && is_simple(&geometry.separator()) && area(&layer) > 0.0);
     let neck = geometry.neck * (geometry.cutout[1] - geometry.cutout[0]);
@@ -96,7 +96,7 @@ fn outlines_are_closed_simple_and_made_of_their_parts() {
 /// What both layers have in common leaves the partner's separator free; the union of both would not.
 #[test]
 fn separators_do_not_meet() {
-    let geometry = Geometry::of(&Latch::default()).unwrap();
+    let geometry = Geometry::of(&LatchDesign::default()).unwrap();
     let separator = geometry.separator();
     let partner = turned(&geometry, &separator);
     assert!(combined(&separator, &partner, OverlayRule::Intersect) < 1e-6);
@@ -123,10 +123,10 @@ fn separators_do_not_meet() {
 #[test]
 fn what_has_no_outline_is_refused() {
     // A cut-out as high as that puts P above the hook.
-    let refuse = |latch: Latch| Geometry::of(&latch).unwrap_err().key();
-    assert_eq!(refuse(Latch { slit_distance: 2.0, ..Latch::default() }), "slit_distance");
-    assert_eq!(refuse(Latch { slit_distance: 40.0, ..Latch::default() }), "slit_distance");
-    assert_eq!(refuse(Latch { l_eq: 100.0, ..Latch::default() }), "spline_start");
+    let refuse = |latch: LatchDesign| Geometry::of(&latch).unwrap_err().key();
+    assert_eq!(refuse(LatchDesign { slit_distance: 2.0, ..LatchDesign::default() }), "slit_distance");
+    assert_eq!(refuse(LatchDesign { slit_distance: 40.0, ..LatchDesign::default() }), "slit_distance");
+    assert_eq!(refuse(LatchDesign { l_eq: 100.0, ..LatchDesign::default() }), "spline_start");
 }
 
 proptest! {
@@ -137,7 +137,7 @@ proptest! {
     fn every_outline_meets_its_definition(
         o in 1.0f64..8.0, t in 2.0f64..5.0, hook in 1.0f64..6.0, bend in 3.0f64..12.0, start in 20f64..45.0,
     ) {
-        let latch = Latch { overhang: o, neck: t, hook, bend, spline_start: start.to_radians(), base: 90.0, ..Latch::default() };
+        let latch = LatchDesign { overhang: o, neck: t, hook, bend, spline_start: start.to_radians(), base: 90.0, ..LatchDesign::default() };
         let geometry = Geometry::of(&latch).unwrap();
         let profile = &geometry.profile;
         for k in 1..40 {
