@@ -2,13 +2,13 @@
 
 use crate::published::{self, Published, PublishedError};
 use crate::recipe::Recipe;
-use crate::recipe::dissertation::Errors;
+use crate::recipe::dissertation::SampledErrors;
 use catchment::design::Family;
 use catchment::method::kinematic::PlanarFace;
 
 /// A table that can be reproduced.
 #[derive(Debug, Clone, Copy)]
-pub struct Table {
+pub struct ReproducibleTable {
     /// Its number in the dissertation: what a person asks for.
     pub name: &'static str,
     /// What it holds.
@@ -32,7 +32,7 @@ pub struct Table {
 
 /// Something published that is held but not computed.
 #[derive(Debug, Clone, Copy)]
-pub struct Held {
+pub struct UncomputedTable {
     /// Its number.
     pub name: &'static str,
     /// What it holds.
@@ -42,24 +42,24 @@ pub struct Held {
 }
 
 /// What is known of the dissertation's numbers and not computed here, with the reason.
-pub const HELD: &[Held] = &[
-    Held {
+pub const HELD: &[UncomputedTable] = &[
+    UncomputedTable {
         name: "1.1",
         title: "Attributes of 27 connector systems",
         reason: "words, not numbers: there is nothing to compute",
     },
-    Held {
+    UncomputedTable {
         name: "text",
         title: "Pyramid over (x, y, yaw), 2.47 for every design (section 5.3)",
         reason: "exact motion gives π/2 = 1.571 D²·rad for every design, flooding 1.24 to 2.32 as dams are counted: no convention is known \
                  that gives the printed number",
     },
-    Held {
+    UncomputedTable {
         name: "6.1",
         title: "Latching and failure forces of nine latches",
         reason: "measured forces of latches; `catchment latch --table` has them beside its model",
     },
-    Held {
+    UncomputedTable {
         name: "6.2",
         title: "Latching sequence of two modules",
         reason: "commands to a robot; `catchment chain` folds its modules by them",
@@ -69,7 +69,7 @@ pub const HELD: &[Held] = &[
 /// An entry that is known not to match: row, column, why.
 type Known = (usize, usize, &'static str);
 
-impl Table {
+impl ReproducibleTable {
     /// The table of a name.
     pub fn of(name: &str) -> Option<&'static Self> {
         TABLES.iter().find(|table| table.name == name)
@@ -152,8 +152,8 @@ const WITH_YAW: &str = "the conventions are those of table 5.9, with the rotatio
      which sampling artefacts are merged";
 
 /// Every table that can be reproduced, in the order of their numbers.
-pub const TABLES: &[Table] = &[
-    Table {
+pub const TABLES: &[ReproducibleTable] = &[
+    ReproducibleTable {
         name: "2.1",
         title: "Zero-rotation area of acceptance of published systems",
         unit: "D²",
@@ -165,7 +165,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: ZRAA_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "3.2",
         title: "X-Face, area of acceptance by the kinematic method",
         unit: "D·rad",
@@ -177,7 +177,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: STEPPING_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "3.3",
         title: "V-Face, area of acceptance by the kinematic method",
         unit: "D·rad",
@@ -189,7 +189,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: KINEMATIC_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "3.4",
         title: "S-Face, area of acceptance by the kinematic method",
         unit: "D·rad",
@@ -201,7 +201,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: KINEMATIC_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "5.2",
         title: "V-Face, Sum area of acceptance by the partition method",
         unit: "D·rad",
@@ -234,7 +234,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: PARTITION_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "5.3",
         title: "X-Face, Sum area of acceptance by the partition method",
         unit: "D·rad",
@@ -270,14 +270,14 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: PARTITION_NOTES,
     },
-    Table {
+    ReproducibleTable {
         name: "5.4",
         title: "V-Face, Sum area of acceptance by the discrete method",
         unit: "D·rad",
         column_name: "COR",
         csv: published!("table-5.4-v-face-discrete-sum"),
         tolerance: Some(0.02),
-        recipe: Recipe::Sum(Family::VFace, Errors::XTheta),
+        recipe: Recipe::Sum(Family::VFace, SampledErrors::XTheta),
         known: &[
             (1, 3, TOLERANCE_BY_HAND),
             (3, 0, UNMERGED_BEADS),
@@ -287,14 +287,14 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "5.5",
         title: "X-Face, Sum area of acceptance by the discrete method",
         unit: "D·rad",
         column_name: "COR",
         csv: published!("table-5.5-x-face-discrete-sum"),
         tolerance: Some(0.02),
-        recipe: Recipe::Sum(Family::XFace, Errors::XTheta),
+        recipe: Recipe::Sum(Family::XFace, SampledErrors::XTheta),
         known: &[
             (3, 0, TOLERANCE_BY_HAND),
             (3, 1, TOLERANCE_BY_HAND),
@@ -304,7 +304,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "5.6",
         title: "V-Face, ONAA by the discrete method",
         unit: "D·rad, as (edge in cells)²·4π/10⁴",
@@ -316,7 +316,7 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: &[FITTED, ONAA_NOTE],
     },
-    Table {
+    ReproducibleTable {
         name: "5.7",
         title: "X-Face, ONAA by the discrete method",
         unit: "D·rad, as (edge in cells)²·4π/10⁴",
@@ -328,26 +328,26 @@ pub const TABLES: &[Table] = &[
         highlights: false,
         notes: &[FITTED, ONAA_NOTE],
     },
-    Table {
+    ReproducibleTable {
         name: "5.8",
         title: "Pyramid, Sum area of acceptance over (x, y, pitch) by the discrete method",
         unit: "D²·rad",
         column_name: "COR",
         csv: published!("table-5.8-pyramid-x-y-pitch-sum"),
         tolerance: Some(0.05),
-        recipe: Recipe::Sum(Family::Pyramid, Errors::XYPitch),
+        recipe: Recipe::Sum(Family::Pyramid, SampledErrors::XYPitch),
         known: &[(0, 2, CANAL), (1, 1, CANAL), (2, 1, CANAL), (2, 2, CANAL), (3, 2, CANAL)],
         highlights: true,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "5.9",
         title: "Pyramid, Sum area of acceptance over (x, pitch, roll) by the discrete method",
         unit: "D·rad²",
         column_name: "COR",
         csv: published!("table-5.9-pyramid-x-pitch-roll-sum"),
         tolerance: Some(0.05),
-        recipe: Recipe::Sum(Family::Pyramid, Errors::XPitchRoll),
+        recipe: Recipe::Sum(Family::Pyramid, SampledErrors::XPitchRoll),
         known: &[
             (0, 0, PITCH_ROLL),
             (0, 1, PITCH_ROLL),
@@ -367,14 +367,14 @@ pub const TABLES: &[Table] = &[
         highlights: true,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "5.10",
         title: "Pyramid, Sum area of acceptance over (x, pitch, yaw) by the discrete method",
         unit: "D·rad²",
         column_name: "COR",
         csv: published!("table-5.10-pyramid-x-pitch-yaw-sum"),
         tolerance: Some(0.05),
-        recipe: Recipe::Sum(Family::Pyramid, Errors::XPitchYaw),
+        recipe: Recipe::Sum(Family::Pyramid, SampledErrors::XPitchYaw),
         known: &[
             (0, 0, WITH_YAW),
             (0, 1, WITH_YAW),
@@ -391,14 +391,14 @@ pub const TABLES: &[Table] = &[
         highlights: true,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "5.11",
         title: "Pyramid, Sum area of acceptance over (x, roll, yaw) by the discrete method",
         unit: "D·rad²",
         column_name: "COR",
         csv: published!("table-5.11-pyramid-x-roll-yaw-sum"),
         tolerance: Some(0.05),
-        recipe: Recipe::Sum(Family::Pyramid, Errors::XRollYaw),
+        recipe: Recipe::Sum(Family::Pyramid, SampledErrors::XRollYaw),
         known: &[
             (0, 1, WITH_YAW),
             (0, 4, WITH_YAW),
@@ -422,7 +422,7 @@ pub const TABLES: &[Table] = &[
         highlights: true,
         notes: &[FITTED],
     },
-    Table {
+    ReproducibleTable {
         name: "slices",
         title: "3-D X-Face, slices by drop tests (section 4.2.2)",
         unit: "1, each axis divided by its range",

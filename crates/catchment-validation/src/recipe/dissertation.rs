@@ -34,7 +34,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Which errors a table samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Errors {
+pub enum SampledErrors {
     /// x and the planar rotation: tables 5.4 to 5.7.
     XTheta,
     /// x, y and pitch: table 5.8.
@@ -50,7 +50,7 @@ pub enum Errors {
 /// The rotation by an angle about one axis.
 type Turn = fn(f64) -> DMat3;
 
-impl Errors {
+impl SampledErrors {
     /// What turns a half by the first and by the second of two rotations; `None` where there is only one.
     fn turns(self) -> Option<[Turn; 2]> {
         match self {
@@ -65,14 +65,14 @@ impl Errors {
 /// One entry of a table: the connector and all that the answer depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DissertationSettings {
-    /// The connector: a planar family for [`Errors::XTheta`], the pyramid for the others.
+    /// The connector: a planar family for [`SampledErrors::XTheta`], the pyramid for the others.
     pub family: Family,
     /// H/D.
     pub aspect_ratio: f64,
     /// The dissertation's COR: 1 is the apex plane, 0 one lever behind it.
     pub cor: f64,
     /// Which errors are sampled.
-    pub errors: Errors,
+    pub errors: SampledErrors,
     /// Depth below which basins are merged, in D.
     pub depth_tolerance: f64,
     /// Samples per axis in the plane, both ends included: [`Self::PLANAR_SAMPLES`] in the tables, others in figure 5.13.
@@ -81,7 +81,7 @@ pub struct DissertationSettings {
 
 /// The samples and which of them the target basin holds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sampled {
+pub struct BasinSamples {
     /// Samples per axis; the first axis runs fastest.
     pub shape: Vec<usize>,
     /// Whether each sample is accepted.
@@ -90,7 +90,7 @@ pub struct Sampled {
     pub cell_measure: f64,
 }
 
-impl Sampled {
+impl BasinSamples {
     /// Number of accepted samples.
     pub fn count(&self) -> usize {
         self.accepted.iter().filter(|a| **a).count()
@@ -142,7 +142,7 @@ impl DissertationSettings {
     pub const PLANAR_SAMPLES: usize = 101;
 
     /// An entry with the tolerance that the text names.
-    pub fn new(family: Family, errors: Errors, aspect_ratio: f64, cor: f64) -> Self {
+    pub fn new(family: Family, errors: SampledErrors, aspect_ratio: f64, cor: f64) -> Self {
         let depth_tolerance = Self::DEPTH_PER_FACE_HEIGHT * aspect_ratio;
         Self { family, aspect_ratio, cor, errors, depth_tolerance, planar_samples: Self::PLANAR_SAMPLES }
     }
@@ -150,7 +150,7 @@ impl DissertationSettings {
     /// Thickness of the block behind both planar faces, in D.
     const fn base_thickness(&self) -> Option<f64> {
         match self.errors {
-            Errors::XTheta => Some(0.5),
+            SampledErrors::XTheta => Some(0.5),
             _ => None,
         }
     }
@@ -158,9 +158,11 @@ impl DissertationSettings {
     /// The rotation point in catchment's convention: signed distance in front of the face centre, in D.
     pub fn center_of_rotation(&self) -> f64 {
         let lever = match self.errors {
-            Errors::XTheta => self.aspect_ratio + 0.5,
-            Errors::XYPitch => 1.0,
-            Errors::XPitchRoll | Errors::XPitchYaw | Errors::XRollYaw => self.aspect_ratio,
+            SampledErrors::XTheta => self.aspect_ratio + 0.5,
+            SampledErrors::XYPitch => 1.0,
+            SampledErrors::XPitchRoll | SampledErrors::XPitchYaw | SampledErrors::XRollYaw => {
+                self.aspect_ratio
+            }
         };
         self.aspect_ratio / 2.0 - lever * (1.0 - self.cor)
     }
@@ -170,7 +172,7 @@ impl DissertationSettings {
             .with_aspect_ratio(self.aspect_ratio)
             .with_base_thickness(self.base_thickness());
         let (free, mount) = match self.errors {
-            Errors::XTheta => ([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y),
+            SampledErrors::XTheta => ([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y),
             _ => (DofSet::ALL, Mount::X),
         };
         let alignment =
@@ -204,7 +206,7 @@ struct Samples {
 }
 
 impl Samples {
-    fn of(errors: Errors, in_plane: usize) -> Self {
+    fn of(errors: SampledErrors, in_plane: usize) -> Self {
         let ends =
             |count: usize| Lattice { first: -LATERAL, step: 2.0 * LATERAL / (count - 1) as f64, count };
         let locked = Lattice { first: 0.0, step: 0.0, count: 1 };
@@ -219,7 +221,7 @@ impl Samples {
                 let pairs = spatial.iter().flat_map(|b| spatial.iter().map(move |a| first(*a) * second(*b)));
                 (ends(SPATIAL), locked, vec![spatial.len(); 2], pairs.collect())
             }
-            (Errors::XTheta, None) => {
+            (SampledErrors::XTheta, None) => {
                 let rotations = planar.iter().map(|a| DMat3::from_rotation_y(*a)).collect();
                 (ends(in_plane), locked, vec![in_plane], rotations)
             }
@@ -229,14 +231,14 @@ impl Samples {
             }
         };
         let (weights, per_axis): (Vec<f64>, usize) = match errors {
-            Errors::XTheta => (vec![2.0 * LATERAL, PI], in_plane - 1),
-            Errors::XYPitch => (vec![2.0 * LATERAL, 2.0 * LATERAL, PI], SPATIAL),
+            SampledErrors::XTheta => (vec![2.0 * LATERAL, PI], in_plane - 1),
+            SampledErrors::XYPitch => (vec![2.0 * LATERAL, 2.0 * LATERAL, PI], SPATIAL),
             _ => (vec![2.0 * LATERAL, PI, PI], SPATIAL),
         };
         let cell_measure = weights.iter().map(|range| range / per_axis as f64).product();
         // Without the lower end the sample at 0 is the 15th of 30, number 14.
         let zero = match errors {
-            Errors::XTheta => in_plane / 2,
+            SampledErrors::XTheta => in_plane / 2,
             _ => SPATIAL / 2 - 1,
         };
         let rotation = angles.iter().rev().fold(0, |index, count| index * count + zero);
@@ -267,17 +269,17 @@ impl Samples {
 ///
 /// # Errors
 /// When the family cannot be drawn with this aspect ratio, or the computation is cancelled.
-pub fn accept(settings: &DissertationSettings, exec: &Exec) -> Result<Sampled, DissertationError> {
+pub fn accept(settings: &DissertationSettings, exec: &Exec) -> Result<BasinSamples, DissertationError> {
     let pair = settings.pair()?;
     let samples = Samples::of(settings.errors, settings.planar_samples.max(2));
     let heights = samples.heights(&pair, exec)?;
     let shape = samples.shape();
-    let planar = settings.errors == Errors::XTheta;
+    let planar = settings.errors == SampledErrors::XTheta;
     let rules = Rules { flat_cells_are_minima: !planar, dams_pass_water_on: true };
     let targets = [samples.mated];
     let division = meyer::divide(&shape, &heights, &targets, settings.depth_tolerance, rules, exec)?;
     let accepted = accepted(&heights, samples.mated, &division, planar);
-    Ok(Sampled { shape, accepted, cell_measure: samples.cell_measure })
+    Ok(BasinSamples { shape, accepted, cell_measure: samples.cell_measure })
 }
 
 /// Whether each sample belongs to the basin of the mated one; dam cells only if `dams_count`.
@@ -308,11 +310,11 @@ mod tests {
     #[test]
     fn the_mated_sample_is_the_aligned_pose() {
         for (errors, shape) in [
-            (Errors::XTheta, vec![101, 101]),
-            (Errors::XYPitch, vec![31, 31, 30]),
-            (Errors::XPitchRoll, vec![31, 30, 30]),
-            (Errors::XPitchYaw, vec![31, 30, 30]),
-            (Errors::XRollYaw, vec![31, 30, 30]),
+            (SampledErrors::XTheta, vec![101, 101]),
+            (SampledErrors::XYPitch, vec![31, 31, 30]),
+            (SampledErrors::XPitchRoll, vec![31, 30, 30]),
+            (SampledErrors::XPitchYaw, vec![31, 30, 30]),
+            (SampledErrors::XRollYaw, vec![31, 30, 30]),
         ] {
             let samples = Samples::of(errors, DissertationSettings::PLANAR_SAMPLES);
             assert_eq!(samples.shape(), shape);
@@ -329,17 +331,19 @@ mod tests {
         let at =
             |errors, cor| DissertationSettings::new(Family::VFace, errors, 2.0, cor).center_of_rotation();
         // The apex plane is H/2 = 1 in front of the face centre; the planar body's back is 2.5 behind that.
-        assert_eq!(at(Errors::XTheta, 1.0), 1.0);
-        assert_eq!(at(Errors::XTheta, 0.0), -1.5);
-        assert_eq!(at(Errors::XYPitch, 0.0), 0.0);
-        assert_eq!(at(Errors::XPitchRoll, 0.0), -1.0);
+        assert_eq!(at(SampledErrors::XTheta, 1.0), 1.0);
+        assert_eq!(at(SampledErrors::XTheta, 0.0), -1.5);
+        assert_eq!(at(SampledErrors::XYPitch, 0.0), 0.0);
+        assert_eq!(at(SampledErrors::XPitchRoll, 0.0), -1.0);
     }
 
     #[test]
     fn a_planar_cell_counts_four_pi_over_ten_thousand() {
         let expected = 4.0 * PI / 1e4;
         assert!(
-            (Samples::of(Errors::XTheta, DissertationSettings::PLANAR_SAMPLES).cell_measure - expected).abs()
+            (Samples::of(SampledErrors::XTheta, DissertationSettings::PLANAR_SAMPLES).cell_measure
+                - expected)
+                .abs()
                 < 1e-16
         );
     }
@@ -348,7 +352,7 @@ mod tests {
     fn the_accepted_set_is_symmetric_like_the_connector() {
         // Mirroring the V-Face maps (x, θ) to (−x, −θ): the samples in reverse.
         let sampled =
-            accept(&DissertationSettings::new(Family::VFace, Errors::XTheta, 1.0, 1.0), &Exec::new())
+            accept(&DissertationSettings::new(Family::VFace, SampledErrors::XTheta, 1.0, 1.0), &Exec::new())
                 .unwrap();
         let mirrored = sampled.accepted.iter().rev();
         let different = sampled.accepted.iter().zip(mirrored).filter(|(a, b)| a != b).count();
@@ -358,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_shape_that_cannot_be_drawn_is_an_error() {
-        let settings = DissertationSettings::new(Family::VFace, Errors::XTheta, -1.0, 0.0);
+        let settings = DissertationSettings::new(Family::VFace, SampledErrors::XTheta, -1.0, 0.0);
         assert!(matches!(accept(&settings, &Exec::new()), Err(DissertationError::Geometry { .. })));
     }
 }

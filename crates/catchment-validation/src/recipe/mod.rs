@@ -10,7 +10,7 @@
 
 pub mod dissertation;
 
-use self::dissertation::{DissertationError, Errors};
+use self::dissertation::{DissertationError, SampledErrors};
 use catchment::acceptance::{Acceptance, Domain, Outcome};
 use catchment::connector::Connector;
 use catchment::contact::Pair;
@@ -41,7 +41,7 @@ pub enum Recipe {
     /// Sum by the polyhedral partition.
     Partition(Family),
     /// Sum of the flooded target basin.
-    Sum(Family, Errors),
+    Sum(Family, SampledErrors),
     /// Area of the largest square in the flooded target basin.
     Onaa(Family),
     /// Zero-rotation area of a system: of those whose geometry is known.
@@ -51,7 +51,7 @@ pub enum Recipe {
 }
 
 /// An entry's value by the same method, and its exact one.
-pub type Entry = (Option<f64>, Option<Exact>);
+pub type RecipeEntry = (Option<f64>, Option<ExactValue>);
 
 /// Why an entry cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -72,7 +72,7 @@ pub enum RecipeError {
 
 /// An exact value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Exact {
+pub struct ExactValue {
     /// The value, in the table's unit.
     pub value: f64,
     /// Its 95 % interval where random poses gave it; else the doubt is that of the samples' spacing.
@@ -125,13 +125,13 @@ impl Recipe {
         columns: usize,
         exact: bool,
         exec: &Exec,
-    ) -> Result<Vec<Entry>, RecipeError> {
+    ) -> Result<Vec<RecipeEntry>, RecipeError> {
         if matches!(self, Self::Slices) {
             let ours = dropped(row, exec)?;
             let exact = if exact { Some(slice(row, followed_exactly, exec)?) } else { None };
             let value = |values: Option<[f64; 2]>, k: usize| values.map(|values| values[k]);
             return Ok((0..columns)
-                .map(|k| (value(ours, k), value(exact, k).map(|value| Exact { value, ci95: None })))
+                .map(|k| (value(ours, k), value(exact, k).map(|value| ExactValue { value, ci95: None })))
                 .collect());
         }
         (0..columns)
@@ -160,7 +160,8 @@ impl Recipe {
                 Some(dissertation::accept(&settings(family, errors, row, column), exec)?.sum())
             }
             Self::Onaa(family) => {
-                let sampled = dissertation::accept(&settings(family, Errors::XTheta, row, column), exec)?;
+                let sampled =
+                    dissertation::accept(&settings(family, SampledErrors::XTheta, row, column), exec)?;
                 Some(square(largest_cube(&sampled.shape, &sampled.accepted)))
             }
             Self::Partition(family) => Some(partitioned(family, row, column, exec)?),
@@ -175,19 +176,19 @@ impl Recipe {
     ///
     /// # Errors
     /// See [`RecipeError`].
-    pub fn exact(self, row: usize, column: usize, exec: &Exec) -> Result<Option<Exact>, RecipeError> {
+    pub fn exact(self, row: usize, column: usize, exec: &Exec) -> Result<Option<ExactValue>, RecipeError> {
         exec.check()?;
         Ok(match self {
             Self::Kinematic(_) | Self::Zraa | Self::Slices => None,
-            Self::Sum(family, Errors::XTheta) | Self::Partition(family) => {
+            Self::Sum(family, SampledErrors::XTheta) | Self::Partition(family) => {
                 let accepted = followed(family, row, column, exec)?;
                 let count = accepted.iter().filter(|accepted| **accepted).count();
-                Some(Exact { value: count as f64 * PLANAR_CELL, ci95: None })
+                Some(ExactValue { value: count as f64 * PLANAR_CELL, ci95: None })
             }
             Self::Sum(..) => Some(self.corrected(row, column, exec)?),
             Self::Onaa(family) => {
                 let edge = largest_cube(&[PLANAR; 2], &followed(family, row, column, exec)?);
-                Some(Exact { value: square(edge), ci95: None })
+                Some(ExactValue { value: square(edge), ci95: None })
             }
         })
     }
@@ -210,14 +211,14 @@ impl Recipe {
     /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is its own image with x and y exchanged, which turns
     /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x). With yaw the axes are the same, but here yaw
     /// turns last and there first: the same rotations in another measure.
-    fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<Exact, RecipeError> {
+    fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<ExactValue, RecipeError> {
         let Self::Sum(family, errors) = self else {
             return Err(RecipeError::Exact { reason: "no such table".to_owned() });
         };
         let free: DofSet = match errors {
-            Errors::XPitchRoll => [Dof::Y, Dof::Roll, Dof::Pitch].into_iter().collect(),
-            Errors::XPitchYaw => [Dof::X, Dof::Roll, Dof::Yaw].into_iter().collect(),
-            Errors::XRollYaw => [Dof::X, Dof::Pitch, Dof::Yaw].into_iter().collect(),
+            SampledErrors::XPitchRoll => [Dof::Y, Dof::Roll, Dof::Pitch].into_iter().collect(),
+            SampledErrors::XPitchYaw => [Dof::X, Dof::Roll, Dof::Yaw].into_iter().collect(),
+            SampledErrors::XRollYaw => [Dof::X, Dof::Pitch, Dof::Yaw].into_iter().collect(),
             _ => [Dof::X, Dof::Y, Dof::Pitch].into_iter().collect(),
         };
         let settings = settings(family, errors, row, column);
@@ -229,7 +230,7 @@ impl Recipe {
         let sample = correction::CorrectionSettings { seed: SEED, stop: Stop::Samples(DESCENTS) };
         let descents = descent::DescentSettings::default();
         let found = correction::correct(&pair, &grid, &by, &sample, &descents, exec).map_err(failed)?;
-        Ok(Exact { value: found.sum, ci95: Some(found.ci95) })
+        Ok(ExactValue { value: found.sum, ci95: Some(found.ci95) })
     }
 }
 
@@ -238,7 +239,12 @@ fn square(edge: usize) -> f64 {
     (edge * edge) as f64 * PLANAR_CELL
 }
 
-fn settings(family: Family, errors: Errors, row: usize, column: usize) -> dissertation::DissertationSettings {
+fn settings(
+    family: Family,
+    errors: SampledErrors,
+    row: usize,
+    column: usize,
+) -> dissertation::DissertationSettings {
     dissertation::DissertationSettings::new(family, errors, ASPECT_RATIOS[row], CORS[column])
 }
 
@@ -289,7 +295,7 @@ pub(crate) const PLANAR_BASE: f64 = 0.5;
 
 /// Whether each of a planar table's own samples docks, followed exactly; x of the rotation point runs fastest.
 fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Vec<bool>, RecipeError> {
-    let settings = settings(family, Errors::XTheta, row, column);
+    let settings = settings(family, SampledErrors::XTheta, row, column);
     let cor = settings.center_of_rotation();
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let pair = pair(family, settings.aspect_ratio, Some(PLANAR_BASE), cor, free)?;
@@ -308,7 +314,7 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
 /// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, and no strips.
 fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, RecipeError> {
     const AS_PUBLISHED: partition::PartitionSettings = partition::PartitionSettings { slices: 12, strips: 1 };
-    let settings = settings(family, Errors::XTheta, row, column);
+    let settings = settings(family, SampledErrors::XTheta, row, column);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = settings.center_of_rotation();
     let pair = pair(family, settings.aspect_ratio, Some(PLANAR_BASE), cor, free)?;

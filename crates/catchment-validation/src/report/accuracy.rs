@@ -1,11 +1,11 @@
 //! The table for people: as text, as a page of the documentation, as records.
 
-use crate::study::accuracy::{Accuracy, Entry, Row, Way};
+use crate::study::accuracy::{Accuracy, AccuracyEntry, AccuracyRow, SumSource};
 use std::fmt::{self, Write};
 
-impl Row {
-    /// The entries of one resolution, in the order of [`Way::all`].
-    fn by_resolution(&self) -> impl Iterator<Item = &[Entry]> {
+impl AccuracyRow {
+    /// The entries of one resolution, in the order of [`SumSource::all`].
+    fn by_resolution(&self) -> impl Iterator<Item = &[AccuracyEntry]> {
         self.entries.chunk_by(|a, b| a.resolution == b.resolution)
     }
 
@@ -25,13 +25,13 @@ impl fmt::Display for Accuracy {
             let poses = format!("{} descents", e.descents);
             writeln!(f, "  exact {:.4} {} ± {:.2} %, {poses}", e.sum, e.unit, 100.0 * row.doubt())?;
             write!(f, "  per axis")?;
-            for way in Way::all() {
+            for way in SumSource::all() {
                 write!(f, "{:>22}", way.name())?;
             }
             writeln!(f)?;
             for entries in row.by_resolution() {
                 write!(f, "  {:>8}", entries.first().map_or(0, |e| e.resolution))?;
-                for way in Way::all() {
+                for way in SumSource::all() {
                     match entries.iter().find(|e| e.way == way) {
                         Some(e) => write!(f, "{:>12.4} {:>7} %", e.sum, percent(e.error))?,
                         None => write!(f, "{:>22}", "–")?,
@@ -66,7 +66,7 @@ impl Accuracy {
              - **transport**: the mean arrival fraction over the grid.\n\
              - **corrected**: confluence's grid corrected by as many exact descents as `run` uses, with half its own 95 % interval.\n\n",
         );
-        let ways = Way::all();
+        let ways = SumSource::all();
         write!(page, "| design | exact Sum | cells per axis |")?;
         for way in &ways {
             write!(page, " {} |", way.name())?;
@@ -93,8 +93,9 @@ impl Accuracy {
         page.push_str("\nThe worst and the typical error at the finest resolution of each design:\n\n");
         writeln!(page, "| method | worst | median | time of all designs |\n|---|---:|---:|---:|")?;
         for way in &ways {
-            let finest =
-                |row: &Row| -> Option<Entry> { row.entries.iter().rev().find(|e| e.way == *way).cloned() };
+            let finest = |row: &AccuracyRow| -> Option<AccuracyEntry> {
+                row.entries.iter().rev().find(|e| e.way == *way).cloned()
+            };
             let mut errors: Vec<f64> = self.rows.iter().filter_map(finest).map(|e| e.error).collect();
             errors.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
             let seconds: f64 = self.rows.iter().filter_map(finest).map(|e| e.seconds).sum();
@@ -149,7 +150,7 @@ impl Accuracy {
 }
 
 /// ` (± 0.5)`, of a Sum with an interval of its own.
-fn doubt(entry: &Entry) -> String {
+fn doubt(entry: &AccuracyEntry) -> String {
     entry.doubt.map_or_else(String::new, |half| format!(" (± {:.1})", 100.0 * half))
 }
 
@@ -161,7 +162,7 @@ fn percent(share: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::study::accuracy::{CASES, Case, Way, run};
+    use crate::study::accuracy::{CASES, Case, SumSource, run};
     use catchment::design::Family;
     use catchment::exec::Exec;
     use catchment::pose::Dof;
@@ -191,7 +192,7 @@ mod tests {
         let labels = &table.labels[0];
         // None jams, so that they are drawn as often as they may be.
         assert_eq!((labels.drawn, labels.jams, labels.wrong, labels.resolution), (800, 0, 0, 9));
-        let ways = Way::all().len();
+        let ways = SumSource::all().len();
         assert_eq!(table.rows[0].entries.len(), 3 * ways);
         assert!(table.rows[0].entries.iter().all(|e| e.error.abs() < 0.05), "{table:?}");
         let (text, page) = (table.to_string(), table.markdown("In no time.").unwrap());

@@ -1,7 +1,7 @@
 //! Pictures: published tables in colours, and figure 5.13 drawn again.
 
-use crate::study::reproduce::{Entry, TableComparison};
-use crate::study::resolution::{self, Found};
+use crate::study::reproduce::{ReproducedEntry, TableComparison};
+use crate::study::resolution::{self, ResolutionFigure};
 use crate::study::{FIGURE, Reproduction};
 use catchment::report::figure::{
     Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, NumberSheet, Picture, curves,
@@ -31,8 +31,8 @@ pub fn figure_name() -> String {
 /// # Errors
 /// If there is no entry.
 pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
-    let values = |of: &dyn Fn(&Entry) -> Option<f64>| -> Vec<Vec<f64>> {
-        let value = |entry: &Entry| of(entry).unwrap_or(f64::NAN);
+    let values = |of: &dyn Fn(&ReproducedEntry) -> Option<f64>| -> Vec<Vec<f64>> {
+        let value = |entry: &ReproducedEntry| of(entry).unwrap_or(f64::NAN);
         table.entries.iter().map(|row| row.iter().map(value).collect()).collect()
     };
     let (printed, ours) = (values(&|e| Some(e.published)), values(&|e| e.ours));
@@ -78,7 +78,7 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
 }
 
 /// Draws the Sums of every method over N with the exact one and its interval, and beside them the time that each took.
-pub fn resolution(found: &Found) -> Picture {
+pub fn resolution(found: &ResolutionFigure) -> Picture {
     let [lo, hi] = found.exact_ci95;
     let story = format!(
         "exact {:.4} D·rad, 95 % interval {lo:.4} … {hi:.4}  ·  the published figure is lost; its text: larger at first, slowly \
@@ -86,7 +86,7 @@ pub fn resolution(found: &Found) -> Picture {
         found.exact
     );
     let of = |y: fn(f64, f64) -> f64| -> Vec<Curve> {
-        let curve = |curve: &resolution::Curve| Curve {
+        let curve = |curve: &resolution::MethodCurve| Curve {
             name: curve.name.to_owned(),
             points: curve
                 .points
@@ -113,22 +113,27 @@ pub fn resolution(found: &Found) -> Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::resolution::{Curve, Point, ResolutionStudySettings};
+    use crate::study::resolution::{MethodCurve, MethodPoint, ResolutionStudySettings};
 
     #[test]
     fn every_method_is_drawn_in_both_charts_and_the_exact_value_in_one() {
         let settings =
             ResolutionStudySettings { resolutions: vec![25, 50, 100], ..ResolutionStudySettings::default() };
-        let curve = |name: &'static str, off: f64| Curve {
+        let curve = |name: &'static str, off: f64| MethodCurve {
             name,
             points: settings
                 .resolutions
                 .iter()
-                .map(|n| Point { resolution: *n, sum: 0.5 + off / *n as f64, seconds: 1e-6 * (n * n) as f64 })
+                .map(|n| MethodPoint {
+                    resolution: *n,
+                    sum: 0.5 + off / *n as f64,
+                    seconds: 1e-6 * (n * n) as f64,
+                })
                 .collect(),
         };
         let curves = vec![curve("dissertation's", 3.0), curve("transport", 1.0), curve("descent", -1.0)];
-        let found = Found { exact: 0.5, exact_ci95: [0.49, 0.51], rotation_length: 0.5, curves, settings };
+        let found =
+            ResolutionFigure { exact: 0.5, exact_ci95: [0.49, 0.51], rotation_length: 0.5, curves, settings };
         let picture = resolution(&found);
         assert!(picture.png(1.0).unwrap().starts_with(b"\x89PNG"));
         assert_eq!(picture.svg().matches("<circle").count(), 2 * 9 + 2);

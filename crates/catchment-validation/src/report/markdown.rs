@@ -2,7 +2,7 @@
 
 use super::text::{MARKS, significant};
 use crate::study::claims::{Claim, claims};
-use crate::study::reproduce::{Entry, Places, TableComparison};
+use crate::study::reproduce::{Places, ReproducedEntry, TableComparison};
 use crate::study::resolution;
 use crate::tables::HELD;
 use std::fmt::{self, Write};
@@ -29,7 +29,7 @@ with ρ = 0.5 D. A dash: not computed. `catchment reproduce --exact --csv` has e
 /// None: a text takes whatever is written into it.
 pub fn page(
     tables: &[TableComparison],
-    figure: Option<&resolution::Found>,
+    figure: Option<&resolution::ResolutionFigure>,
     took: &str,
 ) -> Result<String, fmt::Error> {
     let mut page = HEAD.to_owned();
@@ -111,7 +111,7 @@ fn write_table(page: &mut String, table: &TableComparison) -> fmt::Result {
     Ok(())
 }
 
-fn cell(table: &TableComparison, entry: &Entry, place: [usize; 2]) -> String {
+fn cell(table: &TableComparison, entry: &ReproducedEntry, place: [usize; 2]) -> String {
     let mark = |places: Option<&Places>| {
         places.and_then(|places| places.mark(place)).map_or_else(String::new, String::from)
     };
@@ -130,7 +130,7 @@ fn cell(table: &TableComparison, entry: &Entry, place: [usize; 2]) -> String {
     format!("{}{printed} / {ours} / {exact}{marked}", significant(entry.published))
 }
 
-fn write_figure(page: &mut String, figure: &resolution::Found) -> fmt::Result {
+fn write_figure(page: &mut String, figure: &resolution::ResolutionFigure) -> fmt::Result {
     page.push_str("\n## 5.13: convergence, V-Face, H/D ¼, COR −½\n\n");
     let [lo, hi] = figure.exact_ci95.map(significant);
     writeln!(
@@ -144,7 +144,7 @@ fn write_figure(page: &mut String, figure: &resolution::Found) -> fmt::Result {
     writeln!(page, "| N | {} |", names.join(" | "))?;
     writeln!(page, "|---:|{}", "---:|".repeat(names.len()))?;
     for resolution in &figure.settings.resolutions {
-        let point = |curve: &resolution::Curve| {
+        let point = |curve: &resolution::MethodCurve| {
             let found = curve.points.iter().find(|point| point.resolution == *resolution);
             found.map_or_else(|| "–".to_owned(), |p| format!("{} ({:.3} s)", significant(p.sum), p.seconds))
         };

@@ -1,8 +1,8 @@
 //! Everything that was reproduced, as one text.
 
-use crate::study::claims::{Claim, Verdict, claims};
+use crate::study::claims::{Claim, ClaimCheck, claims};
 use crate::study::reproduce::TableComparison;
-use crate::study::resolution::Found;
+use crate::study::resolution::ResolutionFigure;
 use crate::study::{FIGURE, Reproduction};
 use crate::tables::HELD;
 use std::fmt;
@@ -39,16 +39,16 @@ fn write_claims(f: &mut fmt::Formatter<'_>, claims: &[Claim]) -> fmt::Result {
 impl Claim {
     /// What was found in print, in ours, and in the exact tables.
     pub(super) fn shown(&self) -> [String; 3] {
-        let show = |verdict: Option<Verdict>| match verdict {
-            Some(Verdict::Count { holds, of }) => format!("{holds} of {of}"),
-            Some(Verdict::Number { value }) => format!("{value:.1}"),
+        let show = |verdict: Option<ClaimCheck>| match verdict {
+            Some(ClaimCheck::Count { holds, of }) => format!("{holds} of {of}"),
+            Some(ClaimCheck::Number { value }) => format!("{value:.1}"),
             None => "–".to_owned(),
         };
         [Some(self.printed), self.ours, self.exact].map(show)
     }
 }
 
-fn write_figure(f: &mut fmt::Formatter<'_>, found: &Found) -> fmt::Result {
+fn write_figure(f: &mut fmt::Formatter<'_>, found: &ResolutionFigure) -> fmt::Result {
     let [lo, hi] = found.exact_ci95;
     writeln!(f, "Figure {FIGURE}: V-Face, H/D 1/4, COR -1/2: Sum in D·rad (seconds) over the resolution")?;
     writeln!(

@@ -1,10 +1,10 @@
 //! A comparison as aligned text.
 
-use crate::study::reproduce::{Entry, Places, TableComparison};
+use crate::study::reproduce::{Places, ReproducedEntry, TableComparison};
 use std::fmt;
 
 /// How a block shows an entry.
-type Show<'a> = Box<dyn Fn(&Entry) -> String + 'a>;
+type Show<'a> = Box<dyn Fn(&ReproducedEntry) -> String + 'a>;
 
 /// What the marks of the largest and the smallest value mean.
 pub(super) const MARKS: &str = "▲ largest, ▼ smallest: the source highlights those of the printed values; ours and the exact ones have their own";
@@ -24,25 +24,26 @@ impl fmt::Display for TableComparison {
         let extremes = self.extremes.as_ref();
         let mut blocks = vec![Block {
             name: "published".to_owned(),
-            show: Box::new(|e: &Entry| significant(e.published)),
+            show: Box::new(|e: &ReproducedEntry| significant(e.published)),
             marked: extremes.map(|extremes| &extremes.published),
         }];
         if self.summary.computed > 0 {
             let name = format!("ours, by the same method ({})", self.method);
             let marked = extremes.and_then(|extremes| extremes.ours.as_ref());
-            blocks.push(Block { name, show: Box::new(move |e: &Entry| unmarked(e.ours)), marked });
-            let ratio = |e: &Entry| {
+            blocks.push(Block { name, show: Box::new(move |e: &ReproducedEntry| unmarked(e.ours)), marked });
+            let ratio = |e: &ReproducedEntry| {
                 let star = if e.matches == Some(false) { "*" } else { " " };
                 e.ratio.map_or_else(|| "– ".to_owned(), |ratio| format!("{ratio:.3}{star}"))
             };
             blocks.push(Block { name: "ours / published".to_owned(), show: Box::new(ratio), marked: None });
         }
         if self.summary.exact_mean_log_ratio.is_some() {
-            let exact = move |e: &Entry| unmarked(e.exact.map(|exact| exact.value));
+            let exact = move |e: &ReproducedEntry| unmarked(e.exact.map(|exact| exact.value));
             let marked = extremes.and_then(|extremes| extremes.exact.as_ref());
             blocks.push(Block { name: "exact".to_owned(), show: Box::new(exact), marked });
-            let ratio =
-                |e: &Entry| e.exact_ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.3}"));
+            let ratio = |e: &ReproducedEntry| {
+                e.exact_ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.3}"))
+            };
             blocks.push(Block { name: "exact / published".to_owned(), show: Box::new(ratio), marked: None });
         }
         for block in blocks {

@@ -13,7 +13,7 @@
 //!
 //! Not promised: that the counts say what the author meant by "often" or "generally".
 
-use super::reproduce::{Entry, TableComparison};
+use super::reproduce::{ReproducedEntry, TableComparison};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -27,17 +27,17 @@ pub struct Claim {
     /// What is counted or computed.
     pub counted: &'static str,
     /// In the printed numbers.
-    pub printed: Verdict,
+    pub printed: ClaimCheck,
     /// In ours by the same method; null where one of them is not computed.
-    pub ours: Option<Verdict>,
+    pub ours: Option<ClaimCheck>,
     /// In the exact ones; null where one of them is not computed, or the claim is about the method.
-    pub exact: Option<Verdict>,
+    pub exact: Option<ClaimCheck>,
 }
 
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Verdict {
+pub enum ClaimCheck {
     /// So many of so many.
     Count {
         /// For how many it holds.
@@ -61,7 +61,7 @@ struct Asked {
     says: &'static str,
     counted: &'static str,
     tables: &'static [&'static str],
-    ask: fn(&[Rows]) -> Verdict,
+    ask: fn(&[Rows]) -> ClaimCheck,
     /// Whether what is exact can answer it, too.
     of_docking: bool,
 }
@@ -205,7 +205,7 @@ const ASKED: &[Asked] = &[
         tables: &["5.8"],
         ask: |t| {
             let most = t[0].iter().map(|row| most(row)).fold(0.0, f64::max);
-            Verdict::Number { value: (most - t[0][4][4]) / (16.0 * PI / f64::from(31 * 31 * 31)) }
+            ClaimCheck::Number { value: (most - t[0][4][4]) / (16.0 * PI / f64::from(31 * 31 * 31)) }
         },
         of_docking: false,
     },
@@ -221,7 +221,7 @@ pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
         .iter()
         .filter_map(|asked| {
             let used: Vec<_> = asked.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
-            let ask = |value: fn(&Entry) -> Option<f64>| {
+            let ask = |value: fn(&ReproducedEntry) -> Option<f64>| {
                 let rows = |table: &&TableComparison| {
                     table.entries.iter().map(|row| row.iter().map(value).collect()).collect::<Option<Rows>>()
                 };
@@ -240,13 +240,13 @@ pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
         .collect()
 }
 
-fn count(holds: impl Iterator<Item = bool>) -> Verdict {
+fn count(holds: impl Iterator<Item = bool>) -> ClaimCheck {
     let (holds, of) = holds.fold((0, 0), |(holds, of), is| (holds + usize::from(is), of + 1));
-    Verdict::Count { holds, of }
+    ClaimCheck::Count { holds, of }
 }
 
 /// Counts entries of the second half of some tables beside those in the same places of the first half.
-fn each(tables: &[Rows], is: fn(f64, f64) -> bool) -> Verdict {
+fn each(tables: &[Rows], is: fn(f64, f64) -> bool) -> ClaimCheck {
     let (first, second) = tables.split_at(tables.len() / 2);
     let flat = |tables: &[Rows]| tables.concat().concat();
     count(flat(first).into_iter().zip(flat(second)).map(|(a, b)| is(a, b)))
@@ -302,10 +302,10 @@ mod tests {
         let claims = claims(&tables(&["5.4", "5.5", "5.6", "5.7"]));
         let onaa = found(&claims, "smaller than the Sum");
         // AR 2, COR −1 of the V-Face: 0.061575 after 0.0339; AR 4, COR −½: 0.045239 after 0.0440: printed, and not so.
-        assert_eq!(onaa.printed, Verdict::Count { holds: 48, of: 50 });
+        assert_eq!(onaa.printed, ClaimCheck::Count { holds: 48, of: 50 });
         // X-Face, AR 1/4: 0.7854 at COR −½.
         let right = found(&claims, "right-hand column");
-        assert_eq!(right.printed, Verdict::Count { holds: 9, of: 10 });
+        assert_eq!(right.printed, ClaimCheck::Count { holds: 9, of: 10 });
         assert_eq!(right.ours, Some(right.printed));
         assert_eq!(right.exact, None);
     }
@@ -315,11 +315,11 @@ mod tests {
     fn what_the_text_says_of_the_kinematic_tables() {
         let claims = claims(&tables(&["3.2", "3.3", "3.4"]));
         let [v, s] = ["than the V-Face in almost every", "than the S-Face"].map(|says| found(&claims, says));
-        assert_eq!(v.printed, Verdict::Count { holds: 116, of: 121 });
-        assert_eq!(s.printed, Verdict::Count { holds: 116, of: 121 });
+        assert_eq!(v.printed, ClaimCheck::Count { holds: 116, of: 121 });
+        assert_eq!(s.printed, ClaimCheck::Count { holds: 116, of: 121 });
         // Stepped by one contact the X-Face is behind the bounds of the other two far more often.
-        assert_eq!(v.ours, Some(Verdict::Count { holds: 55, of: 121 }));
-        assert_eq!(s.ours, Some(Verdict::Count { holds: 80, of: 121 }));
+        assert_eq!(v.ours, Some(ClaimCheck::Count { holds: 55, of: 121 }));
+        assert_eq!(s.ours, Some(ClaimCheck::Count { holds: 80, of: 121 }));
         assert_eq!((v.exact, s.exact), (None, None));
     }
 
@@ -327,9 +327,9 @@ mod tests {
     fn what_the_text_says_of_the_pyramid() {
         let claims = claims(&tables(&["5.8"]));
         assert_eq!(claims.len(), 2);
-        let Verdict::Number { value } = found(&claims, "42 points").printed else { panic!("a number") };
+        let ClaimCheck::Number { value } = found(&claims, "42 points").printed else { panic!("a number") };
         assert!((value - 42.0).abs() < 1.0, "{value}");
         let low = found(&claims, "at low AR");
-        assert_eq!((low.printed, low.ours), (Verdict::Count { holds: 1, of: 1 }, Some(low.printed)));
+        assert_eq!((low.printed, low.ours), (ClaimCheck::Count { holds: 1, of: 1 }, Some(low.printed)));
     }
 }

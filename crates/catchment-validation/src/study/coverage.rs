@@ -71,7 +71,7 @@ pub enum CoverageError {
 
 /// One design with one partition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct CoverageRow {
     /// The design.
     pub design: &'static str,
     /// How its error box is parted.
@@ -96,7 +96,7 @@ pub struct Coverage {
     /// Its settings.
     pub settings: CoverageSettings,
     /// Its rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CoverageRow>,
 }
 
 /// A design and how finely its error box is parted.
@@ -204,7 +204,7 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    fn row(&self, strata: &'static str, by: &impl Stratify, at: f64) -> Result<Row, CoverageError> {
+    fn row(&self, strata: &'static str, by: &impl Stratify, at: f64) -> Result<CoverageRow, CoverageError> {
         let CoverageSettings { repeats, descents, exact: plain } = *self.settings;
         let silent = self.exec.part([at; 2], STAGE);
         let one = |number: usize, exec: &Exec| {
@@ -232,7 +232,7 @@ impl Trial<'_> {
         });
         let average = mean(&|c| c.fraction);
         let variance = mean(&|c| (c.fraction - average).powi(2)) * repeats as f64 / (repeats as f64 - 1.0);
-        Ok(Row {
+        Ok(CoverageRow {
             design: self.case.name,
             strata,
             exact,

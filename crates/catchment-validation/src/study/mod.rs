@@ -45,14 +45,14 @@ pub struct Reproduction {
     /// The tables, in the order of their numbers.
     pub tables: Vec<TableComparison>,
     /// Figure 5.13, where it was asked for.
-    pub figure: Option<resolution::Found>,
+    pub figure: Option<resolution::ResolutionFigure>,
     /// The coverage of intervals, where it was asked for.
     pub coverage: Option<Coverage>,
 }
 
 /// Why it could not be computed.
 #[derive(Debug, thiserror::Error)]
-pub enum StudyError {
+pub enum RequestError {
     /// A table cannot.
     #[error(transparent)]
     Table(#[from] ReproduceError),
@@ -81,8 +81,8 @@ impl Request {
     /// Computes it all: seconds to minutes.
     ///
     /// # Errors
-    /// See [`StudyError`].
-    pub fn run(&self, exec: &Exec) -> Result<Reproduction, StudyError> {
+    /// See [`RequestError`].
+    pub fn run(&self, exec: &Exec) -> Result<Reproduction, RequestError> {
         let mut tables = Vec::new();
         for (k, name) in self.tables.iter().enumerate() {
             exec.report(k as f64 / self.tables.len() as f64, "tables");

@@ -9,7 +9,7 @@
 //!
 //! Samples or cells per axis N over x in ±2 D and θ in ±90°. Seconds are wall-clock time and differ between runs.
 
-use crate::recipe::dissertation::{self, Errors};
+use crate::recipe::dissertation::{self, SampledErrors};
 use crate::recipe::{PLANAR_BASE, RHO, RecipeError, design};
 use catchment::design::{Design, Family};
 use catchment::exec::Exec;
@@ -42,16 +42,16 @@ impl Default for ResolutionStudySettings {
 
 /// One method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Curve {
+pub struct MethodCurve {
     /// Its name.
     pub name: &'static str,
     /// Coarse to fine.
-    pub points: Vec<Point>,
+    pub points: Vec<MethodPoint>,
 }
 
 /// One method at one resolution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Point {
+pub struct MethodPoint {
     /// Samples or cells per axis.
     pub resolution: usize,
     /// The Sum, D·rad.
@@ -62,7 +62,7 @@ pub struct Point {
 
 /// The figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
+pub struct ResolutionFigure {
     /// What else changes the answer.
     pub settings: ResolutionStudySettings,
     /// The exact Sum, D·rad.
@@ -72,7 +72,7 @@ pub struct Found {
     /// ρ of the methods that know one, in D.
     pub rotation_length: f64,
     /// One per method, the dissertation's own first.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<MethodCurve>,
 }
 
 /// The figure's design: H/D, and COR in the dissertation's sense.
@@ -86,26 +86,27 @@ const PRESET: &str = "dissertation's";
 ///
 /// # Errors
 /// When it is cancelled, or does not fit into memory.
-pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Found, RecipeError> {
+pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<ResolutionFigure, RecipeError> {
     let failed = |error: &dyn std::error::Error| RecipeError::Exact { reason: error.to_string() };
-    let preset = dissertation::DissertationSettings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
+    let preset =
+        dissertation::DissertationSettings::new(Family::VFace, SampledErrors::XTheta, ASPECT_RATIO, COR);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
     let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
     let problem = Problem::of(design).map_err(|error| failed(&error))?;
-    let mut own = Curve { name: PRESET, points: Vec::new() };
+    let mut own = MethodCurve { name: PRESET, points: Vec::new() };
     for &resolution in &settings.resolutions {
         exec.check()?;
         let started = Instant::now();
         // Both ends are samples: one more than intervals.
         let at = dissertation::DissertationSettings { planar_samples: resolution + 1, ..preset };
         let sum = dissertation::accept(&at, exec)?.sum();
-        own.points.push(Point { resolution, sum, seconds: started.elapsed().as_secs_f64() });
+        own.points.push(MethodPoint { resolution, sum, seconds: started.elapsed().as_secs_f64() });
     }
     let mut curves = vec![own];
     let mut finest = None;
     for method in Method::on_grids() {
-        let mut curve = Curve { name: method.name(), points: Vec::new() };
+        let mut curve = MethodCurve { name: method.name(), points: Vec::new() };
         for &resolution in &settings.resolutions {
             if method.name() == "descent" && resolution > settings.finest_descent {
                 continue;
@@ -113,7 +114,7 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Found, Rec
             let decided =
                 GridDecision::by(&method, &problem, resolution, exec).map_err(|error| failed(&error))?;
             let trial = decided.refinement(&problem, exec).map_err(|error| failed(&error))?;
-            curve.points.push(Point { resolution, sum: trial.sum, seconds: trial.seconds });
+            curve.points.push(MethodPoint { resolution, sum: trial.sum, seconds: trial.seconds });
             if method == Method::default() {
                 finest = Some(decided);
             }
@@ -127,10 +128,10 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Found, Rec
         correction::CorrectionSettings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
     let exact = finest.correct(&problem, &sample, exec).map_err(|error| failed(&error))?;
     let settings = settings.clone();
-    Ok(Found { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })
+    Ok(ResolutionFigure { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })
 }
 
-impl Found {
+impl ResolutionFigure {
     /// Every point as a record for programs, the names of the columns first.
     pub fn records(&self) -> Vec<Vec<String>> {
         let mut records =

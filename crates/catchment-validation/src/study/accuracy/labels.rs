@@ -18,7 +18,7 @@ const MOST_ROUNDS: usize = 8;
 
 /// The labels of one design beside exact motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Labels {
+pub struct LabelAccuracy {
     /// What it is.
     pub name: String,
     /// Cells per axis.
@@ -43,13 +43,13 @@ pub(super) fn labels(
     resolution: usize,
     drawn: usize,
     exec: &Exec,
-) -> Result<Labels, AccuracyError> {
+) -> Result<LabelAccuracy, AccuracyError> {
     let failed = |error: DecideError| AccuracyError::Refinement(RefinementError::from(error));
     let problem = problem(case)?;
     let grid = Grid::over(problem.alignment(), |_| resolution);
     let started = Instant::now();
     let decided = Method::default().decide(&problem, &Domain::Grid(grid.clone()), exec).map_err(failed)?;
-    let mut labels = Labels {
+    let mut labels = LabelAccuracy {
         name: case.name(),
         resolution,
         drawn: 0,
@@ -81,7 +81,7 @@ pub(super) fn labels(
     Ok(labels)
 }
 
-impl Labels {
+impl LabelAccuracy {
     /// Counts a cell with this label, whose centre has an outcome of its own.
     fn count(&mut self, label: Outcome, own: Outcome) {
         let is_jam = own == Outcome::Jammed;

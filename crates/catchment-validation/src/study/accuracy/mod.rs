@@ -13,7 +13,7 @@ mod cases;
 mod labels;
 
 pub use cases::{CASES, Case, LABELLED};
-pub use labels::{DRAWN, Labels};
+pub use labels::{DRAWN, LabelAccuracy};
 
 use catchment::exec::Exec;
 use catchment::method::Method;
@@ -25,7 +25,7 @@ use std::time::Instant;
 
 /// The exact Sum.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Exact {
+pub struct ExactSum {
     /// The estimate.
     pub sum: f64,
     /// Unit of this and of all Sums beside it, like `D²·rad³`.
@@ -38,7 +38,7 @@ pub struct Exact {
 
 /// Where a Sum comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Way {
+pub enum SumSource {
     /// The grid of a method alone.
     Grid(Method),
     /// Confluence, corrected by as many exact descents as `run` uses.
@@ -47,9 +47,9 @@ pub enum Way {
 
 /// One method at one resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Entry {
+pub struct AccuracyEntry {
     /// What decided.
-    pub way: Way,
+    pub way: SumSource,
     /// Cells per axis.
     pub resolution: usize,
     /// Cells of the grid.
@@ -66,15 +66,15 @@ pub struct Entry {
 
 /// One design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct AccuracyRow {
     /// What it is.
     pub name: String,
     /// Its free errors.
     pub free: Vec<&'static str>,
     /// The exact Sum.
-    pub exact: Exact,
+    pub exact: ExactSum,
     /// By resolution, then by way.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<AccuracyEntry>,
 }
 
 /// The table.
@@ -83,9 +83,9 @@ pub struct Accuracy {
     /// Seed of the exact values' random poses.
     pub seed: u64,
     /// One per design.
-    pub rows: Vec<Row>,
+    pub rows: Vec<AccuracyRow>,
     /// Labels of single cells beside exact motions, one per design.
-    pub labels: Vec<Labels>,
+    pub labels: Vec<LabelAccuracy>,
 }
 
 /// Why there is no table.
@@ -110,13 +110,13 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Random poses of an exact value.
 const EXACT: usize = 100_000;
 
-impl Serialize for Way {
+impl Serialize for SumSource {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
     }
 }
 
-impl Way {
+impl SumSource {
     /// All of them, in the order of the table.
     pub fn all() -> Vec<Self> {
         Method::on_grids().into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
@@ -150,7 +150,7 @@ pub fn run(
         .iter()
         .enumerate()
         .map(|(k, case)| row(case, &exec.part([share(k), share(k + 1)], "accuracy")))
-        .collect::<Result<Vec<Row>, _>>()?;
+        .collect::<Result<Vec<AccuracyRow>, _>>()?;
     let labels = labelled
         .iter()
         .enumerate()
@@ -158,7 +158,7 @@ pub fn run(
             let span = [share(cases.len() + k), share(cases.len() + k + 1)];
             labels::labels(case, *resolution, drawn, &exec.part(span, "accuracy"))
         })
-        .collect::<Result<Vec<Labels>, _>>()?;
+        .collect::<Result<Vec<LabelAccuracy>, _>>()?;
     Ok(Accuracy { seed: SEEDS[0], rows, labels })
 }
 
@@ -168,7 +168,7 @@ fn problem(case: &Case) -> Result<Problem, AccuracyError> {
     Problem::of(case.design()).map_err(unfit)
 }
 
-fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
+fn row(case: &Case, exec: &Exec) -> Result<AccuracyRow, AccuracyError> {
     let problem = problem(case)?;
     let mut entries = Vec::new();
     let mut finest = None;
@@ -178,30 +178,31 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
                 continue;
             }
             let sampled = GridDecision::by(&method, &problem, resolution, exec)?;
-            entries.push(Entry::of(&sampled, &method, &problem, exec)?);
+            entries.push(AccuracyEntry::of(&sampled, &method, &problem, exec)?);
             if method == Method::default() {
-                entries.push(Entry::corrected(&sampled, &method, &problem, exec)?);
+                entries.push(AccuracyEntry::corrected(&sampled, &method, &problem, exec)?);
                 finest = Some(sampled);
             }
         }
     }
-    entries.sort_by_key(|entry| (entry.resolution, Way::all().iter().position(|way| *way == entry.way)));
-    let mut exact = Exact { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
+    entries
+        .sort_by_key(|entry| (entry.resolution, SumSource::all().iter().position(|way| *way == entry.way)));
+    let mut exact = ExactSum { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
     if let Some(sampled) = finest {
         let settings = correction::CorrectionSettings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
         let found = sampled.correct(&problem, &settings, exec).map_err(RefinementError::from)?;
         let unit = sampled.refinement(&problem, exec)?.unit;
-        exact = Exact { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
+        exact = ExactSum { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
     }
     for entry in &mut entries {
         entry.error = entry.sum / exact.sum - 1.0;
         entry.doubt = entry.doubt.map(|half| half / exact.sum);
     }
     let free = case.free.iter().map(|dof| dof.name()).collect();
-    Ok(Row { name: case.name(), free, exact, entries })
+    Ok(AccuracyRow { name: case.name(), free, exact, entries })
 }
 
-impl Entry {
+impl AccuracyEntry {
     /// The grid's own Sum; its error is not known yet.
     fn of(
         sampled: &GridDecision,
@@ -211,7 +212,7 @@ impl Entry {
     ) -> Result<Self, RefinementError> {
         let found = sampled.refinement(problem, exec)?;
         Ok(Self {
-            way: Way::Grid(method.clone()),
+            way: SumSource::Grid(method.clone()),
             resolution: found.resolution,
             cells: found.cells,
             sum: found.sum,
@@ -234,7 +235,7 @@ impl Entry {
         let found = sampled.correct(problem, &settings, exec)?;
         let grid = Self::of(sampled, method, problem, exec)?;
         Ok(Self {
-            way: Way::Corrected,
+            way: SumSource::Corrected,
             sum: found.sum,
             doubt: Some(0.5 * (found.ci95[1] - found.ci95[0])),
             seconds: grid.seconds + started.elapsed().as_secs_f64(),

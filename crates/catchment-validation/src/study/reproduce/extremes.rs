@@ -5,7 +5,7 @@
 //!   0.579   0.795   2.08▲    here both are marked, in print, in ours and in the exact values, so that it shows where they differ
 //! ```
 
-use super::Entry;
+use super::ReproducedEntry;
 use serde::Serialize;
 
 /// Marks behind a number.
@@ -35,8 +35,8 @@ pub struct Places {
 
 impl Extremes {
     /// Of a table's entries, row by row.
-    pub(super) fn of(entries: &[Vec<Entry>]) -> Self {
-        let published = |entry: &Entry| Some(entry.published);
+    pub(super) fn of(entries: &[Vec<ReproducedEntry>]) -> Self {
+        let published = |entry: &ReproducedEntry| Some(entry.published);
         Self {
             published: Places::of(entries, published)
                 .unwrap_or(Places { largest: Vec::new(), smallest: Vec::new() }),
@@ -47,7 +47,7 @@ impl Extremes {
 }
 
 impl Places {
-    fn of(entries: &[Vec<Entry>], value: impl Fn(&Entry) -> Option<f64>) -> Option<Self> {
+    fn of(entries: &[Vec<ReproducedEntry>], value: impl Fn(&ReproducedEntry) -> Option<f64>) -> Option<Self> {
         let values: Vec<Vec<f64>> =
             entries.iter().map(|row| row.iter().map(&value).collect()).collect::<Option<_>>()?;
         let flat = || values.iter().flatten().copied();

@@ -8,15 +8,15 @@
 //! ```
 //!
 //! Beside both stands the exact value, where there is one: the same solids and rotation point, followed exactly
-//! ([`Exact`]).
+//! ([`ExactValue`]).
 //!
 //! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.11) are computed with conventions that were
 //! fitted to these very tables ([`crate::recipe::dissertation`]): agreement shows that the conventions are
 //! understood, not that the numbers are right as physics.
 
 use crate::published::PublishedError;
-use crate::recipe::{self, Exact, RHO, RecipeError};
-use crate::tables::{TABLES, Table};
+use crate::recipe::{self, ExactValue, RHO, RecipeError};
+use crate::tables::{ReproducibleTable, TABLES};
 use catchment::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -34,7 +34,7 @@ pub struct ReproduceSettings {
 
 /// One entry of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Entry {
+pub struct ReproducedEntry {
     /// The printed value.
     pub published: f64,
     /// What this program computes by the same method; null where it cannot.
@@ -48,7 +48,7 @@ pub struct Entry {
     /// Why the entry is known not to match.
     pub known_difference: Option<&'static str>,
     /// The exact value; null where there is none or it was not asked for.
-    pub exact: Option<Exact>,
+    pub exact: Option<ExactValue>,
     /// `exact / published`.
     pub exact_ratio: Option<f64>,
 }
@@ -95,7 +95,7 @@ pub struct TableComparison {
     /// Names or values of the columns.
     pub columns: Vec<String>,
     /// The entries, row by row.
-    pub entries: Vec<Vec<Entry>>,
+    pub entries: Vec<Vec<ReproducedEntry>>,
     /// The largest and the smallest values, in the tables in which the source highlights them (5.8 to 5.11); null elsewhere.
     pub extremes: Option<Extremes>,
     /// How well they agree.
@@ -138,18 +138,18 @@ pub fn reproduce(
     exec: &Exec,
 ) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
-    let table = Table::of(table).ok_or_else(unknown)?;
+    let table = ReproducibleTable::of(table).ok_or_else(unknown)?;
     let published = table.published()?;
     let columns = published.columns.len();
-    let rows: Vec<Vec<recipe::Entry>> = exec.install(|| {
+    let rows: Vec<Vec<recipe::RecipeEntry>> = exec.install(|| {
         let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
         (0..published.rows.len()).into_par_iter().map(row).collect::<Result<_, _>>()
     })?;
-    let found: Vec<recipe::Entry> = rows.into_iter().flatten().collect();
-    let entry = |(k, &(ours, exact)): (usize, &recipe::Entry)| {
+    let found: Vec<recipe::RecipeEntry> = rows.into_iter().flatten().collect();
+    let entry = |(k, &(ours, exact)): (usize, &recipe::RecipeEntry)| {
         let (row, column) = (k / columns, k % columns);
         let printed = published.values[row][column];
-        Entry {
+        ReproducedEntry {
             published: printed,
             ours,
             ratio: ours.map(|ours| ours / printed),
@@ -160,8 +160,8 @@ pub fn reproduce(
             exact_ratio: exact.map(|exact| exact.value / printed),
         }
     };
-    let flat: Vec<Entry> = found.iter().enumerate().map(entry).collect();
-    let entries: Vec<Vec<Entry>> = flat.chunks(columns).map(<[Entry]>::to_vec).collect();
+    let flat: Vec<ReproducedEntry> = found.iter().enumerate().map(entry).collect();
+    let entries: Vec<Vec<ReproducedEntry>> = flat.chunks(columns).map(<[ReproducedEntry]>::to_vec).collect();
     let mut notes: Vec<String> = table.notes.iter().map(|note| (*note).to_owned()).collect();
     if table.name == "3.2" {
         notes.extend(mean_ratios(&flat)?);
@@ -189,7 +189,7 @@ pub fn reproduce(
 }
 
 /// Means over all entries of X-Face over V-Face and X-Face over S-Face, of the printed tables and of ours.
-fn mean_ratios(x_face: &[Entry]) -> Result<Vec<String>, ReproduceError> {
+fn mean_ratios(x_face: &[ReproducedEntry]) -> Result<Vec<String>, ReproduceError> {
     let mut notes = Vec::new();
     for (face, table, text) in [("V", "3.3", "1.8838"), ("S", "3.4", "2.3846")] {
         let [printed, ours] = mean_ratio(x_face, table)?;
@@ -207,10 +207,10 @@ fn mean_ratios(x_face: &[Entry]) -> Result<Vec<String>, ReproduceError> {
 }
 
 /// Mean over all entries of the X-Face over another face: printed, ours.
-fn mean_ratio(x_face: &[Entry], other: &str) -> Result<[f64; 2], ReproduceError> {
+fn mean_ratio(x_face: &[ReproducedEntry], other: &str) -> Result<[f64; 2], ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: other.to_owned() };
-    let values = Table::of(other).ok_or_else(unknown)?.published()?.values.concat();
-    let of = |value: &dyn Fn(&Entry) -> f64| {
+    let values = ReproducibleTable::of(other).ok_or_else(unknown)?.published()?.values.concat();
+    let of = |value: &dyn Fn(&ReproducedEntry) -> f64| {
         x_face.iter().zip(&values).map(|(entry, other)| value(entry) / other).sum::<f64>()
             / values.len() as f64
     };
@@ -218,7 +218,7 @@ fn mean_ratio(x_face: &[Entry], other: &str) -> Result<[f64; 2], ReproduceError>
     Ok([of(&|entry| entry.published), of(&|entry| entry.ours.unwrap_or(f64::NAN))])
 }
 
-fn summarise(entries: &[Entry]) -> Summary {
+fn summarise(entries: &[ReproducedEntry]) -> Summary {
     let mean_log = |ratios: &mut dyn Iterator<Item = f64>| {
         let logs: Vec<f64> = ratios.map(|ratio| ratio.ln().abs()).collect();
         (!logs.is_empty()).then(|| logs.iter().sum::<f64>() / logs.len() as f64)

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::recipe::Recipe;
-use crate::recipe::dissertation::Errors;
+use crate::recipe::dissertation::SampledErrors;
 use catchment::method::kinematic::START_MEASURE;
 
 fn comparison(table: &str) -> TableComparison {
@@ -69,7 +69,7 @@ fn the_pyramid_tables_are_reproduced_as_far_as_their_conventions_are_known() {
 /// What chapter 5 says of its own tables, asked of their printed numbers.
 #[test]
 fn the_statements_of_chapter_5_about_its_tables() {
-    let printed = |name: &str| Table::of(name).unwrap().published().unwrap().values;
+    let printed = |name: &str| ReproducibleTable::of(name).unwrap().published().unwrap().values;
     let column = |table: &[Vec<f64>], k: usize| table.iter().map(|row| row[k]).collect::<Vec<f64>>();
     // "More remote COR tends to correspond to larger AA" (5.2): every row of every table of Sums ends larger than it begins.
     for name in ["5.2", "5.3", "5.4", "5.5", "5.8", "5.9", "5.10", "5.11"] {
@@ -136,8 +136,8 @@ fn an_unknown_table_lists_the_known_ones() {
 /// The text's mean for S does not follow from its own tables, that for V does.
 #[test]
 fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
-    let table = Table::of("3.2").unwrap();
-    let entry = |published: &f64| Entry {
+    let table = ReproducibleTable::of("3.2").unwrap();
+    let entry = |published: &f64| ReproducedEntry {
         published: *published,
         ours: Some(2.0 * published),
         ratio: None,
@@ -147,7 +147,8 @@ fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
         exact: None,
         exact_ratio: None,
     };
-    let entries: Vec<Entry> = table.published().unwrap().values.concat().iter().map(entry).collect();
+    let entries: Vec<ReproducedEntry> =
+        table.published().unwrap().values.concat().iter().map(entry).collect();
     for (other, mean) in [("3.3", 1.8837), ("3.4", 2.2965)] {
         let [printed, ours] = mean_ratio(&entries, other).unwrap();
         assert!((printed - mean).abs() < 5e-5 && (ours - 2.0 * printed).abs() < 1e-12);
@@ -188,7 +189,7 @@ fn tables_of_the_partition_have_both_values() {
     // H/D 1, COR 1: the rotation point is the apex.
     let exact =
         Recipe::Partition(catchment::design::Family::VFace).exact(2, 4, &Exec::new()).unwrap().unwrap();
-    let other = Recipe::Sum(catchment::design::Family::VFace, Errors::XTheta);
+    let other = Recipe::Sum(catchment::design::Family::VFace, SampledErrors::XTheta);
     assert_eq!(Some(exact), other.exact(2, 4, &Exec::new()).unwrap());
     assert!(exact.value > 2.0 && exact.value < 3.5, "{exact:?}");
 }
