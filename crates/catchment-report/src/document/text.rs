@@ -1,7 +1,7 @@
 //! A document as text, for terminals.
 
 use super::Described;
-use catchment_core::document::{Cell, Column, Document, SectionPart, Section, Table};
+use catchment_core::document::{Cell, Column, Document, Section, SectionPart, Table};
 use catchment_core::terminal::printable;
 
 /// The names of rows take at least so many columns; names that are longer than the most stand out.
