@@ -243,18 +243,18 @@ impl fmt::Display for Warning {
             }
             Self::UndecidedSample { motions, of } => write!(
                 f,
-                "{motions} of {of} random motions could not be followed to their end: the Sum counts them as not accepted, its \
-                 interval reaches to where they are"
+                "{motions} of {of} sampled motions could not be followed to their end: the Sum counts them as not docked, its \
+                 interval includes both cases"
             ),
             Self::FloodingBias => write!(
                 f,
-                "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \
+                "flooding moves along grid directions only: its Sum may be off by several percent at any resolution, and by \
                  far more on a coarse grid; descent is exact at every pose"
             ),
             Self::LevelGround { cells, of } => write!(
                 f,
-                "{cells} of {of} accepted cells lie on level ground above the seat, where nothing slides: flooding drains them all \
-                 the same, and its Sum is too large by them at least"
+                "{cells} of {of} accepted cells lie on level ground above the seat, on which no half slides: flooding counts them as \
+                 docked, so its Sum is too large by at least these cells"
             ),
             Self::CutOff => write!(
                 f,
@@ -263,23 +263,24 @@ impl fmt::Display for Warning {
             ),
             Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
                 f,
-                "the accepted cells measure {sum_grid:.4}, outside the 95 % interval {lo:.4} … {hi:.4}: the grid is too \
-                 coarse or its method biased; slices and pictures rest on it, the Sum, ONAA, centred edge and tolerances do not"
+                "the Sum by the grid, {sum_grid:.4}, lies outside the 95 % CI {lo:.4} … {hi:.4} of the sampled poses: the grid is too \
+                 coarse or its method biased; do not rely on slices, pictures and shares of outcomes, which use the grid; the Sum, ONAA, window \
+                 and limits do not use it"
             ),
             Self::NoInterval => write!(
                 f,
-                "the Sum is the measure of the accepted cells, without an interval; random poses, followed \
-                 exactly, give an unbiased Sum with one"
+                "the Sum is that of the accepted cells, without a confidence interval; sampled poses, followed \
+                 exactly, give an unbiased Sum with an interval"
             ),
             Self::Ambiguous { cells, of } => write!(
                 f,
-                "{cells} of {of} cells are ambiguous, too many to follow each exactly: slices and pictures rest \
-                 on the method's guess there, the Sum with its interval, ONAA, centred edge and tolerances do not"
+                "{cells} of {of} cells are ambiguous, too many to follow each exactly: slices and pictures show \
+                 the method's guess for them; the Sum with its interval, ONAA, window and limits do not use it"
             ),
             Self::StepDependence { changed, of, ci95: [lo, hi] } => write!(
                 f,
-                "{changed} of {of} random poses end otherwise when the steps of their motion are halved ({:.1} … {:.1} % of all \
-                 poses, 95 %): the fit is tight, and the numbers are no better than that",
+                "{changed} of {of} sampled poses have another outcome if the steps of their motion are halved (95 % CI {:.1} … {:.1} % of all \
+                 poses): the fit is tight, and every number is only as accurate as that",
                 100.0 * lo,
                 100.0 * hi
             ),
