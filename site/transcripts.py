@@ -1,12 +1,13 @@
-"""The console blocks of the README and the guides, from the program itself.
+"""The console blocks of the README and of docs/, from the program itself.
 
-    python3 site/transcripts.py target/debug/catchment            writes the blocks of the guides again (PAGES)
-    python3 site/transcripts.py target/debug/catchment --check    lists those that differ from what the program prints; without the slow ones
-    python3 site/transcripts.py target/debug/catchment --check all    with those, too
+    python3 site/transcripts.py target/release/catchment           writes all blocks again
+    python3 site/transcripts.py target/debug/catchment --check     lists those that differ from what the program prints; without the slow ones
+    python3 site/transcripts.py target/debug/catchment --check all    with the slow ones
 
-A block ```console that begins with `$ catchment` holds a command and what it prints, stderr among it. The commands run one after another, page after page,
-in a folder that holds the two STL files of the repository and, in designs/, its design files. A line that is only … stands for lines that are left out: as many as
-it takes that the block keeps its lines above it and below.
+A block ```console whose first line begins with `$ catchment` holds commands and what they print, stderr among it. A command goes on in the next line after `\\`.
+The commands of a page run one after another, page after page, in one folder: it holds two STL files of the repository, its design files in designs/, and every block ```toml
+whose first line is `# NAME.toml`, under that name. A line that is only … stands for lines that are left out: as many as it takes that the block keeps its lines
+above it and below. A command without any output in its block runs, and is not compared.
 """
 
 import difflib
@@ -17,14 +18,27 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = [ROOT / "README.md", ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md", ROOT / "docs/source-and-findings.md"]
+FIRST = [ROOT / "README.md", ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
+PAGES = [*FIRST, *(page for page in sorted((ROOT / "docs").glob("*.md")) if page not in FIRST)]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
-#: Thousands of motions of meshes.
-LONG = ("window",)
-BLOCK = re.compile(r"^```console\n\$ (catchment [^\n]*)\n(.*?)^```$", re.M | re.S)
+#: Commands that take more than some seconds of a debug build, by how they begin.
+SLOW = (
+    "catchment window",
+    "catchment chance designs/v-face.toml --draw 'speed=2",
+    "catchment chance designs/v-face.toml --draw speed=1",
+    "catchment zraa designs/x-face-3d.toml --beside drop",
+    "catchment friction",
+    "catchment success designs/pyramid-stl.toml",
+    "catchment jams",
+    "catchment rests",
+    "catchment run designs/pyramid.toml",
+    "catchment export out -o set.vti",
+)
+BLOCK = re.compile(r"^```(console|toml)\n(.*?)^```$", re.M | re.S)
 
 
 def printed(program: str, folder: Path, command: str) -> list[str]:
@@ -48,41 +62,79 @@ def cut(said: list[str], shown: list[str]) -> list[str]:
     return said[:above] + [shown[gaps[0]]] + (said[-below:] if below else [])
 
 
+def commands(block: str) -> list[tuple[list[str], list[str]]]:
+    """The commands of a block, each as its lines and the lines below it."""
+    found: list[tuple[list[str], list[str]]] = []
+    goes_on = False
+    for line in block.splitlines():
+        if goes_on or line.startswith("$ "):
+            if not goes_on:
+                found.append(([], []))
+            found[-1][0].append(line)
+            goes_on = line.endswith("\\")
+        elif found:
+            found[-1][1].append(line)
+    return found
+
+
+class Transcripts:
+    def __init__(self, program: str, folder: Path, with_slow: bool) -> None:
+        self.program, self.folder, self.with_slow = program, folder, with_slow
+        self.known: dict[str, list[str]] = {}
+        self.wrong: list[str] = []
+        self.left_out = 0
+
+    def again(self, page: Path, block: re.Match) -> str:
+        """A block as the program prints it."""
+        if block[1] == "toml":
+            named = re.match(r"# (\S+\.toml)\n", block[2])
+            if named:
+                (self.folder / named[1]).write_text(block[2], encoding="utf-8")
+            return block[0]
+        lines: list[str] = []
+        for typed, shown in commands(block[2]):
+            command = "".join(line.removeprefix("$ ").removesuffix("\\") for line in typed)
+            lines += [*typed, *self.output(page, " ".join(command.split()) if "'" not in command else command, shown)]
+        return "\n".join(["```console", *lines, "```"])
+
+    def output(self, page: Path, command: str, shown: list[str]) -> list[str]:
+        if not command.startswith("catchment "):
+            return shown
+        if command.startswith(SLOW) and not self.with_slow:
+            self.left_out += 1
+            return shown
+        if command not in self.known:
+            begun = time.monotonic()
+            self.known[command] = printed(self.program, self.folder, command)
+            if time.monotonic() - begun > 5:
+                print(f"{time.monotonic() - begun:.0f} s: {command}", file=sys.stderr)
+        if not shown:
+            return shown
+        said = cut(self.known[command], shown)
+        if said != shown:
+            lines = difflib.unified_diff(shown, said, f"{page.name}: $ {command}", "what it prints", lineterm="", n=1)
+            self.wrong.append("\n".join(lines))
+        return said
+
+
 def main() -> None:
     if len(sys.argv) not in (2, 3, 4) or sys.argv[2:] not in ([], ["--check"], ["--check", "all"]):
         raise SystemExit(__doc__)
     program, compares, every = sys.argv[1], len(sys.argv) > 2, sys.argv[2:] != ["--check"]
-    known: dict[str, list[str]] = {}
-    wrong: list[str] = []
-    left_out = 0
     with tempfile.TemporaryDirectory() as home:
         for part in PARTS:
             shutil.copy(part, home)
-        (Path(home) / "designs").mkdir()
-        for design in sorted((ROOT / "designs").glob("*.toml")):
-            shutil.copy(design, Path(home) / "designs")
+        shutil.copytree(ROOT / "designs", Path(home) / "designs")
+        transcripts = Transcripts(program, Path(home), every)
         for page in PAGES:
-            def again(block: re.Match) -> str:
-                nonlocal left_out
-                command, shown = block[1], block[2].rstrip().splitlines()
-                if command.split()[1] in LONG and not every:
-                    left_out += 1
-                    return block[0]
-                if command not in known:
-                    known[command] = printed(program, Path(home), command)
-                said = cut(known[command], shown)
-                if said != shown:
-                    lines = difflib.unified_diff(shown, said, f"{page.name}: $ {command}", "what it prints", lineterm="", n=1)
-                    wrong.append("\n".join(lines))
-                return "\n".join(["```console", f"$ {command}", *said, "```"])
-
             text = page.read_text(encoding="utf-8")
-            whole = BLOCK.sub(again, text)
-            if not compares:
+            whole = BLOCK.sub(lambda block, page=page: transcripts.again(page, block), text)
+            if not compares and whole != text:
                 page.write_text(whole, encoding="utf-8")
-    if compares and wrong:
-        raise SystemExit("\n".join([*wrong, f"python3 site/transcripts.py {program}"]))
-    print(f"transcripts: {len(known)} commands of the guides, {left_out} long blocks left out" + ("" if compares else f", {len(wrong)} blocks changed"))
+    if compares and transcripts.wrong:
+        raise SystemExit("\n".join([*transcripts.wrong, f"python3 site/transcripts.py {program}"]))
+    changed = "" if compares else f", {len(transcripts.wrong)} blocks changed"
+    print(f"transcripts: {len(transcripts.known)} commands of {len(PAGES)} pages, {transcripts.left_out} slow ones left out{changed}")
 
 
 if __name__ == "__main__":
