@@ -64,7 +64,7 @@
 //! let table = Report::of_answer(&answer).table();
 //! assert!(table.contains("mm") && table.contains('°'), "{table}");
 //!
-//! // 6. Another method enters by the same door; its settings have names.
+//! // 6. Another method has the same interface; its settings have names.
 //! let flood: Method = "flood".parse()?;
 //! assert!(Run { over: run.over, ..Run::by(flood) }.on(&problem, &Exec::new())?.by_products.basins.is_some());
 //! # Ok(())
@@ -87,7 +87,7 @@
 //! - [`problem`]: the alignment problem as one value: geometry, alignment, mated pose checked, digest.
 //! - [`landscape`]: the error grid over any of the five errors, and the heights over it.
 //! - [`acceptance`]: what becomes of every pose error; the one result that all methods share.
-//! - [`method`]: ways to decide, all through one door: confluence of exact motions (the default), exact descent, transport, flooding in three forms, the
+//! - [`method`]: ways to decide, all with one interface: confluence of exact motions (the default), exact descent, transport, flooding in three forms, the
 //!   polyhedral partition, the planar kinematic one, drop tests; and translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.
 //! - [`document`]: the description of a result, from which text, CSV, Markdown and HTML are rendered.

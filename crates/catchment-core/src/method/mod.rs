@@ -21,10 +21,10 @@ pub mod confluence;
 pub mod correction;
 mod cost;
 pub mod descent;
-mod door;
 #[cfg(feature = "drop")]
 pub mod drop;
 pub mod flood;
+mod interface;
 pub mod kinematic;
 mod metric;
 pub mod partition;
@@ -33,8 +33,8 @@ pub mod transport;
 pub mod zraa;
 
 pub use cost::{affordable, ensure_fits, motions_in, seconds_per_motion};
-pub use door::{
-    ByProducts, Cost, DecideError, DecisionMethod, Doubts, Finished, Info, MethodOutput, NotApplicable,
-    PoseMethod,
+pub use interface::{
+    ByProducts, CellFractions, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable,
+    PoseMethod, PoseObserver,
 };
 pub use registry::{Method, MethodError, REGISTRY, RegistryEntry};

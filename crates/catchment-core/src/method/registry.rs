@@ -1,6 +1,6 @@
 //! The methods by name: each is a line of the registry, and a value that can be read, changed and stored.
 
-use super::door::{DecisionMethod, Info};
+use super::interface::{DecisionMethod, Info};
 use crate::design::nearest;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -12,17 +12,17 @@ use std::sync::Arc;
 
 /// Every method, the default first.
 pub static REGISTRY: &[RegistryEntry] = &[
-    super::confluence::door::ENTRY,
-    super::descent::door::ENTRY,
-    super::flood::door::ENTRY,
-    super::flood::door::ENTRY_STEEPEST,
-    super::flood::meyer::door::ENTRY,
-    super::partition::door::ENTRY,
-    super::kinematic::door::ENTRY,
-    super::certified::door::ENTRY,
+    super::confluence::entry::ENTRY,
+    super::descent::entry::ENTRY,
+    super::flood::entry::ENTRY,
+    super::flood::entry::ENTRY_STEEPEST,
+    super::flood::meyer::entry::ENTRY,
+    super::partition::entry::ENTRY,
+    super::kinematic::entry::ENTRY,
+    super::certified::entry::ENTRY,
     #[cfg(feature = "drop")]
-    super::drop::door::ENTRY,
-    super::transport::door::ENTRY,
+    super::drop::entry::ENTRY,
+    super::transport::entry::ENTRY,
 ];
 
 /// A line of the registry.

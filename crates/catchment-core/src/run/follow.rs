@@ -3,7 +3,7 @@
 use crate::acceptance::{Acceptance, Domain, FailureReason, Outcome, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
-use crate::method::{DecideError, Finished, Method};
+use crate::method::{DecideError, Method, PoseObserver};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 use std::sync::{Mutex, PoisonError};
@@ -70,7 +70,7 @@ impl Problem {
         method: &Method,
         poses: &[PoseError],
         exec: &Exec,
-        told: Finished<'_>,
+        told: PoseObserver<'_>,
     ) -> Result<Followed, DecideError> {
         let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
         let kept = Mutex::new(Vec::new());

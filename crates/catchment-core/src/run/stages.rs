@@ -10,7 +10,7 @@ use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::merit::tolerance::{Tolerance, followed};
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
-use crate::method::{Doubts, Method, MethodOutput, PoseMethod, descent};
+use crate::method::{CellFractions, Method, MethodOutput, PoseMethod, descent};
 use crate::problem::Problem;
 
 /// Follows sampled poses and ambiguous cells: the method itself where it decides each pose by itself (descents would know
@@ -131,7 +131,7 @@ impl Stages<'_> {
     fn corrected(
         &self,
         acceptance: &mut Acceptance,
-        doubts: Option<&dyn Doubts>,
+        doubts: Option<&dyn CellFractions>,
         started: Stopwatch,
         exec: &Exec,
     ) -> Result<Option<RunCorrection>, RunError> {
@@ -234,7 +234,7 @@ pub fn correct(
     problem: &Problem,
     grid: &Grid,
     acceptance: &Acceptance,
-    doubts: Option<&dyn Doubts>,
+    doubts: Option<&dyn CellFractions>,
     settings: &correction::CorrectionSettings,
     exec: &Exec,
 ) -> Result<RunCorrection, CorrectionError> {
@@ -265,7 +265,7 @@ fn settle(
     method: &Method,
     problem: &Problem,
     grid: &Grid,
-    doubts: &dyn Doubts,
+    doubts: &dyn CellFractions,
     acceptance: &mut Acceptance,
     most: usize,
     exec: &Exec,

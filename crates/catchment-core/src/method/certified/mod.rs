@@ -26,7 +26,7 @@
 mod arc;
 mod bearing;
 mod body;
-pub(super) mod door;
+pub(super) mod entry;
 mod flood;
 mod grown;
 mod home;
@@ -416,7 +416,7 @@ impl Certified {
             outcomes.len()
         );
         let warnings = if undecided > 0 { vec![Warning::Open { text: note }] } else { Vec::new() };
-        Ok(Acceptance { method: door::INFO.name, domain: Domain::Grid(grid.clone()), outcomes, warnings })
+        Ok(Acceptance { method: entry::INFO.name, domain: Domain::Grid(grid.clone()), outcomes, warnings })
     }
 
     fn outcome(&self, grid: &Grid, index: usize) -> Outcome {

@@ -30,10 +30,10 @@
 //! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue
 //! 1987: here the map is the motion itself. Lengths in D, angles in radians.
 
-mod around;
-pub(super) mod door;
+pub(super) mod entry;
 mod label;
-mod river;
+mod labeller;
+mod neighbours;
 #[cfg(test)]
 mod tests;
 
@@ -46,8 +46,8 @@ use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{DescentDirections, Fold, Gradient, Grid, Landscape, LandscapeError, Resolution};
 use crate::pose::PoseError;
 use label::Label;
+use labeller::Labeller;
 use rayon::prelude::*;
-use river::River;
 use serde::{Deserialize, Serialize};
 
 /// Settings that may change the result.
@@ -166,8 +166,8 @@ pub fn run(
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
-    let river = River { pair, falls: &falls, settings, started };
-    let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
+    let labeller = Labeller { pair, falls: &falls, settings, started };
+    let (kept, joined) = labeller.run(&part(HEIGHTS_SHARE, 1.0))?;
     let DescentDirections { grid, fold, .. } = falls;
     Ok(GridLabels { grid, fold, kept, joined })
 }
@@ -252,6 +252,6 @@ impl GridLabels {
             );
             warnings.push(Warning::Open { text });
         }
-        Acceptance { method: door::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
+        Acceptance { method: entry::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
     }
 }

@@ -16,7 +16,7 @@
 
 use super::DescentSettings;
 use super::fall::all_count;
-use super::motion::{Motion, Until, Unwatched};
+use super::motion::{Motion, NoObserver, Until};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::pose::{Dof, PoseError, face_from_cor};
@@ -53,7 +53,7 @@ pub(super) fn all_dock(pair: &Pair) -> bool {
                 let number = stream.uniform(Dof::ALL.len() as u64 * k + dof.index() as u64);
                 error[dof.index()] = most * (2.0 * number - 1.0);
             }
-            motion.follow(&PoseError::from_array(error), Until::Known, &mut Unwatched).outcome
+            motion.follow(&PoseError::from_array(error), Until::Known, &mut NoObserver).outcome
                 == Outcome::Aligned
         })
     })

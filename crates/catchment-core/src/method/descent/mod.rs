@@ -22,7 +22,7 @@
 
 mod coulomb;
 mod dependence;
-pub(super) mod door;
+pub(super) mod entry;
 mod fall;
 mod holding;
 mod homing;
@@ -46,7 +46,7 @@ mod tests_of_immobility;
 mod trajectory;
 
 pub use dependence::step_dependence;
-pub(in crate::method) use door::default_samples;
+pub(in crate::method) use entry::default_samples;
 pub(in crate::method) use fall::all_count;
 pub use fall::fall;
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
@@ -58,9 +58,9 @@ pub use trajectory::{Touch, Trajectory, Waypoint};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
-use crate::method::door::Finished;
+use crate::method::interface::PoseObserver;
 use crate::pose::PoseError;
-use motion::{Motion, Until, Unwatched};
+use motion::{Motion, NoObserver, Until};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -175,7 +175,7 @@ impl<'a> Follower<'a> {
     /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
     /// to rest.
     pub fn follow(&mut self, error: &PoseError) -> End {
-        self.0.follow(error, Until::Known, &mut Unwatched)
+        self.0.follow(error, Until::Known, &mut NoObserver)
     }
 
     /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
@@ -214,7 +214,7 @@ impl<'a> Follower<'a> {
 
     /// Follows one pose until it has come to rest, also in the seat.
     pub fn rest(&mut self, error: &PoseError) -> End {
-        self.0.follow(error, Until::AtRest, &mut Unwatched)
+        self.0.follow(error, Until::AtRest, &mut NoObserver)
     }
 }
 
@@ -266,7 +266,7 @@ pub(super) fn rests_told(
     domain: Domain,
     settings: &DescentSettings,
     exec: &Exec,
-    finished: Finished<'_>,
+    finished: PoseObserver<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     each(pair, domain, Until::AtRest, settings, exec, finished)
 }
@@ -304,7 +304,7 @@ pub fn rests_of_rows(
             |motion, (pose, end, height, code)| {
                 exec.check()?;
                 let pose = PoseError::from_array(*pose);
-                let found = motion.follow(&pose, Until::AtRest, &mut Unwatched);
+                let found = motion.follow(&pose, Until::AtRest, &mut NoObserver);
                 (*end, *code) = (found.error.to_array(), found.outcome as u8);
                 *height = found.height.unwrap_or(f64::NAN);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -323,7 +323,7 @@ fn each(
     until: Until,
     settings: &DescentSettings,
     exec: &Exec,
-    finished: Finished<'_>,
+    finished: PoseObserver<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     let count = domain.len();
     let done = AtomicUsize::new(0);
@@ -336,7 +336,7 @@ fn each(
                 || Motion::new(pair, settings).homing(),
                 |motion, k| {
                     exec.check()?;
-                    let end = motion.follow(&domain.pose(k), until, &mut Unwatched);
+                    let end = motion.follow(&domain.pose(k), until, &mut NoObserver);
                     finished(k, end);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(between) {

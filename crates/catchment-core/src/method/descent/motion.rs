@@ -38,7 +38,7 @@ pub(super) enum Until {
 }
 
 /// Sees a motion at every step.
-pub(super) trait Watch {
+pub(super) trait MotionObserver {
     /// What becomes of the motion, if that is known from here: it is followed no further.
     fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome>;
 
@@ -49,9 +49,9 @@ pub(super) trait Watch {
 }
 
 /// Sees nothing.
-pub(super) struct Unwatched;
+pub(super) struct NoObserver;
 
-impl Watch for Unwatched {
+impl MotionObserver for NoObserver {
     fn see(&mut self, _: &Motion, _: &State, _: f64) -> Option<Outcome> {
         None
     }
@@ -62,7 +62,7 @@ impl Watch for Unwatched {
 }
 
 /// Keeps every waypoint.
-impl Watch for Vec<Waypoint> {
+impl MotionObserver for Vec<Waypoint> {
     fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome> {
         self.push(motion.waypoint(state, travelled));
         None
@@ -70,7 +70,7 @@ impl Watch for Vec<Waypoint> {
 }
 
 /// Asks at every pose error on the way.
-impl<F: FnMut(&PoseError) -> Option<Outcome>> Watch for F {
+impl<F: FnMut(&PoseError) -> Option<Outcome>> MotionObserver for F {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self(&motion.error_of(state))
     }
@@ -151,7 +151,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Lowers the moving half at `error` and follows it to its end, or until `watch` calls it.
-    pub(super) fn follow(&mut self, error: &PoseError, until: Until, watch: &mut impl Watch) -> End {
+    pub(super) fn follow(&mut self, error: &PoseError, until: Until, watch: &mut impl MotionObserver) -> End {
         let mut pace = Pace::new(self.settings.step);
         let Some(mut state) = self.touch_down(error) else { return End::missed(*error) };
         let mut travelled = 0.0;

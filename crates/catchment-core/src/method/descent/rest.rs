@@ -2,7 +2,7 @@
 
 use super::coulomb::Contacts;
 use super::holding::BORDER;
-use super::motion::{Motion, State, Until, Watch};
+use super::motion::{Motion, MotionObserver, State, Until};
 use super::projection::{Vector, dot};
 use super::{DescentSettings, End, Follower, Pair};
 use crate::acceptance::Outcome;
@@ -48,7 +48,7 @@ struct Last {
     contacts: Vec<(Contact, Meeting)>,
 }
 
-impl Watch for Last {
+impl MotionObserver for Last {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.state = Some(*state);
         self.contacts.clear();

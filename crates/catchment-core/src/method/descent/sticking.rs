@@ -20,7 +20,7 @@
 //! the result at each friction coefficient.
 
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
-use super::motion::{Motion, State, Watch};
+use super::motion::{Motion, MotionObserver, State};
 use super::projection::{MAX_COORDINATES, Projection, Vector};
 use super::rows::{OVERLAP, margin};
 use super::{DescentSettings, MOST_FRICTION as MOST};
@@ -226,7 +226,7 @@ impl Doubting {
     }
 }
 
-impl Watch for Doubting {
+impl MotionObserver for Doubting {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.may_stick |= self.here;
         self.touching.see_on_the_way(motion, state);
@@ -261,7 +261,7 @@ impl OnTheWay {
     }
 }
 
-impl Watch for OnTheWay {
+impl MotionObserver for OnTheWay {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
         self.touching.see_on_the_way(motion, state);

@@ -28,8 +28,8 @@
 //! Units: D, s, kg; see [`Settings`]. Engine: rapier, with results that are bit-identical for any threads or
 //! machine. Source of the test: the dissertation, section 4.2.
 
-pub(super) mod door;
 mod engine;
+pub(super) mod entry;
 pub mod export;
 mod faces;
 mod mass;
@@ -49,7 +49,7 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::method::descent::End;
-use crate::method::door::Finished;
+use crate::method::interface::PoseObserver;
 use crate::pose::{Dof, PoseError};
 use engine::{Engine, Shapes};
 use glam::DVec3;
@@ -110,7 +110,7 @@ fn run_told(
     domain: Domain,
     settings: &DropSettings,
     exec: &Exec,
-    finished: Finished<'_>,
+    finished: PoseObserver<'_>,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
     let shapes = Shapes::of(pair)?;
     let engine = Engine::new(pair, &shapes, settings)?;

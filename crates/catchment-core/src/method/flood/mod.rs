@@ -43,9 +43,10 @@
 //! [`Warning::FloodingBias`]: crate::acceptance::Warning::FloodingBias
 
 pub mod brute;
-pub(super) mod door;
 mod drain;
+pub(super) mod entry;
 pub mod meyer;
+mod outcomes;
 mod passes;
 mod steepest;
 mod sweep;
@@ -54,7 +55,6 @@ mod target;
 mod tests;
 mod tolerance;
 mod tree;
-mod verdict;
 mod watersheds;
 
 use crate::acceptance::{Acceptance, Outcome};
@@ -246,7 +246,7 @@ pub fn flood(
         None => tolerance::choose(&tree, &staircase, tolerance::height_step(&grid.shape(), heights)),
     };
     let (mut acceptance, basins) =
-        verdict::verdict(landscape, &targets, docks, &labels, &tree, tolerance.depth, exec)?;
+        outcomes::verdict(landscape, &targets, docks, &labels, &tree, tolerance.depth, exec)?;
     acceptance.method = settings.rule.method();
     let watersheds = Watersheds { first: labels, into: tree.merged(tolerance.depth), outside: tree.outside };
     Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase }, watersheds })

@@ -32,7 +32,7 @@
 //! Not promised: that a start within the bounds succeeds (they are the best case), or that the rotation point
 //! keeps its x in a real docking, as it does here. For free motion see [`crate::method::descent`].
 
-pub(super) mod door;
+pub(super) mod entry;
 mod lever;
 pub mod stepping;
 

@@ -19,9 +19,9 @@
 
 mod cells;
 mod compose;
-pub(super) mod door;
-mod fall;
+pub(super) mod entry;
 mod frame;
+mod oracle;
 mod outline;
 mod pieces;
 mod solids;

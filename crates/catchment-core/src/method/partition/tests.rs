@@ -1,5 +1,5 @@
 use super::compose::{Compartment, slices};
-use super::fall::{self, Fate};
+use super::oracle::{self, MotionEnd};
 use super::space::{Roof, Tile, envelope, roofs};
 use super::watershed::Parts;
 use super::*;
@@ -138,10 +138,10 @@ fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [us
             Parts::Cut(parts) => parts.iter().find(|(part, _)| part.contains(&q)).map(|(_, label)| *label),
         };
         // Places of rest along a level ravine are many for points and one for parts.
-        let fate = match fall::fate(&partition.cells, &q) {
-            Fate::Lost => Outcome::Missed,
-            Fate::Rest(place) if docks(pair)(&place) => Outcome::Aligned,
-            Fate::Rest(_) | Fate::Left => Outcome::Jammed,
+        let fate = match oracle::fate(&partition.cells, &q) {
+            MotionEnd::Lost => Outcome::Missed,
+            MotionEnd::Rest(place) if docks(pair)(&place) => Outcome::Aligned,
+            MotionEnd::Rest(_) | MotionEnd::Left => Outcome::Jammed,
         };
         tried += 1;
         same += usize::from(label == Some(fate));

@@ -19,7 +19,7 @@
 //! cells; the original split at every meeting of two neighbours.
 
 use super::cells::{Beyond, Cells, Gate, facing};
-use super::fall::{self, Fate};
+use super::oracle::{self, MotionEnd};
 use super::pieces;
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
@@ -74,7 +74,7 @@ pub(super) fn drain(
     is_aligned: impl Fn(&PolytopePoint) -> bool,
     exec: &Exec,
 ) -> Result<Watersheds, Cancelled> {
-    let fates: Vec<Vec<Option<Fate>>> = exec.install(|| {
+    let fates: Vec<Vec<Option<MotionEnd>>> = exec.install(|| {
         (0..cells.all.len())
             .into_par_iter()
             .map(|k| {
@@ -128,33 +128,33 @@ pub(super) fn drain(
 }
 
 /// Where the gates lead that do not lead into a cell.
-fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<Fate>> {
+fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<MotionEnd>> {
     let cell = &cells.all[k];
     cell.gates
         .iter()
         .map(|gate| match gate.to {
             Beyond::Cell(_) => None,
-            Beyond::Nothing => Some(Fate::Lost),
-            Beyond::Border => Some(Fate::Left),
-            Beyond::Ravine => Some(if let Some(place) = fall::level(cells, k, gate) {
-                Fate::Rest(place)
+            Beyond::Nothing => Some(MotionEnd::Lost),
+            Beyond::Border => Some(MotionEnd::Left),
+            Beyond::Ravine => Some(if let Some(place) = oracle::level(cells, k, gate) {
+                MotionEnd::Rest(place)
             } else {
-                let (height, bottom) = fall::lowest(cells, k, gate);
-                fall::fate_from(cells, &bottom, height)
+                let (height, bottom) = oracle::lowest(cells, k, gate);
+                oracle::fate_from(cells, &bottom, height)
             }),
         })
         .collect()
 }
 
 impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
-    fn label(&mut self, fate: Fate) -> Outcome {
+    fn label(&mut self, fate: MotionEnd) -> Outcome {
         let place = match fate {
-            Fate::Lost => return Outcome::Missed,
-            Fate::Left => {
+            MotionEnd::Lost => return Outcome::Missed,
+            MotionEnd::Left => {
                 self.cut_off = true;
                 return Outcome::Jammed;
             }
-            Fate::Rest(place) => place,
+            MotionEnd::Rest(place) => place,
         };
         let near = |other: &PolytopePoint| place.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_PLACE);
         if let Some((_, outcome)) = self.rests.iter().find(|(other, _)| near(other)) {
@@ -236,7 +236,7 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
     }
 
     fn of_middle(&mut self, region: &Polytope) -> Outcome {
-        self.label(fall::fate(self.cells, &region.centroid()))
+        self.label(oracle::fate(self.cells, &region.centroid()))
     }
 
     /// Cells that drain into each other.

@@ -29,7 +29,7 @@
 //! angles in radians.
 
 pub mod brute;
-pub(super) mod door;
+pub(super) mod entry;
 mod links;
 mod solve;
 #[cfg(test)]
@@ -205,7 +205,7 @@ pub fn run(
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
     let follow_out = surface(grid) <= settings.followed_out;
-    let judge = Judge { pair, field: &field, settings, follow_out, cut_off: AtomicBool::new(false) };
+    let judge = ExactOracle { pair, field: &field, settings, follow_out, cut_off: AtomicBool::new(false) };
     let shares = solve::solve(&field, &judge, exec)?;
     let cut_off = judge.cut_off.into_inner();
     let GradientField { grid, fold, .. } = field;
@@ -218,7 +218,7 @@ fn surface(grid: &Grid) -> usize {
 }
 
 /// Decides ends by exact descent.
-struct Judge<'a> {
+struct ExactOracle<'a> {
     pair: &'a Pair,
     field: &'a GradientField,
     settings: &'a TransportSettings,
@@ -228,7 +228,7 @@ struct Judge<'a> {
     cut_off: AtomicBool,
 }
 
-impl Judge<'_> {
+impl ExactOracle<'_> {
     /// What one thread needs to decide ends.
     fn start(&self) -> Ends<'_> {
         Ends { judge: self, follower: descent::Follower::new(self.pair, &self.settings.descent) }
@@ -236,7 +236,7 @@ impl Judge<'_> {
 }
 
 struct Ends<'a> {
-    judge: &'a Judge<'a>,
+    judge: &'a ExactOracle<'a>,
     follower: descent::Follower<'a>,
 }
 

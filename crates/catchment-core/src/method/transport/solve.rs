@@ -9,7 +9,7 @@
 //! computes it. Threads work on different rotations and reuse each other's values; if two of them compute the
 //! same cell, that costs time and never a bit.
 
-use super::Judge;
+use super::ExactOracle;
 use super::links::{Link, Links, Scratch, Way};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::GradientField;
@@ -51,7 +51,11 @@ struct Waiting {
 }
 
 /// Solves all kept cells.
-pub(super) fn solve(field: &GradientField, judge: &Judge, exec: &Exec) -> Result<Vec<Shares>, Cancelled> {
+pub(super) fn solve(
+    field: &GradientField,
+    judge: &ExactOracle,
+    exec: &Exec,
+) -> Result<Vec<Shares>, Cancelled> {
     let shares: Vec<AtomicU32> = field
         .carriers
         .iter()

@@ -1,7 +1,7 @@
 //! The upper envelope of the sheets as convex cells that tile the plane, with the neighbours across each
 //! border.
 
-use super::places::Places;
+use super::polygon_index::PolygonIndex;
 use super::sheet::{Sheet, area};
 use crate::exec::{Cancelled, Exec};
 use glam::DVec2;
@@ -40,7 +40,7 @@ impl Border {
 pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
     exec.install(|| {
         let seen = seen(sheets, exec)?;
-        let places = Places::new(seen.iter().map(|i| &sheets[*i].footprint[..]), 0.0);
+        let places = PolygonIndex::new(seen.iter().map(|i| &sheets[*i].footprint[..]), 0.0);
         let parts = seen
             .par_iter()
             .map(|i| {
@@ -58,7 +58,7 @@ pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result
 /// A sheet is hidden where another reaches over all its corners and is nowhere lower there; of two that are equal the first is
 /// seen. Only the sheet that is the highest over the middle is tried.
 fn seen(sheets: &[Sheet], exec: &Exec) -> Result<Vec<usize>, Cancelled> {
-    let places = Places::new(sheets.iter().map(|sheet| &sheet.footprint[..]), 0.0);
+    let places = PolygonIndex::new(sheets.iter().map(|sheet| &sheet.footprint[..]), 0.0);
     let is_seen = |i: &usize| {
         exec.check()?;
         let own = &sheets[*i];
@@ -94,7 +94,13 @@ fn holds(polygon: &[DVec2], at: DVec2) -> bool {
 }
 
 /// What no other sheet takes from one. Those that lie highest over its middle are tried first, after which little is left.
-fn uncovered(i: usize, seen: &[usize], sheets: &[Sheet], places: &Places, seam: f64) -> Vec<Vec<DVec2>> {
+fn uncovered(
+    i: usize,
+    seen: &[usize],
+    sheets: &[Sheet],
+    places: &PolygonIndex,
+    seam: f64,
+) -> Vec<Vec<DVec2>> {
     let sheet = &sheets[i];
     let middle = sheet.footprint.iter().sum::<DVec2>() / sheet.footprint.len() as f64;
     let mut others: Vec<(f64, usize)> = places
@@ -197,7 +203,7 @@ fn overlap(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
 pub(super) fn borders(cells: &[Cell], seam: f64, exec: &Exec) -> Result<Vec<Vec<Border>>, Cancelled> {
     // Sides meet where their lines fall together within a few seams.
     let near = SLIVER * seam;
-    let places = Places::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * near);
+    let places = PolygonIndex::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * near);
     let mut borders = Vec::with_capacity(cells.len());
     for (i, cell) in cells.iter().enumerate() {
         exec.check()?;

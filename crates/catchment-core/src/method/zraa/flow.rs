@@ -16,7 +16,7 @@
 //! recursion ends; strips with the same outcome are joined, which keeps their number small.
 
 use super::cells::{Border, Cell};
-use super::places::Places;
+use super::polygon_index::PolygonIndex;
 use super::sheet::Sheet;
 use glam::DVec2;
 
@@ -47,7 +47,7 @@ pub(super) struct Flow<'a, D> {
     sheets: &'a [Sheet],
     cells: &'a [Cell],
     borders: &'a [Vec<Border>],
-    places: Places,
+    places: PolygonIndex,
     seam: f64,
     /// Whether a half at a position and height is in the seat.
     docked: D,
@@ -86,7 +86,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
     ) -> Self {
         let stretches = borders.iter().map(|b| vec![Stretch::Unknown; b.len()]).collect();
         // What touches a point within `near` has a box that holds it by then.
-        let places = Places::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * NEAR * seam);
+        let places = PolygonIndex::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * NEAR * seam);
         Self { sheets, cells, borders, places, seam, docked, stretches, tangled: false }
     }
 

@@ -23,10 +23,10 @@ mod cells;
 mod circle;
 mod flow;
 mod heights;
-mod judge;
 mod line;
 mod nilsson;
-mod places;
+mod oracle;
+mod polygon_index;
 mod profile;
 mod sheet;
 mod square;
@@ -46,7 +46,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, DofSet, PoseError};
 use flow::Flow;
 use glam::DVec2;
-use judge::Judge;
+use oracle::Oracle;
 use serde::{Deserialize, Serialize};
 
 /// Most sheets: minutes of cutting, and 100 MB.
@@ -189,7 +189,7 @@ pub fn run(pair: &Pair, settings: &ZraaSettings, exec: &Exec) -> Result<Zraa, Zr
 
 /// The region of the first seam that exact motions agree with.
 fn judged(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
-    let judge = Judge::of(pair, exec)?;
+    let judge = Oracle::of(pair, exec)?;
     let mut refused = None;
     for seam in std::iter::once(seam).chain(SEAMS.into_iter().filter(|coarser| *coarser > seam)) {
         match region(pair, sheets, seam, exec) {

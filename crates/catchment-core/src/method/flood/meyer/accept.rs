@@ -17,7 +17,7 @@ use crate::landscape::{Landscape, Resolution};
 use crate::method::flood::steepest::Metric;
 use crate::method::flood::tolerance::{self, Choice, ToleranceReason};
 use crate::method::flood::tree::explains;
-use crate::method::flood::{self, DrainageRule, FloodError, Watersheds, target, verdict};
+use crate::method::flood::{self, DrainageRule, FloodError, Watersheds, outcomes, target};
 use serde::{Deserialize, Serialize};
 
 /// Settings that change the result.
@@ -129,7 +129,7 @@ pub fn accept(
         } else if Some(basin) == mated {
             Outcome::Aligned
         } else {
-            let (outcome, on_border) = verdict::elsewhere(grid, lowest);
+            let (outcome, on_border) = outcomes::elsewhere(grid, lowest);
             border_cells += if on_border { cells } else { 0 };
             outcome
         };
@@ -137,7 +137,7 @@ pub fn accept(
     // Every cell has a basin once the dams are given: a landscape without NaN leaves none undecided.
     let outcome = |cell| division.basin(cell).map_or(Outcome::Undecided, |basin| of_basin[basin as usize]);
     let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
-    let warnings = verdict::warnings(landscape, &outcomes, &targets, border_cells, exec)?;
+    let warnings = outcomes::warnings(landscape, &outcomes, &targets, border_cells, exec)?;
     let acceptance = Acceptance { method: "meyer", domain: Domain::Grid(grid.clone()), outcomes, warnings };
     Ok(MeyerFlooding { acceptance, tolerance, watersheds })
 }

@@ -28,7 +28,7 @@ mod accept;
 mod basins;
 pub mod brute;
 mod dams;
-pub(in crate::method) mod door;
+pub(in crate::method) mod entry;
 mod merge;
 pub(super) mod neighbourhood;
 #[cfg(test)]

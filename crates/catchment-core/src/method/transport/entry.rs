@@ -6,7 +6,9 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::descent;
-use crate::method::door::{Cost, DecideError, DecisionMethod, Doubts, Info, MethodOutput, grid_of};
+use crate::method::interface::{
+    CellFractions, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of,
+};
 use crate::method::registry::{MOTIONS, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
@@ -65,7 +67,7 @@ impl DecisionMethod for TransportSettings {
     }
 }
 
-impl Doubts for ArrivalFractions {
+impl CellFractions for ArrivalFractions {
     fn fraction(&self, cell: usize) -> f64 {
         Self::fraction(self, cell)
     }

@@ -4,7 +4,7 @@
 //!                 ┌ info       name, what it does, where it belongs
 //!   Method ───────┤ settings   what changes its answer: read, changed and stored as JSON
 //!  (any of the    ├ applies_to, cost, defaults            before anything is computed
-//!   registry)     ├ decide(problem, domain) ──▶ Decided   outcomes · doubts · by-products · settings as used
+//!   registry)     ├ decide(problem, domain) ──▶ MethodOutput   outcomes · doubts · by-products · settings as used
 //!                 └ follow(problem, poses)  ──▶ ends      only methods that decide each pose by itself
 //! ```
 //!
@@ -124,7 +124,7 @@ pub trait DecisionMethod: fmt::Debug + Send + Sync {
 }
 
 /// Told the number of a pose and where it ends, from any thread and in any order, once for each.
-pub type Finished<'a> = &'a (dyn Fn(usize, End) + Sync);
+pub type PoseObserver<'a> = &'a (dyn Fn(usize, End) + Sync);
 
 /// A method that decides each pose by itself.
 pub trait PoseMethod: DecisionMethod {
@@ -161,7 +161,7 @@ pub trait PoseMethod: DecisionMethod {
         problem: &Problem,
         domain: Domain,
         exec: &Exec,
-        finished: Finished<'_>,
+        finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         let found = self.rest(problem, domain, exec)?;
         found.1.iter().enumerate().for_each(|(number, end)| finished(number, *end));
@@ -188,7 +188,7 @@ pub trait PoseMethod: DecisionMethod {
 }
 
 /// How sure a method is of the cells of a grid.
-pub trait Doubts: fmt::Debug + Send + Sync {
+pub trait CellFractions: fmt::Debug + Send + Sync {
     /// Share of the cell that is accepted, by the method's own estimate, in [0, 1]; accepted above ½.
     fn fraction(&self, cell: usize) -> f64;
     /// Whether the method cannot tell what becomes of the cell.
@@ -203,7 +203,7 @@ pub struct MethodOutput {
     /// Outcomes over the domain.
     pub acceptance: Acceptance,
     /// How sure it is of them, where it can say.
-    pub doubts: Option<Box<dyn Doubts>>,
+    pub doubts: Option<Box<dyn CellFractions>>,
     /// What else it knows now.
     pub by_products: ByProducts,
     /// Its settings as they were used, everything filled in.

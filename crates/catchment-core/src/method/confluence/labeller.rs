@@ -6,8 +6,8 @@
 //!   then    thin jams mended, some of what joined others followed to its end
 //! ```
 
-use super::around::Around;
 use super::label::Label;
+use super::neighbours::Neighbours;
 use super::{ConfluenceSettings, Joined, STAGE};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
@@ -19,7 +19,7 @@ use crate::method::descent::Follower;
 use rayon::prelude::*;
 
 /// What labels the kept cells.
-pub(super) struct River<'a> {
+pub(super) struct Labeller<'a> {
     pub(super) pair: &'a Pair,
     /// Its gradients are velocities.
     pub(super) falls: &'a DescentDirections,
@@ -42,7 +42,7 @@ const TRIED: f64 = 1000.0;
 const LEAST_TRIED: f64 = 200.0;
 const SEED: u64 = 0xc0f1;
 
-impl River<'_> {
+impl Labeller<'_> {
     /// Labels all kept cells.
     pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, Joined), Cancelled> {
         let DescentDirections { grid, fold, heights, below } = self.falls;
@@ -57,7 +57,7 @@ impl River<'_> {
         for cell in &order {
             labels[*cell as usize] = Label::UNKNOWN;
         }
-        let around = Around::new(grid, fold, self.settings.known);
+        let around = Neighbours::new(grid, fold, self.settings.known);
         // Motion leaves a grid that does not have all free errors as axes: its cells say nothing of each other then.
         let joins = self.pair.alignment.free.iter().all(|dof| grid.axis(dof).is_some());
         let mut told = Joined { cells: order.len(), ..Joined::default() };
@@ -127,7 +127,7 @@ impl River<'_> {
         &self,
         cell: u32,
         follower: &mut Follower<'_>,
-        around: &Around<'_>,
+        around: &Neighbours<'_>,
         labels: &[Label],
     ) -> (Label, bool) {
         let centre = self.falls.grid.pose(self.whole(cell));

@@ -12,7 +12,7 @@ use std::array;
 
 /// Where motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Fate {
+pub(super) enum MotionEnd {
     /// At rest, in contact.
     Rest(PolytopePoint),
     /// Contact lost.
@@ -25,13 +25,13 @@ pub(super) enum Fate {
 const ROUND: usize = 64;
 
 /// Where the point of first contact at `q` ends.
-pub(super) fn fate(cells: &Cells, q: &PolytopePoint) -> Fate {
+pub(super) fn fate(cells: &Cells, q: &PolytopePoint) -> MotionEnd {
     let top = cells.holding(q).into_iter().map(|k| cells.all[k].height.at(q)).max_by(f64::total_cmp);
-    top.map_or(Fate::Lost, |height| fate_from(cells, q, height))
+    top.map_or(MotionEnd::Lost, |height| fate_from(cells, q, height))
 }
 
 /// Where motion ends that is at `q` at a height: below first contact, beside a wall.
-pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> Fate {
+pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> MotionEnd {
     let (mut q, mut height) = (*start, height);
     let at = |k: usize, q: &PolytopePoint| cells.all[k].height.at(q);
     let mut falling_from = f64::INFINITY;
@@ -52,7 +52,7 @@ pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> Fa
                 let beyond = cells.holding(&next);
                 if beyond.iter().all(|other| *other == k) {
                     let border = cells.on_border(&cells.all[k].region.facets()[facet]);
-                    return if border { Fate::Left } else { Fate::Lost };
+                    return if border { MotionEnd::Left } else { MotionEnd::Lost };
                 }
                 q = next;
             }
@@ -70,7 +70,7 @@ pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> Fa
             },
         }
     }
-    Fate::Rest(q)
+    MotionEnd::Rest(q)
 }
 
 /// The cell whose motion leads into it from `q`: the steepest.
@@ -149,8 +149,8 @@ pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<PolytopePoin
 }
 
 /// A point that nothing leads down from: at rest, unless it is where the contact space ends.
-fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> Fate {
-    let mut fate = Fate::Rest(*q);
+fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> MotionEnd {
+    let mut fate = MotionEnd::Rest(*q);
     for &k in under {
         let cell = &cells.all[k];
         for gate in &cell.gates {
@@ -159,8 +159,8 @@ fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> Fate {
                 continue;
             }
             match gate.to {
-                Beyond::Nothing => return Fate::Lost,
-                Beyond::Border => fate = Fate::Left,
+                Beyond::Nothing => return MotionEnd::Lost,
+                Beyond::Border => fate = MotionEnd::Left,
                 _ => {}
             }
         }

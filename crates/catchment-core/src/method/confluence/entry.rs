@@ -7,7 +7,7 @@ use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::cost::{DESCENT_SECONDS, affordable, affordable_cells};
 use crate::method::descent;
-use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
+use crate::method::interface::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
 use crate::method::registry::{Method, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};

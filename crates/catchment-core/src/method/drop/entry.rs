@@ -8,7 +8,9 @@ use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::cost::POSE_BYTES;
 use crate::method::descent::End;
-use crate::method::door::{Cost, DecideError, DecisionMethod, Finished, Info, MethodOutput, PoseMethod};
+use crate::method::interface::{
+    Cost, DecideError, DecisionMethod, Info, MethodOutput, PoseMethod, PoseObserver,
+};
 use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
@@ -73,7 +75,7 @@ impl PoseMethod for DropSettings {
         problem: &Problem,
         domain: Domain,
         exec: &Exec,
-        finished: Finished<'_>,
+        finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(run_told(problem.pair(), domain, self, exec, finished)?)
     }

@@ -13,7 +13,7 @@ use crate::landscape::{Fold, Grid};
 use crate::pose::{Dof, PoseError};
 
 /// Looks up the centres around poses.
-pub(super) struct Around<'a> {
+pub(super) struct Neighbours<'a> {
     fold: &'a Fold,
     axes: Vec<Lookup>,
     /// How many of the axes, the first ones, are lateral.
@@ -47,7 +47,7 @@ pub(super) type Base = [i32; 5];
 /// Of so few centres all must be known: with three axes and less, motions are cheaper than errors.
 const FEW: u32 = 8;
 
-impl<'a> Around<'a> {
+impl<'a> Neighbours<'a> {
     /// For the cells of a folded grid; at least `share` of the centres around a pose must be known.
     pub(super) fn new(grid: &Grid, fold: &'a Fold, share: f64) -> Self {
         let mut next = 1;
@@ -141,7 +141,7 @@ mod tests {
     fn centres_agree_where_all_are_alike() {
         let grid = flat(4);
         let fold = Fold::new(&grid, &[]).unwrap();
-        let around = Around::new(&grid, &fold, 0.75);
+        let around = Neighbours::new(&grid, &fold, 0.75);
         let mut labels = vec![Label::own(Aligned); 16];
         let between = |x: f64, y: f64| {
             let at = |dof: Dof, number: f64| {
@@ -173,7 +173,7 @@ mod tests {
     fn of_many_centres_some_may_be_unknown() {
         let grid = Grid::over(&Alignment::new(DofSet::ALL, Mount::X), |_| 2);
         let fold = Fold::new(&grid, &[]).unwrap();
-        let around = Around::new(&grid, &fold, 0.75);
+        let around = Neighbours::new(&grid, &fold, 0.75);
         let middle = around.base(&PoseError::default());
         let outcomes = |unknown: usize| {
             let mut labels = vec![Label::own(Aligned); 32];

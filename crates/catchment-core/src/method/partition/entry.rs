@@ -6,7 +6,9 @@ use crate::contact::Pair;
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Resolution};
-use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable};
+use crate::method::interface::{
+    ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable,
+};
 use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};

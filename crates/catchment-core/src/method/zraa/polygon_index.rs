@@ -5,9 +5,9 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 /// The bounding boxes of polygons, each with its number, in a tree.
-pub(super) struct Places(RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>);
+pub(super) struct PolygonIndex(RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>);
 
-impl Places {
+impl PolygonIndex {
     /// Of polygons; those whose boxes are less than `margin` apart count as overlapping.
     pub(super) fn new<'a>(polygons: impl Iterator<Item = &'a [DVec2]>, margin: f64) -> Self {
         let boxed = |(number, polygon)| {

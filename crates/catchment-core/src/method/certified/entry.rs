@@ -7,7 +7,7 @@ use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::descent;
-use crate::method::door::{
+use crate::method::interface::{
     ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable, grid_of,
 };
 use crate::method::registry::{Method, RegistryEntry};

@@ -6,7 +6,9 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells, motions_in};
-use crate::method::door::{Cost, DecideError, DecisionMethod, Finished, Info, MethodOutput, PoseMethod};
+use crate::method::interface::{
+    Cost, DecideError, DecisionMethod, Info, MethodOutput, PoseMethod, PoseObserver,
+};
 use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
@@ -90,7 +92,7 @@ impl PoseMethod for DescentSettings {
         problem: &Problem,
         domain: Domain,
         exec: &Exec,
-        finished: Finished<'_>,
+        finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(rests_told(problem.pair(), domain, self, exec, finished)?)
     }

@@ -37,9 +37,9 @@ const MARGIN: f64 = 1e-4;
 const SEED: u64 = 1;
 
 /// What became of the motions.
-pub(super) struct Judge(Vec<(DVec2, bool)>);
+pub(super) struct Oracle(Vec<(DVec2, bool)>);
 
-impl Judge {
+impl Oracle {
     /// Follows the motions of a pair without rotation.
     pub(super) fn of(pair: &Pair, exec: &Exec) -> Result<Self, Cancelled> {
         let pair = pair.with_free(DofSet::EMPTY.with(Dof::X).with(Dof::Y));

@@ -6,7 +6,9 @@ use crate::contact::Pair;
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::door::{Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable, grid_of};
+use crate::method::interface::{
+    Cost, DecideError, DecisionMethod, Info, MethodOutput, NotApplicable, grid_of,
+};
 use crate::method::registry::RegistryEntry;
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};

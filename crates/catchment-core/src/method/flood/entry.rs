@@ -5,7 +5,7 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
-use crate::method::door::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
+use crate::method::interface::{ByProducts, Cost, DecideError, DecisionMethod, Info, MethodOutput, grid_of};
 use crate::method::registry::{Method, RegistryEntry};
 use crate::problem::Problem;
 use serde_json::{Value, json};
