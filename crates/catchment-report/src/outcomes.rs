@@ -10,7 +10,7 @@ use catchment_core::method::descent::End;
 use catchment_core::pose::PoseError;
 use catchment_core::poses::{OffsetsAt, PoseTable};
 use catchment_core::problem::Problem;
-use catchment_core::run::{EndContact, EndContacts, Followed};
+use catchment_core::run::{EndContact, EndContacts, FollowedPoses};
 use catchment_study::friction::MayStick;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -195,10 +195,10 @@ impl<'a> OutcomesReport<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &'a Method,
-        followed: &'a Followed,
+        followed: &'a FollowedPoses,
         doubts: Option<&'a MayStick<'a>>,
     ) -> Self {
-        let Followed { acceptance, ends, finished } = followed;
+        let FollowedPoses { acceptance, ends, finished } = followed;
         let objections = problem.objections();
         let notes = objections.iter().map(WarningReport::note);
         let warnings = notes.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();

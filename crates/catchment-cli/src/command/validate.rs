@@ -13,7 +13,7 @@ use catchment::design::Diagnostics;
 use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::PoseError;
-use catchment::poses::TriedTable;
+use catchment::poses::RobotTrialTable;
 use catchment::report::schema::Timing;
 use catchment::report::{ValidationReport, figure};
 use catchment::study::plan::panels;
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
         seed: args.seed,
     };
     let source = read_table(&args.plan)?;
-    let table = TriedTable::parse(&source.text, problem.design(), args.offsets_at.into())
+    let table = RobotTrialTable::parse(&source.text, problem.design(), args.offsets_at.into())
         .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
     let validation = judge(&problem, &table.rows, &settings, &running.exec)?;
     let validation = Validation { offsets_at: table.offsets_at, ..validation };

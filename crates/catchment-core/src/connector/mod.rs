@@ -331,7 +331,7 @@ impl Connector {
     }
 
     /// Moves both face centres to the origin and mounts the moving half.
-    fn placed(drawn: &family::Drawn, mount: Mount) -> Self {
+    fn placed(drawn: &family::DrawnHalves, mount: Mount) -> Self {
         let face = DVec3::new(0.0, 0.0, drawn.face_height);
         Self::from_halves(drawn.fixed.mapped(|p| p - face), drawn.moving.mapped(|p| mount.apply(p - face)))
     }

@@ -10,14 +10,14 @@
 //! every defect and stores only corners and triangles.
 
 use super::mesh::{self, MeshProblem, Triangle, cut};
-use super::source::{FileBytes, Held};
+use super::source::{FileBytes, FileContent};
 use crate::budget::Budget;
 use crate::design::MeshPreparation;
 use glam::DVec3;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
-    parse(&file.bytes, treatment).map(Held::of_triangles)
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<FileContent, Vec<MeshProblem>> {
+    parse(&file.bytes, treatment).map(FileContent::of_triangles)
 }
 
 fn parse(bytes: &[u8], treatment: MeshPreparation) -> Result<Vec<Triangle>, Vec<MeshProblem>> {

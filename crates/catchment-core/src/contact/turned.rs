@@ -5,7 +5,7 @@ use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
-use super::search::{Asked, Carried, Gaps, Lists, Number, Passing, Touching, Trees};
+use super::search::{Carried, Gaps, HeightQuery, Lists, Number, Passing, Touching, Trees};
 use super::{Contact, Pair};
 use crate::pose::CorPose;
 use crate::tolerance;
@@ -109,12 +109,17 @@ impl<'a> Turned<'a> {
     ) -> (Option<f64>, bool) {
         if let Some(trees) = self.trees {
             // As a rule nothing is above the ceiling, and the whole is searched faster than a part.
-            let mut carried = self.carried(trees, lateral, Asked { floor: expected, ..Asked::WHOLE });
+            let mut carried =
+                self.carried(trees, lateral, HeightQuery { floor: expected, ..HeightQuery::WHOLE });
             if carried.height().is_none_or(|height| height < expected) {
-                carried = self.carried(trees, lateral, Asked::WHOLE);
+                carried = self.carried(trees, lateral, HeightQuery::WHOLE);
             }
             if carried.height().is_some_and(|height| height > ceiling) {
-                carried = self.carried(trees, lateral, Asked { ceiling, covered: true, ..Asked::WHOLE });
+                carried = self.carried(
+                    trees,
+                    lateral,
+                    HeightQuery { ceiling, covered: true, ..HeightQuery::WHOLE },
+                );
             }
             return (carried.height(), carried.covered);
         }
@@ -140,9 +145,9 @@ impl<'a> Turned<'a> {
     /// Whether a half lowered from far above is stopped above `level`.
     pub(super) fn is_stopped_above(&mut self, lateral: DVec2, level: f64) -> bool {
         let height = match self.trees {
-            Some(trees) => {
-                self.carried(trees, lateral, Asked { enough: level, floor: level, ..Asked::WHOLE }).height()
-            }
+            Some(trees) => self
+                .carried(trees, lateral, HeightQuery { enough: level, floor: level, ..HeightQuery::WHOLE })
+                .height(),
             None => self.height_below(lateral, f64::INFINITY).0,
         };
         height.is_some_and(|height| height > level)
@@ -150,11 +155,11 @@ impl<'a> Turned<'a> {
 
     /// What carries a half lowered from far above, by the trees.
     pub(super) fn carried_by(&mut self, lateral: DVec2) -> Option<(Element, Number, f64)> {
-        self.trees.and_then(|trees| self.carried(trees, lateral, Asked::WHOLE).by)
+        self.trees.and_then(|trees| self.carried(trees, lateral, HeightQuery::WHOLE).by)
     }
 
     /// By what supports: what does only within a slack is above the other half, and carries nothing.
-    fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: Asked) -> Carried {
+    fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: HeightQuery) -> Carried {
         let counts = Counts { slack: FLUSH, lowest: VERTICAL };
         let carrier = &mut self.carriers[usize::from(asked.ceiling.is_finite())];
         let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, *carrier);

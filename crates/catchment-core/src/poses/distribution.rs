@@ -1,7 +1,7 @@
 //! Distributions of pose errors.
 
 use super::terms::terms;
-use super::{Fault, Found};
+use super::{PoseDefect, PoseDiagnostics};
 use crate::design::Diagnostics;
 use crate::design::{Design, Quantity};
 use crate::pose::{Dof, PoseError};
@@ -69,7 +69,7 @@ fn sizes(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
 /// # Errors
 /// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
 pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diagnostics> {
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     let (written, spans) = terms(text, &mut found);
     let mut values = [None; 5];
     for dof in Dof::ALL {
@@ -84,17 +84,17 @@ pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diag
 }
 
 /// A size of an error, in D or radians.
-pub(super) fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
+pub(super) fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, PoseDefect> {
     let name = dof.name();
     if !design.alignment.free.contains(dof) {
         let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
         let help = format!("its free errors are {}", free.join(", "));
-        return Err(Fault::new(format!("{name}: this design locks it"), help));
+        return Err(PoseDefect::new(format!("{name}: this design locks it"), help));
     }
     let size = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
-    let size = size.map_err(|c| Fault { message: format!("{name}: {c}"), help: c.help() })?;
+    let size = size.map_err(|c| PoseDefect { message: format!("{name}: {c}"), help: c.help() })?;
     if size < 0.0 {
-        return Err(Fault { message: format!("{name}: a size cannot be negative"), help: None });
+        return Err(PoseDefect { message: format!("{name}: a size cannot be negative"), help: None });
     }
     Ok(size)
 }

@@ -18,7 +18,7 @@
 //!
 //! Names with control characters, or with invisible characters (a byte order mark), are always rejected.
 
-use super::{Fault, is_hidden, shortened};
+use super::{PoseDefect, is_hidden, shortened};
 use crate::design::{Design, LengthUnit, QuantityUnit, nearest};
 use crate::pose::Dof;
 use crate::suggest::{as_it_looks, odd};
@@ -49,20 +49,20 @@ const ADDED: [&str; 3] = ["outcome", "final_height", "contacts"];
 const LONGEST_NAME: usize = 200;
 
 /// The error and the unit that a column holds; `None` for one that is carried through.
-pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, Fault> {
+pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, PoseDefect> {
     if name.contains(is_hidden) {
         let message = format!("`{}` has a character that does not show", shortened(name));
-        return Err(Fault::new(
+        return Err(PoseDefect::new(
             message,
             "type the name anew; line breaks and byte order marks do not belong here",
         ));
     }
     if name.len() > LONGEST_NAME {
         let message = format!("`{}…` is a name of {} bytes", shortened(name), name.len());
-        return Err(Fault::new(message, format!("the name of a column has at most {LONGEST_NAME}")));
+        return Err(PoseDefect::new(message, format!("the name of a column has at most {LONGEST_NAME}")));
     }
     if ADDED.contains(&name) || name.strip_prefix("final_").is_some_and(|rest| split(rest).is_some()) {
-        return Err(Fault::new(format!("`{name}` is a column that the answer adds"), "rename it"));
+        return Err(PoseDefect::new(format!("`{name}` is a column that the answer adds"), "rename it"));
     }
     let Some((dof, symbol)) = split(name) else {
         let looks = as_it_looks(name);
@@ -72,7 +72,7 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Quantit
         });
         return meant.map_or(Ok(None), |meant| {
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
-            Err(Fault::new(format!("`{}` is no pose error{}", shortened(name), odd(name)), help))
+            Err(PoseDefect::new(format!("`{}` is no pose error{}", shortened(name), odd(name)), help))
         });
     };
     let base = dof.name();
@@ -89,19 +89,20 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Quantit
             let help = format!(
                 "name the column {base} and give it in D, or give the design a unit (connector.unit)"
             );
-            Err(Fault::new(format!("{name}: the design has no unit of length"), help))
+            Err(PoseDefect::new(format!("{name}: the design has no unit of length"), help))
         }
         Some(_) if dof.is_rotation() => {
-            Err(Fault::new(format!("{name}: {base} is an angle"), format!("{base}_deg or {base}_rad")))
+            Err(PoseDefect::new(format!("{name}: {base} is an angle"), format!("{base}_deg or {base}_rad")))
         }
-        Some(_) => {
-            Err(Fault::new(format!("{name}: {base} is a length"), format!("{base} (in D), {base}_mm, …")))
-        }
+        Some(_) => Err(PoseDefect::new(
+            format!("{name}: {base} is a length"),
+            format!("{base} (in D), {base}_mm, …"),
+        )),
         None => {
             let units = UNITS.map(|(symbol, _)| symbol);
             let known = format!("units are {}", units.join(", "));
             let help = nearest(symbol, units).map_or(known, |meant| format!("did you mean {base}_{meant}?"));
-            Err(Fault::new(format!("`{}`: unknown unit{}", shortened(name), odd(symbol)), help))
+            Err(PoseDefect::new(format!("`{}`: unknown unit{}", shortened(name), odd(symbol)), help))
         }
     }
 }
@@ -199,7 +200,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn read(name: &str) -> Result<Option<(Dof, QuantityUnit)>, Fault> {
+    fn read(name: &str) -> Result<Option<(Dof, QuantityUnit)>, PoseDefect> {
         let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\n";
         column(name, &crate::design::read(text, Path::new("")).unwrap().design)
     }

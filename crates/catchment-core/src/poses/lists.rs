@@ -8,7 +8,7 @@
 //! ```
 
 use super::terms::terms;
-use super::{Fault, Found, shortened};
+use super::{PoseDefect, PoseDiagnostics, shortened};
 use crate::design::{Design, DesignDefect, Diagnostics, Quantity, QuantityUnit};
 use crate::pose::Dof;
 
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// Everything that is wrong with the text, each with its bytes.
 pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], Diagnostics> {
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     let (written, spans) = terms(text, &mut found);
     let mut counts = [None; 5];
     for dof in Dof::ALL {
@@ -33,12 +33,15 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
         let name = dof.name();
         if !design.alignment.free.contains(dof) {
             let help = format!("leave {name} out, or free it in [alignment] of the design");
-            found.push(Fault::new(format!("{name} is locked, so it has one place"), help), span);
+            found.push(PoseDefect::new(format!("{name} is locked, so it has one place"), help), span);
         } else if unit != QuantityUnit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value)
         {
             let help = "write how many points, such as 5: 2 or more";
             found.push(
-                Fault::new(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help),
+                PoseDefect::new(
+                    format!("{name}: `{}` is no number of points", Quantity { value, unit }),
+                    help,
+                ),
                 span,
             );
         } else {
@@ -71,52 +74,52 @@ pub fn parse_angles(text: &str) -> Result<Vec<f64>, Diagnostics> {
 /// # Errors
 /// What is wrong with the text.
 pub fn parse_length(text: &str, design: &Design) -> Result<f64, Diagnostics> {
-    let told = |c: DesignDefect| one(text, Fault { message: c.to_string(), help: c.help() });
+    let told = |c: DesignDefect| one(text, PoseDefect { message: c.to_string(), help: c.help() });
     let quantity: Quantity = text.parse().map_err(told)?;
     quantity.length_d(&design.scale()).map_err(told)
 }
 
-fn one(text: &str, fault: Fault) -> Diagnostics {
-    let mut found = Found::default();
+fn one(text: &str, fault: PoseDefect) -> Diagnostics {
+    let mut found = PoseDiagnostics::default();
     found.push(fault, || Some(0..text.len()));
     Diagnostics { source: None, list: found.list, omitted: 0 }
 }
 
-fn angles(text: &str) -> Result<Vec<f64>, Fault> {
+fn angles(text: &str) -> Result<Vec<f64>, PoseDefect> {
     const FORM: &str =
         "write angles such as \"0..45:2.25 deg\" or \"0,20 deg\"; without a unit they are radians";
     let text = text.trim();
     let numbers = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°');
     let symbol = &text[numbers.len()..];
-    let read = |part: &str| -> Result<f64, Fault> {
+    let read = |part: &str| -> Result<f64, PoseDefect> {
         let quantity: Quantity = format!("{} {symbol}", part.trim())
             .parse()
-            .map_err(|c: DesignDefect| Fault { message: c.to_string(), help: Some(FORM.to_owned()) })?;
+            .map_err(|c: DesignDefect| PoseDefect { message: c.to_string(), help: Some(FORM.to_owned()) })?;
         // An angle like those of any pose: within half a turn.
-        quantity.angle_rad().map_err(|c| Fault { message: c.to_string(), help: c.help() })
+        quantity.angle_rad().map_err(|c| PoseDefect { message: c.to_string(), help: c.help() })
     };
-    let within = |angle: f64| -> Result<f64, Fault> {
+    let within = |angle: f64| -> Result<f64, PoseDefect> {
         if angle.abs() <= std::f64::consts::PI {
             Ok(angle)
         } else {
-            Err(Fault::new(format!("`{}` leaves half a turn", shortened(text)), FORM))
+            Err(PoseDefect::new(format!("`{}` leaves half a turn", shortened(text)), FORM))
         }
     };
     let Some((from, rest)) = numbers.split_once("..") else {
-        let list: Result<Vec<f64>, Fault> = numbers.split(',').map(|part| within(read(part)?)).collect();
+        let list: Result<Vec<f64>, PoseDefect> = numbers.split(',').map(|part| within(read(part)?)).collect();
         return list;
     };
     let Some((to, step)) = rest.split_once(':') else {
-        return Err(Fault::new(format!("`{}` has no step", shortened(text)), FORM));
+        return Err(PoseDefect::new(format!("`{}` has no step", shortened(text)), FORM));
     };
     let (from, to, step) = (within(read(from)?)?, within(read(to)?)?, read(step)?);
     let steps = (to - from) / step;
     if !(step > 0.0 && steps >= 0.0) {
-        return Err(Fault::new(format!("`{}` goes nowhere", shortened(text)), FORM));
+        return Err(PoseDefect::new(format!("`{}` goes nowhere", shortened(text)), FORM));
     }
     if steps >= MOST_ANGLES as f64 {
         let help = format!("at most {MOST_ANGLES}");
-        return Err(Fault::new(format!("`{}` has too many steps", shortened(text)), help));
+        return Err(PoseDefect::new(format!("`{}` has too many steps", shortened(text)), help));
     }
     let count = (steps + ROUNDING).floor() as usize;
     // The end is the end, not its neighbour in double precision.

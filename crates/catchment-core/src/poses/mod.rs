@@ -50,7 +50,7 @@ pub use rows::check_rows;
 pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};
-pub use tried::{Observed, Tried, TriedTable};
+pub use tried::{ObservedOutcome, RobotTrial, RobotTrialTable};
 
 use crate::design::{Diagnostic, Diagnostics};
 use std::ops::Range;
@@ -60,12 +60,12 @@ const MOST_OBJECTIONS: usize = 20;
 
 /// What is wrong, before it is known where.
 #[derive(Debug, Clone, PartialEq)]
-struct Fault {
+struct PoseDefect {
     message: String,
     help: Option<String>,
 }
 
-impl Fault {
+impl PoseDefect {
     fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self { message: message.into(), help: Some(help.into()) }
     }
@@ -73,16 +73,16 @@ impl Fault {
 
 /// Objections as they are found, of which only the first are kept.
 #[derive(Debug, Default)]
-struct Found {
+struct PoseDiagnostics {
     list: Vec<Diagnostic>,
     omitted: usize,
 }
 
-impl Found {
+impl PoseDiagnostics {
     /// Adds one; `span` is asked for only if it is kept.
-    fn push(&mut self, fault: Fault, span: impl FnOnce() -> Option<Range<usize>>) {
+    fn push(&mut self, fault: PoseDefect, span: impl FnOnce() -> Option<Range<usize>>) {
         if self.list.len() < MOST_OBJECTIONS {
-            let Fault { message, help } = fault;
+            let PoseDefect { message, help } = fault;
             self.list.push(Diagnostic { message, help, span: span() });
         } else {
             self.omitted += 1;

@@ -1,7 +1,7 @@
 //! Pose errors as rows of numbers, as other programs hold them in memory.
 
 use super::written::resolve;
-use super::{Fault, Found, OffsetsAt};
+use super::{OffsetsAt, PoseDefect, PoseDiagnostics};
 use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
 
 /// Refuses rows that cannot be tried, as a table of them would be: numbers that are none, out of range, or of errors that the design locks.
@@ -10,17 +10,18 @@ use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
 /// # Errors
 /// The first rows that are wrong, each by its number from 0, and how many more are.
 pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Diagnostics> {
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     for (number, row) in rows.iter().enumerate() {
         if row.iter().any(|value| !value.is_finite()) {
-            let fault = Fault::new(format!("row {number} holds a value that is no number"), "leave it out");
+            let fault =
+                PoseDefect::new(format!("row {number} holds a value that is no number"), "leave it out");
             found.push(fault, || None);
             continue;
         }
         let written = row.map(|value| Some(Quantity { value, unit: QuantityUnit::Bare }));
         if let Err(faults) = resolve(&written, OffsetsAt::Face, design) {
-            for (_, Fault { message, help }) in faults {
-                found.push(Fault { message: format!("row {number}: {message}"), help }, || None);
+            for (_, PoseDefect { message, help }) in faults {
+                found.push(PoseDefect { message: format!("row {number}: {message}"), help }, || None);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::fields::{records, spans};
 use super::written::{Written, from_d, resolve};
-use super::{Fault, Found, OffsetsAt, header, shortened};
+use super::{OffsetsAt, PoseDefect, PoseDiagnostics, header, shortened};
 use crate::design::Diagnostics;
 use crate::design::{Design, Quantity, QuantityUnit};
 use crate::pose::{Dof, PoseError};
@@ -55,14 +55,14 @@ impl<'a> PoseTable<'a> {
         at: OffsetsAt,
         known: &[&str],
     ) -> Result<Self, Diagnostics> {
-        let mut found = Found::default();
+        let mut found = PoseDiagnostics::default();
         let mut rows = records(text);
         let Some((start, names)) = rows.next() else {
             return Err(empty("the table is empty"));
         };
         let width = names.len();
         if width > MOST_COLUMNS {
-            let fault = Fault::new(
+            let fault = PoseDefect::new(
                 format!("{width} columns"),
                 format!("a table has at most {MOST_COLUMNS}; is it one of poses?"),
             );
@@ -70,7 +70,7 @@ impl<'a> PoseTable<'a> {
             return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
         }
         if width == 1 && names[0].contains([';', '\t']) {
-            let fault = Fault::new("one column alone", "separate the columns with commas");
+            let fault = PoseDefect::new("one column alone", "separate the columns with commas");
             found.push(fault, || spans(text, start).into_iter().next());
             return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
         }
@@ -81,9 +81,9 @@ impl<'a> PoseTable<'a> {
             if record.len() != width {
                 let message = format!("{} values under {width} column names", record.len());
                 let help = "every row has as many values as the header has names";
-                found.push(Fault::new(message, help), || whole(&spans(text, start)));
+                found.push(PoseDefect::new(message, help), || whole(&spans(text, start)));
             } else if errors.len() == MOST_POSES {
-                let fault = Fault::new(format!("more than {MOST_POSES} poses"), "split the table");
+                let fault = PoseDefect::new(format!("more than {MOST_POSES} poses"), "split the table");
                 found.push(fault, || spans(text, start).into_iter().next());
                 break;
             } else {
@@ -169,8 +169,8 @@ impl<'a> PoseTable<'a> {
 }
 
 fn empty(message: &str) -> Diagnostics {
-    let mut found = Found::default();
-    found.push(Fault::new(message, "write a header such as x,pitch_deg and one row per pose"), || None);
+    let mut found = PoseDiagnostics::default();
+    found.push(PoseDefect::new(message, "write a header such as x,pitch_deg and one row per pose"), || None);
     Diagnostics { source: None, list: found.list, omitted: 0 }
 }
 
@@ -185,7 +185,7 @@ fn columns(
     spans: &[Range<usize>],
     design: &Design,
     known: &[&str],
-    found: &mut Found,
+    found: &mut PoseDiagnostics,
 ) -> Columns {
     let mut columns = Columns::default();
     let mut wrong = false;
@@ -199,7 +199,7 @@ fn columns(
                     continue;
                 };
                 let message = format!("a second column for {}, after {}", dof.name(), first.name);
-                Fault::new(message, "keep one of them")
+                PoseDefect::new(message, "keep one of them")
             }
             Err(fault) => fault,
         };
@@ -209,7 +209,7 @@ fn columns(
     if columns.iter().all(Option::is_none) && !wrong {
         let help = "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
                     x_mm and pitch_deg";
-        found.push(Fault::new("no column is a pose error", help), || whole(spans));
+        found.push(PoseDefect::new("no column is a pose error", help), || whole(spans));
     }
     columns
 }
@@ -220,7 +220,7 @@ fn row(
     columns: &Columns,
     at: OffsetsAt,
     design: &Design,
-) -> Result<PoseError, Vec<(Dof, Fault, bool)>> {
+) -> Result<PoseError, Vec<(Dof, PoseDefect, bool)>> {
     let mut written = Written::default();
     let mut faults = Vec::new();
     for (dof, column) in Dof::ALL.into_iter().zip(columns) {
@@ -245,21 +245,21 @@ fn row(
     }
 }
 
-fn number(text: &str) -> Result<f64, Fault> {
+fn number(text: &str) -> Result<f64, PoseDefect> {
     if text.is_empty() {
-        return Err(Fault::new("a value is missing", "write 0 for an error that does not occur"));
+        return Err(PoseDefect::new("a value is missing", "write 0 for an error that does not occur"));
     }
     let value: f64 = text.parse().map_err(|_| {
         let help = number_help(text).unwrap_or_else(|| {
             "a number with a decimal point; its unit belongs into the name of the column, as in x_mm"
                 .to_owned()
         });
-        Fault::new(format!("`{}` is no number", shortened(text)), help)
+        PoseDefect::new(format!("`{}` is no number", shortened(text)), help)
     })?;
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(Fault::new(format!("`{}` is not finite", shortened(text)), "leave the row out"))
+        Err(PoseDefect::new(format!("`{}` is not finite", shortened(text)), "leave the row out"))
     }
 }
 

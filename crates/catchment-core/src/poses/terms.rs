@@ -1,7 +1,7 @@
 //! Errors on a line: `x=0.2,pitch=10 deg`.
 
 use super::written::{Written, resolve};
-use super::{Fault, Found, OffsetsAt, shortened};
+use super::{OffsetsAt, PoseDefect, PoseDiagnostics, shortened};
 use crate::design::Diagnostics;
 use crate::design::{Design, DesignDefect, Quantity, nearest};
 use crate::pose::{Dof, PoseError};
@@ -25,7 +25,7 @@ use std::ops::Range;
 /// # }
 /// ```
 pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     let (written, spans) = terms(text, &mut found);
     let error = resolve(&written, OffsetsAt::Face, design).unwrap_or_else(|faults| {
         for (dof, fault) in faults {
@@ -38,7 +38,7 @@ pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics>
 }
 
 /// What each error is said to be, and the bytes that say it. An error that is named twice is what it is said to be first.
-pub(super) fn terms(text: &str, found: &mut Found) -> (Written, [Range<usize>; 5]) {
+pub(super) fn terms(text: &str, found: &mut PoseDiagnostics) -> (Written, [Range<usize>; 5]) {
     let (mut written, mut spans) = (Written::default(), <[Range<usize>; 5]>::default());
     let mut start = 0;
     for part in text.split(',') {
@@ -47,7 +47,7 @@ pub(super) fn terms(text: &str, found: &mut Found) -> (Written, [Range<usize>; 5
         start += part.len() + 1;
         match term(part.trim()) {
             Ok((dof, _)) if written[dof.index()].is_some() => {
-                let fault = Fault::new(format!("{} is given twice", dof.name()), "name it once");
+                let fault = PoseDefect::new(format!("{} is given twice", dof.name()), "name it once");
                 found.push(fault, || Some(span));
             }
             Ok((dof, quantity)) => {
@@ -61,10 +61,10 @@ pub(super) fn terms(text: &str, found: &mut Found) -> (Written, [Range<usize>; 5
 }
 
 /// Reads `pitch=10 deg`.
-fn term(part: &str) -> Result<(Dof, Quantity), Fault> {
+fn term(part: &str) -> Result<(Dof, Quantity), PoseDefect> {
     const FORM: &str = "write errors such as \"x=0.2,pitch=10 deg\"";
     let Some((name, number)) = part.split_once('=') else {
-        return Err(Fault::new(format!("`{}` is no error", shortened(part)), FORM));
+        return Err(PoseDefect::new(format!("`{}` is no error", shortened(part)), FORM));
     };
     let name = name.trim();
     let Some(dof) = Dof::ALL.into_iter().find(|dof| dof.name() == name) else {
@@ -72,11 +72,11 @@ fn term(part: &str) -> Result<(Dof, Quantity), Fault> {
             || "one of x, y, roll, pitch, yaw".to_owned(),
             |meant| format!("did you mean {meant}?"),
         );
-        return Err(Fault::new(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
+        return Err(PoseDefect::new(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
     };
     let quantity = number
         .parse()
-        .map_err(|c: DesignDefect| Fault { message: format!("{name}: {c}"), help: c.help() })?;
+        .map_err(|c: DesignDefect| PoseDefect { message: format!("{name}: {c}"), help: c.help() })?;
     Ok((dof, quantity))
 }
 

@@ -10,7 +10,7 @@
 //! predictions in the table are not used: they are recomputed.
 
 use super::fields::{records, spans};
-use super::{Fault, Found, OffsetsAt, PoseTable, shortened};
+use super::{OffsetsAt, PoseDefect, PoseDiagnostics, PoseTable, shortened};
 use crate::design::{Design, Diagnostics, nearest};
 use crate::pose::PoseError;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ use std::collections::BTreeSet;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Observed {
+pub enum ObservedOutcome {
     /// It docked.
     Aligned,
     /// It docked in a pose rotated by a symmetry of the halves.
@@ -31,7 +31,7 @@ pub enum Observed {
     Missed,
 }
 
-impl Observed {
+impl ObservedOutcome {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Aligned, Self::AlignedElsewhere, Self::Jammed, Self::Missed];
 
@@ -48,7 +48,7 @@ impl Observed {
 
 /// A row: a trial, made or not.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tried {
+pub struct RobotTrial {
     /// Its number; that of the row where the table has none.
     pub trial: u64,
     /// The line it belongs to; 0 for none.
@@ -56,16 +56,16 @@ pub struct Tried {
     /// The pose error of the face centre, in D and radians.
     pub error: PoseError,
     /// What was seen; nothing where the trial was not made.
-    pub observed: Option<Observed>,
+    pub observed: Option<ObservedOutcome>,
     /// What the plan predicted, where it is known.
-    pub predicted: Option<Observed>,
+    pub predicted: Option<ObservedOutcome>,
 }
 
 /// A table of trials that was read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TriedTable {
+pub struct RobotTrialTable {
     /// The rows in their order.
-    pub rows: Vec<Tried>,
+    pub rows: Vec<RobotTrial>,
     /// The point at which offsets were measured.
     pub offsets_at: OffsetsAt,
 }
@@ -76,14 +76,14 @@ const TRIAL: &str = "trial";
 const LINE: &str = "line";
 const PREDICTED: &str = "predicted";
 
-impl TriedTable {
+impl RobotTrialTable {
     /// Reads a table whose offsets are measured `at` a point.
     ///
     /// # Errors
     /// Everything that is wrong with the text, each with its bytes: that of [`PoseTable::parse`], an error without a column, no column of outcomes,
     /// an outcome that is none, a number of a trial or line that is none, and a trial that is there twice.
     pub fn parse(text: &str, design: &Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
-        let mut found = Found::default();
+        let mut found = PoseDiagnostics::default();
         let errors = match PoseTable::parse_beside(text, design, at, &[OUTCOME]) {
             Ok(table) => {
                 head(&table, design, text, &mut found);
@@ -100,8 +100,9 @@ impl TriedTable {
         let [outcome, trial, line, predicted] = [OUTCOME, TRIAL, LINE, PREDICTED].map(place);
         if outcome.is_none() {
             let help = "write what was seen of every trial into a column `outcome`, and nothing where it was not made";
-            found
-                .push(Fault::new("no column says what was seen", help), || spans(text, top).first().cloned());
+            found.push(PoseDefect::new("no column says what was seen", help), || {
+                spans(text, top).first().cloned()
+            });
         }
         let mut rows = Vec::new();
         let mut seen: BTreeSet<u64> = BTreeSet::new();
@@ -109,14 +110,14 @@ impl TriedTable {
             if record.len() != names.len() {
                 continue;
             }
-            let mut wrong = |index: usize, fault: Fault| {
+            let mut wrong = |index: usize, fault: PoseDefect| {
                 found.push(fault, || spans(text, start).get(index).cloned());
             };
             let cell = |index: Option<usize>| index.map_or("", |index| &record[index]);
             let mut count = |index: Option<usize>, or: u64| match (index, cell(index)) {
                 (Some(_), "") | (None, _) => or,
                 (Some(index), text) => text.parse().unwrap_or_else(|_| {
-                    let fault = Fault::new(
+                    let fault = PoseDefect::new(
                         format!("`{}` is no whole number", shortened(text)),
                         format!("{} numbers rows: 1, 2, 3", &names[index]),
                     );
@@ -131,7 +132,7 @@ impl TriedTable {
             {
                 let help =
                     "keep one of them, or number them apart; a pose may be tried again under another number";
-                wrong(index, Fault::new(format!("trial {trial_number} is there twice"), help));
+                wrong(index, PoseDefect::new(format!("trial {trial_number} is there twice"), help));
             }
             let observed = read(cell(outcome)).unwrap_or_else(|fault| {
                 if let Some(index) = outcome {
@@ -139,7 +140,7 @@ impl TriedTable {
                 }
                 None
             });
-            rows.push(Tried {
+            rows.push(RobotTrial {
                 trial: trial_number,
                 line,
                 error: errors.get(number).copied().unwrap_or_default(),
@@ -153,36 +154,39 @@ impl TriedTable {
 }
 
 /// A refusal that has its reasons.
-fn refused(found: Found) -> Result<TriedTable, Diagnostics> {
+fn refused(found: PoseDiagnostics) -> Result<RobotTrialTable, Diagnostics> {
     Err(Diagnostics { source: None, list: found.list, omitted: found.omitted })
 }
 
 /// Every free error has a column.
-fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut Found) {
+fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut PoseDiagnostics) {
     for dof in design.alignment.free.iter().filter(|dof| !table.has(*dof)) {
         let name = dof.name();
         let help = format!(
             "add a column of it, 0 where it does not occur, or lock {name} in [alignment] of the design"
         );
-        found.push(Fault::new(format!("no column is {name}, which the design leaves free"), help), || {
-            let all = spans(text, records(text).next().map_or(0, |(start, _)| start));
-            Some(all.first()?.start..all.last()?.end)
-        });
+        found.push(
+            PoseDefect::new(format!("no column is {name}, which the design leaves free"), help),
+            || {
+                let all = spans(text, records(text).next().map_or(0, |(start, _)| start));
+                Some(all.first()?.start..all.last()?.end)
+            },
+        );
     }
 }
 
-fn read(text: &str) -> Result<Option<Observed>, Fault> {
+fn read(text: &str) -> Result<Option<ObservedOutcome>, PoseDefect> {
     if text.is_empty() {
         return Ok(None);
     }
-    let known = Observed::ALL.into_iter().find(|observed| observed.name() == text);
+    let known = ObservedOutcome::ALL.into_iter().find(|observed| observed.name() == text);
     known.map(Some).ok_or_else(|| {
-        let names = Observed::ALL.map(Observed::name);
+        let names = ObservedOutcome::ALL.map(ObservedOutcome::name);
         let help = nearest(text, names).map_or_else(
             || format!("one of {}, or nothing", names.join(", ")),
             |meant| format!("did you mean {meant}?"),
         );
-        Fault::new(format!("`{}` is no outcome", shortened(text)), help)
+        PoseDefect::new(format!("`{}` is no outcome", shortened(text)), help)
     })
 }
 
@@ -197,21 +201,21 @@ mod tests {
     }
 
     fn wrong(text: &str) -> Vec<(String, String)> {
-        let refusal = TriedTable::parse(text, &design(), OffsetsAt::Face).unwrap_err();
+        let refusal = RobotTrialTable::parse(text, &design(), OffsetsAt::Face).unwrap_err();
         refusal.list.into_iter().map(|o| (text[o.span.unwrap_or(0..0)].to_owned(), o.message)).collect()
     }
 
     #[test]
     fn rows_are_read_with_what_was_seen() {
         let text = "trial,line,x_mm,pitch_deg,predicted,outcome,notes\n7,2,5,0,aligned,aligned,\n3,2,10,-9,jammed,,late\n";
-        let table = TriedTable::parse(text, &design(), OffsetsAt::Face).unwrap();
+        let table = RobotTrialTable::parse(text, &design(), OffsetsAt::Face).unwrap();
         let seen: Vec<_> = table.rows.iter().map(|row| (row.trial, row.line, row.observed)).collect();
-        assert_eq!(seen, [(7, 2, Some(Observed::Aligned)), (3, 2, None)]);
-        assert_eq!(table.rows[1].predicted, Some(Observed::Jammed));
+        assert_eq!(seen, [(7, 2, Some(ObservedOutcome::Aligned)), (3, 2, None)]);
+        assert_eq!(table.rows[1].predicted, Some(ObservedOutcome::Jammed));
         assert!((table.rows[0].error.x - 0.1).abs() < 1e-15);
         // Without numbers rows are counted.
         let table =
-            TriedTable::parse("outcome,x,pitch\nmissed,1,0\n,0,0\n", &design(), OffsetsAt::Cor).unwrap();
+            RobotTrialTable::parse("outcome,x,pitch\nmissed,1,0\n,0,0\n", &design(), OffsetsAt::Cor).unwrap();
         assert_eq!((table.rows[1].trial, table.rows[1].line, table.offsets_at), (2, 0, OffsetsAt::Cor));
     }
 

@@ -1,6 +1,6 @@
 //! A pose error as written, with the checks of its units and of the design.
 
-use super::{Fault, OffsetsAt};
+use super::{OffsetsAt, PoseDefect};
 use crate::design::{Design, Quantity, QuantityUnit};
 use crate::pose::{Dof, PoseError, face_from_cor};
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ pub(super) fn resolve(
     written: &Written,
     at: OffsetsAt,
     design: &Design,
-) -> Result<PoseError, Vec<(Dof, Fault)>> {
+) -> Result<PoseError, Vec<(Dof, PoseDefect)>> {
     let alignment = &design.alignment;
     let mut faults = Vec::new();
     let mut values = [0.0; 5];
@@ -62,21 +62,21 @@ pub(super) fn resolve(
 }
 
 /// The error in D or radians, if it is one that may be tried.
-pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
+pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, PoseDefect> {
     let read = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
-    let value = read.map_err(|c| Fault { message: format!("{}: {c}", dof.name()), help: c.help() })?;
+    let value = read.map_err(|c| PoseDefect { message: format!("{}: {c}", dof.name()), help: c.help() })?;
     let (limit, help) = if dof.is_rotation() {
         (HALF_TURN, "angles lie between -pi and pi (-180 and 180 deg); a bare number is in radians")
     } else {
         (FARTHEST, "offsets lie between -100 and 100 D; a bare number is in D, the width of the connector")
     };
     if value.abs() > limit {
-        return Err(Fault::new(format!("{} = {quantity} is out of range", dof.name()), help));
+        return Err(PoseDefect::new(format!("{} = {quantity} is out of range", dof.name()), help));
     }
     Ok(value)
 }
 
-fn locked(dof: Dof, quantity: Quantity, stays: &str) -> Fault {
+fn locked(dof: Dof, quantity: Quantity, stays: &str) -> PoseDefect {
     let name = dof.name();
     let help = if dof.is_rotation() {
         format!("leave {name} out, or free it in [alignment] of the design")
@@ -85,7 +85,7 @@ fn locked(dof: Dof, quantity: Quantity, stays: &str) -> Fault {
             "leave {name} out, or write what the lock makes of it; free it in [alignment] of the design if it varies"
         )
     };
-    Fault::new(format!("{name} = {quantity}, but {name} is locked: {stays}"), help)
+    PoseDefect::new(format!("{name} = {quantity}, but {name} is locked: {stays}"), help)
 }
 
 /// What a locked offset of the face centre is, in the unit it was written in.

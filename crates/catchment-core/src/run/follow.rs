@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// What became of listed poses.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Followed {
+pub struct FollowedPoses {
     /// The outcomes of those that were finished.
     pub acceptance: Acceptance,
     /// Where each of them ended.
@@ -57,7 +57,7 @@ impl Problem {
         method: &Method,
         poses: &[PoseError],
         exec: &Exec,
-    ) -> Result<Followed, DecideError> {
+    ) -> Result<FollowedPoses, DecideError> {
         self.follow_telling(method, poses, exec, &|_, _| {})
     }
 
@@ -71,7 +71,7 @@ impl Problem {
         poses: &[PoseError],
         exec: &Exec,
         told: PoseObserver<'_>,
-    ) -> Result<Followed, DecideError> {
+    ) -> Result<FollowedPoses, DecideError> {
         let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
         let kept = Mutex::new(Vec::new());
         let keep = |number, end| {
@@ -79,7 +79,7 @@ impl Problem {
             told(number, end);
         };
         match follow.rest_told(self, Domain::Poses(poses.to_vec()), exec, &keep) {
-            Ok((acceptance, ends)) => Ok(Followed { acceptance, ends, finished: None }),
+            Ok((acceptance, ends)) => Ok(FollowedPoses { acceptance, ends, finished: None }),
             Err(DecideError::Cancelled(cancelled)) => {
                 let mut kept: Vec<(usize, End)> = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
                 if kept.is_empty() {
@@ -93,7 +93,7 @@ impl Problem {
                 let warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
                 let domain = Domain::Poses(finished.iter().map(|number| poses[*number]).collect());
                 let acceptance = Acceptance { method: method.name(), domain, outcomes, warnings };
-                Ok(Followed { acceptance, ends, finished: Some(finished) })
+                Ok(FollowedPoses { acceptance, ends, finished: Some(finished) })
             }
             Err(error) => Err(error),
         }

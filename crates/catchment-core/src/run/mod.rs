@@ -38,7 +38,7 @@ pub use stages::correct;
 
 pub use answer::{Answer, RunCorrection};
 pub use end_contact::{EndContact, EndContacts};
-pub use follow::Followed;
+pub use follow::FollowedPoses;
 pub use part::{PartAnswer, RunPart, RunPartError};
 pub use plan::{Afterwards, RunPlan};
 pub use report_schema::ReportSchema;

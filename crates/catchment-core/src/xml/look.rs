@@ -2,7 +2,7 @@
 //! change the picture.
 
 use super::style::{Declaration, Sheet};
-use super::svg::{HOLDERS, INTO_PATHS, LARGEST, NAMESPACE, NOT_DRAWN, Refusal, SHAPES};
+use super::svg::{HOLDERS, INTO_PATHS, LARGEST, NAMESPACE, NOT_DRAWN, SHAPES, UnsupportedSvg};
 use super::{Tag, XmlAttribute};
 use kurbo::{Affine, Vec2};
 use std::ops::Range;
@@ -74,14 +74,14 @@ pub(super) fn entered(
     outer: Option<&Open>,
     own: &Prefixes,
     sheet: &mut Sheet,
-) -> Result<Entered, Refusal> {
+) -> Result<Entered, UnsupportedSvg> {
     let name = tag.name();
     let is_root = tag.is_root();
     let is_shape = SHAPES.contains(&name);
     let is_holder = HOLDERS.contains(&name) && (is_root || name != "svg");
     if !own.has(tag) {
         return if is_shape || HOLDERS.contains(&name) {
-            Err(Refusal::element(tag, "of another namespace is not read", "save it as plain SVG"))
+            Err(UnsupportedSvg::element(tag, "of another namespace is not read", "save it as plain SVG"))
         } else {
             Ok(Entered::Left(false))
         };
@@ -97,7 +97,7 @@ pub(super) fn entered(
         return Ok(Entered::Left(true));
     }
     if !is_shape && !is_holder {
-        return Err(Refusal::element(tag, "is not read", INTO_PATHS));
+        return Err(UnsupportedSvg::element(tag, "is not read", INTO_PATHS));
     }
     let mut open = style.inherited(&inherited);
     if is_shape && open.is_hidden {
@@ -107,13 +107,17 @@ pub(super) fn entered(
         let what = if open.is_clear { "has an opacity of 0" } else { "has neither a fill nor a stroke" };
         let message = format!("<{name}> {what}, so that nothing shows whether it is meant");
         let help = "give it a stroke, delete it, or hide it with display=\"none\"";
-        return Err(Refusal { at: tag.head(), message, help });
+        return Err(UnsupportedSvg { at: tag.head(), message, help });
     }
     style.refuse_changes(is_shape)?;
     for condition in ["systemLanguage", "requiredExtensions", "requiredFeatures"] {
         if let Some(found) = tag.attribute(condition) {
             let message = format!("`{condition}` is not read, which draws an element for some readers only");
-            return Err(Refusal { at: found.span, message, help: "delete the attribute, or the element" });
+            return Err(UnsupportedSvg {
+                at: found.span,
+                message,
+                help: "delete the attribute, or the element",
+            });
         }
     }
     if let Some((map, at)) = style.transform()? {
@@ -121,7 +125,7 @@ pub(super) fn entered(
         open.moved = Some(at.clone());
         if !open.frame.as_coeffs().iter().all(|c| c.abs() <= LARGEST) {
             let message = "its transform moves it far too far".to_owned();
-            return Err(Refusal { at, message, help: "check the unit of the picture" });
+            return Err(UnsupportedSvg { at, message, help: "check the unit of the picture" });
         }
     }
     Ok(Entered::Open(open))
@@ -171,14 +175,14 @@ impl Style<'_, '_> {
     }
 
     /// Refuses properties that change what is drawn.
-    fn refuse_changes(&self, is_shape: bool) -> Result<(), Refusal> {
+    fn refuse_changes(&self, is_shape: bool) -> Result<(), UnsupportedSvg> {
         let refused = |name: &str, value: &str, at: Range<usize>, help| {
             let message = format!(
                 "`{name}` of <{}> is not read: `{}`",
                 self.tag.name(),
                 crate::design::shortened(value)
             );
-            Err(Refusal { at, message, help })
+            Err(UnsupportedSvg { at, message, help })
         };
         for name in ["clip-path", "mask", "filter"] {
             if let Some((value, at)) = self.value(name).filter(|(value, _)| value != "none") {
@@ -205,9 +209,9 @@ impl Style<'_, '_> {
     }
 
     /// Its transform about its origin, and where it is written.
-    fn transform(&self) -> Result<Option<(Affine, Range<usize>)>, Refusal> {
+    fn transform(&self) -> Result<Option<(Affine, Range<usize>)>, UnsupportedSvg> {
         let Some(XmlAttribute { value, span }) = self.tag.attribute("transform") else { return Ok(None) };
-        let t = Transform::from_str(&value).map_err(|error| Refusal {
+        let t = Transform::from_str(&value).map_err(|error| UnsupportedSvg {
             at: span.clone(),
             message: format!("its transform cannot be read: {error}"),
             help: "apply the transforms in the drawing program",
@@ -223,7 +227,7 @@ impl Style<'_, '_> {
                 "`transform-origin` is read as two plain numbers, not as `{}`",
                 crate::design::shortened(&origin)
             );
-            return Err(Refusal { at, message, help: "apply the transforms in the drawing program" });
+            return Err(UnsupportedSvg { at, message, help: "apply the transforms in the drawing program" });
         };
         let about = Vec2::new(*x, *y);
         Ok(Some((Affine::translate(about) * map * Affine::translate(-about), span)))

@@ -10,7 +10,7 @@
 //! shapes, and is ignored if not.
 
 use super::Tag;
-use super::svg::Refusal;
+use super::svg::UnsupportedSvg;
 use crate::budget::{Budget, Limit};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -124,7 +124,7 @@ impl Default for Sheet {
 
 impl Sheet {
     /// Adds the text of a `<style>` element that begins at a byte of the picture.
-    pub(super) fn add(&mut self, text: &str, start: usize) -> Result<(), Refusal> {
+    pub(super) fn add(&mut self, text: &str, start: usize) -> Result<(), UnsupportedSvg> {
         let text = without_comments(text);
         let mut at = 0;
         while at < text.len() {
@@ -151,7 +151,7 @@ impl Sheet {
                 continue;
             }
             for selector in head.split(',').map(str::trim) {
-                let parsed = Selector::parse(selector).ok_or_else(|| Refusal {
+                let parsed = Selector::parse(selector).ok_or_else(|| UnsupportedSvg {
                     at: span.clone(),
                     message: format!(
                         "the style of `{}` decides what is drawn, and only names, .classes and #ids are read as selectors",
@@ -159,7 +159,7 @@ impl Sheet {
                     ),
                     help: "write the style on the elements",
                 })?;
-                self.selectors.spend(1).map_err(|over| Refusal::overspent(span.clone(), over))?;
+                self.selectors.spend(1).map_err(|over| UnsupportedSvg::overspent(span.clone(), over))?;
                 self.rules.push(Rule { selector: parsed, declarations: declared.clone() });
             }
         }
@@ -169,7 +169,7 @@ impl Sheet {
     }
 
     /// The properties of an element in their order of precedence, the strongest last; without attributes of their names.
-    pub(super) fn declared(&mut self, tag: &Tag<'_>) -> Result<Vec<Declaration>, Refusal> {
+    pub(super) fn declared(&mut self, tag: &Tag<'_>) -> Result<Vec<Declaration>, UnsupportedSvg> {
         let text = |name: &str| tag.attribute(name).map(|own| own.value);
         let mut found = Vec::new();
         if !self.rules.is_empty() {
@@ -177,7 +177,7 @@ impl Sheet {
             let classes: Vec<&str> = class.split_ascii_whitespace().collect();
             let id = text("id");
             let steps = self.rules.len() as u64 * (1 + classes.len() as u64);
-            self.steps.spend(steps).map_err(|over| Refusal::overspent(tag.head(), over))?;
+            self.steps.spend(steps).map_err(|over| UnsupportedSvg::overspent(tag.head(), over))?;
             let matches = |selector: &Selector| {
                 selector.name.as_ref().is_none_or(|name| name == tag.name())
                     && selector.id.as_ref().is_none_or(|own| id.as_deref() == Some(own))
@@ -194,20 +194,20 @@ impl Sheet {
 }
 
 /// A rule of the sheet as a whole.
-fn at_rule(head: &str, body: &str, at: Range<usize>) -> Result<(), Refusal> {
+fn at_rule(head: &str, body: &str, at: Range<usize>) -> Result<(), UnsupportedSvg> {
     let imports = head.starts_with("@import");
     let of_no_consequence =
         ["@charset", "@namespace", "@font-face", "@page"].iter().any(|known| head.starts_with(known));
     let decides = PROPERTIES.iter().any(|name| body.contains(name));
     if imports || decides && !of_no_consequence {
         let message = format!("the rule `{}` of a style sheet is not read", crate::design::shortened(head));
-        return Err(Refusal { at, message, help: "write the style on the elements" });
+        return Err(UnsupportedSvg { at, message, help: "write the style on the elements" });
     }
     Ok(())
 }
 
 /// The properties of a block that count; `start` is where it begins in the picture.
-pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>, Refusal> {
+pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>, UnsupportedSvg> {
     let block = without_comments(block);
     let mut found = Vec::new();
     let mut at = 0;
@@ -222,7 +222,7 @@ pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>
         let value = value.trim().to_ascii_lowercase();
         if value.contains('!') || value.contains("var(") {
             let message = format!("`{name}: {}` is not read", crate::design::shortened(&value));
-            return Err(Refusal {
+            return Err(UnsupportedSvg {
                 at: span,
                 message,
                 help: "write a plain value without !important and var()",

@@ -70,7 +70,7 @@ pub struct SvgShape<'s> {
 
 /// Why a picture, or a part of it, is not read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refusal {
+pub struct UnsupportedSvg {
     /// Where, in bytes of the text.
     pub at: Range<usize>,
     /// What is not read.
@@ -79,7 +79,7 @@ pub struct Refusal {
     pub help: &'static str,
 }
 
-impl Refusal {
+impl UnsupportedSvg {
     pub(super) fn overspent(at: Range<usize>, overspent: Overspent) -> Self {
         let Limit { most, of, remedy } = overspent.limit;
         Self { at, message: format!("more than {most} {of}"), help: remedy }
@@ -102,11 +102,11 @@ impl Refusal {
 ///
 /// # Errors
 /// Where the text does not begin like an SVG picture.
-pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>, Refusal> {
+pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>, UnsupportedSvg> {
     const READ: [&str; 5] = ["width", "height", "viewBox", "preserveAspectRatio", "data-unit"];
     let mut walk = Walk::new(text.as_bytes(), LIMITS);
     loop {
-        match walk.next().map_err(|error| Refusal::broken(&error))? {
+        match walk.next().map_err(|error| UnsupportedSvg::broken(&error))? {
             Some(Piece::Start(tag)) => {
                 let own = |name| {
                     let XmlAttribute { value, span } = tag.attribute(name)?;
@@ -122,7 +122,10 @@ pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>
 
 /// Gives every shape that is drawn, and every reason why something is not read, in the order of the picture, until `each` breaks; how many elements with
 /// all that is in them are hidden.
-pub fn shapes(text: &str, mut each: impl FnMut(Result<SvgShape<'_>, Refusal>) -> ControlFlow<()>) -> usize {
+pub fn shapes(
+    text: &str,
+    mut each: impl FnMut(Result<SvgShape<'_>, UnsupportedSvg>) -> ControlFlow<()>,
+) -> usize {
     let mut sheet = match sheets(text) {
         Ok(sheet) => sheet,
         Err(refusal) => {
@@ -138,7 +141,7 @@ pub fn shapes(text: &str, mut each: impl FnMut(Result<SvgShape<'_>, Refusal>) ->
     loop {
         let flow = match walk.next() {
             Err(error) => {
-                let _ = each(Err(Refusal::broken(&error)));
+                let _ = each(Err(UnsupportedSvg::broken(&error)));
                 return hidden;
             }
             Ok(None) => return hidden,
@@ -188,7 +191,7 @@ pub fn shapes(text: &str, mut each: impl FnMut(Result<SvgShape<'_>, Refusal>) ->
 }
 
 /// The style sheets of a picture, wherever they stand in it.
-fn sheets(text: &str) -> Result<Sheet, Refusal> {
+fn sheets(text: &str) -> Result<Sheet, UnsupportedSvg> {
     let mut sheet = Sheet::default();
     // No picture without the word has one.
     if !text.contains("style") {
@@ -210,7 +213,7 @@ fn sheets(text: &str) -> Result<Sheet, Refusal> {
                             "a style sheet for `{}` is not read",
                             crate::design::shortened(&media.value)
                         );
-                        return Err(Refusal {
+                        return Err(UnsupportedSvg {
                             at: media.span,
                             message,
                             help: "write the style on the elements",

@@ -9,7 +9,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::percent;
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::Observed;
+use catchment_core::poses::ObservedOutcome;
 use catchment_study::plan::{CELLS, Panel, PlannedPose};
 use catchment_study::validate::Judged;
 
@@ -74,8 +74,8 @@ pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
         error: trial.point.error,
         shape: match trial.observed {
             None => Shape::NotMade,
-            Some(Observed::Aligned) => Shape::Docks,
-            Some(Observed::AlignedElsewhere) if report.design.alignment.symmetry > 1 => Shape::Docks,
+            Some(ObservedOutcome::Aligned) => Shape::Docks,
+            Some(ObservedOutcome::AlignedElsewhere) if report.design.alignment.symmetry > 1 => Shape::Docks,
             Some(_) => Shape::Fails,
         },
         wrong: trial.disagrees,
@@ -292,7 +292,7 @@ mod tests {
     use crate::schema::testing::design;
     use catchment_core::exec::Exec;
     use catchment_core::method::descent;
-    use catchment_core::poses::Tried;
+    use catchment_core::poses::RobotTrial;
     use catchment_core::problem::Problem;
     use catchment_study::plan::{Pattern, TrialPlanSettings, panels, run};
     use catchment_study::validate;
@@ -311,15 +311,16 @@ mod tests {
         let picture = plan(&report, &slices);
         look("plan", &picture);
         assert!(picture.svg().contains("35 trials at 35 poses") && !picture.svg().contains("NaN"));
-        let observed = |k: usize| [Some(Observed::Aligned), Some(Observed::Jammed), None][k % 3];
-        let tried = |(k, error): (usize, &PoseError)| Tried {
+        let observed =
+            |k: usize| [Some(ObservedOutcome::Aligned), Some(ObservedOutcome::Jammed), None][k % 3];
+        let tried = |(k, error): (usize, &PoseError)| RobotTrial {
             trial: k as u64 + 1,
             line: 1,
             error: *error,
             observed: observed(k),
             predicted: None,
         };
-        let tried: Vec<Tried> = poses.iter().enumerate().map(tried).collect();
+        let tried: Vec<RobotTrial> = poses.iter().enumerate().map(tried).collect();
         let judged =
             validate::run(&problem, &tried, &validate::ValidationSettings::new(accuracy), &Exec::new())
                 .unwrap();

@@ -10,7 +10,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
 use catchment_core::document::{grouped, tenths};
-use catchment_core::run::jams::{FeatureContact, Firmness, Jam, Jams, contacts_in_words, lifted};
+use catchment_core::run::jams::{FeatureContact, Jam, Jams, Stability, contacts_in_words, lifted};
 use catchment_core::run::rests::RestPlace;
 use glam::{DMat3, DVec3};
 
@@ -69,7 +69,7 @@ fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> 
     let tail = jam.examined.map(|examined| {
         let level = match examined.firmness {
             _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
-            Firmness::Level => "near-level",
+            Stability::Level => "near-level",
             firmness => firmness.name(),
         };
         let way = examined

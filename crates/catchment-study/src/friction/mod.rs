@@ -38,7 +38,7 @@ use catchment_core::document::Share;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::DecisionMethod;
 use catchment_core::method::correction::Z95;
-use catchment_core::method::descent::{self, Doubt, Follower, FrictionOutOfRange, HARDLY};
+use catchment_core::method::descent::{self, Follower, FrictionAmbiguity, FrictionOutOfRange, HARDLY};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use catchment_core::run::jams::{NamedFeature, Sticks, what_sticks};
@@ -192,7 +192,7 @@ pub enum FrictionError {
 struct Way {
     /// Without friction, and at each of the ladder with what Coulomb's law leaves open.
     without: Outcome,
-    at: Vec<(Outcome, Doubt)>,
+    at: Vec<(Outcome, FrictionAmbiguity)>,
     /// The least friction at which something on the frictionless way would hold it; infinite where none of the ladder does.
     holds: f64,
     /// Up to which it docks, and where it is first known not to; of those alone that dock without friction and are lost.
@@ -323,7 +323,7 @@ impl Way {
     ) -> Self {
         let top = frictions.last().copied().unwrap_or_default();
         let (end, holds) = free.follow_holding(pose, top);
-        let at: Vec<(Outcome, Doubt)> = followers
+        let at: Vec<(Outcome, FrictionAmbiguity)> = followers
             .iter_mut()
             .map(|follower| {
                 let (end, doubt) = follower.follow_doubting(pose);
@@ -354,7 +354,7 @@ impl Way {
 
     /// Whether it is lost at some friction and docks at a larger one.
     fn comes_back(&self) -> bool {
-        let docks = |(outcome, _): &&(Outcome, Doubt)| *outcome == Outcome::Aligned;
+        let docks = |(outcome, _): &&(Outcome, FrictionAmbiguity)| *outcome == Outcome::Aligned;
         self.without == Outcome::Aligned
             && self.at.iter().skip_while(docks).any(|(outcome, _)| *outcome == Outcome::Aligned)
     }
@@ -362,7 +362,7 @@ impl Way {
 
 fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
     let rung = |(k, friction): (Option<usize>, f64)| {
-        let at = |way: &Way| k.map_or((way.without, Doubt::default()), |k| way.at[k]);
+        let at = |way: &Way| k.map_or((way.without, FrictionAmbiguity::default()), |k| way.at[k]);
         let count = |is: &dyn Fn(&Way) -> bool| ways.iter().filter(|way| is(way)).count();
         let docks = |way: &Way| at(way).0 == Outcome::Aligned;
         let docked = |way: &Way| way.without == Outcome::Aligned;

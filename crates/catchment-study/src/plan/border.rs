@@ -16,7 +16,7 @@ use crate::success::normals;
 use catchment_core::acceptance::{Outcome, Stream};
 use catchment_core::method::descent::{DescentSettings, Follower};
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::Observed;
+use catchment_core::poses::ObservedOutcome;
 use catchment_core::problem::Problem;
 
 /// Where the border is, as far as motions showed.
@@ -69,7 +69,7 @@ impl<'a> Judge<'a> {
     }
 
     /// What becomes of a pose; nothing where that is undecided.
-    pub fn predict(&mut self, error: &PoseError) -> Option<Observed> {
+    pub fn predict(&mut self, error: &PoseError) -> Option<ObservedOutcome> {
         self.followed += 1;
         let end = self.follower.follow(error);
         match end.outcome {
@@ -77,11 +77,11 @@ impl<'a> Judge<'a> {
                 self.followed += 1;
                 let rest = self.follower.rest(error);
                 let turned = self.problem.alignment().nearest_yaw(rest.error.yaw) != 0.0;
-                Some(if turned { Observed::AlignedElsewhere } else { Observed::Aligned })
+                Some(if turned { ObservedOutcome::AlignedElsewhere } else { ObservedOutcome::Aligned })
             }
-            Outcome::Aligned => Some(Observed::Aligned),
-            Outcome::Jammed => Some(Observed::Jammed),
-            Outcome::Missed => Some(Observed::Missed),
+            Outcome::Aligned => Some(ObservedOutcome::Aligned),
+            Outcome::Jammed => Some(ObservedOutcome::Jammed),
+            Outcome::Missed => Some(ObservedOutcome::Missed),
             Outcome::Undecided => None,
         }
     }

@@ -5,7 +5,7 @@ use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
 use catchment_core::pose::PoseError;
-use catchment_core::poses::Observed;
+use catchment_core::poses::ObservedOutcome;
 use catchment_core::problem::Problem;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Prediction {
     /// Predicted outcome; null if it is undecided.
-    pub predicted: Option<Observed>,
+    pub predicted: Option<ObservedOutcome>,
     /// Whether the border is closer than the standard deviation of the robot, so that the pose may dock or
     /// fail.
     pub either: bool,
@@ -30,7 +30,7 @@ pub struct Prediction {
 
 impl Prediction {
     /// Of a predicted outcome and the nearest pose found whose outcome differs.
-    pub(crate) fn new(predicted: Option<Observed>, border: Option<Border>) -> Self {
+    pub(crate) fn new(predicted: Option<ObservedOutcome>, border: Option<Border>) -> Self {
         let mut prediction = Self {
             predicted,
             either: false,
@@ -44,7 +44,7 @@ impl Prediction {
 
     /// Whether it docks, turned or not.
     pub const fn docks(&self) -> bool {
-        matches!(self.predicted, Some(Observed::Aligned | Observed::AlignedElsewhere))
+        matches!(self.predicted, Some(ObservedOutcome::Aligned | ObservedOutcome::AlignedElsewhere))
     }
 
     /// How far it is from the border, in units of the accuracy; infinitely where no border was found, 0 where it is undecided what becomes of it.

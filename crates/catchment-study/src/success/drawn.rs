@@ -4,7 +4,7 @@ use super::ErrorStratum;
 use super::estimate::{Followed, Sample};
 use super::strata::{STRATA, name};
 use catchment_core::acceptance::Outcome;
-use catchment_core::method::correction::{Seen, Whole, wilson95};
+use catchment_core::method::correction::{CombinedShares, StratumCounts, wilson95};
 
 /// Errors that were drawn, by stratum, and what was followed of them in batches.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl Drawn {
     }
 
     /// What was seen of every stratum.
-    pub(super) fn seen(&self) -> Vec<Seen> {
+    pub(super) fn seen(&self) -> Vec<StratumCounts> {
         let seen = |(place, record): (usize, &Record)| {
             record.seen(self.share(place), self.of(place).len(), self.total, &self.sizes)
         };
@@ -90,7 +90,7 @@ impl Drawn {
     }
 
     /// What all of it says. `measurements`: so many, of which rows were drawn again and again.
-    pub(super) fn sample(self, whole: &Whole, measurements: Option<usize>) -> Sample {
+    pub(super) fn sample(self, whole: &CombinedShares, measurements: Option<usize>) -> Sample {
         /// Poses of either kind by which the share of a stratum is drawn towards a half (Agresti and Coull 1998).
         const PRIOR: f64 = 2.0;
         let (mut docks, mut doubted, mut trials) = ([0.0; STRATA], [0.0; STRATA], [0.0; STRATA]);
@@ -196,8 +196,8 @@ impl Record {
         self.followed() >= members
     }
 
-    fn seen(&self, share: f64, members: usize, total: usize, sizes: &[usize]) -> Seen {
-        let mut seen = Seen::new(share);
+    fn seen(&self, share: f64, members: usize, total: usize, sizes: &[usize]) -> StratumCounts {
+        let mut seen = StratumCounts::new(share);
         if self.followed() == 0 {
             return seen;
         }
@@ -245,7 +245,7 @@ mod tests {
             let outcomes: Vec<Outcome> = numbered.iter().map(docks).collect();
             drawn.take(given[0] + given[1], &numbered, &outcomes);
         }
-        let whole = Whole::of(&drawn.seen(), drawn.total());
+        let whole = CombinedShares::of(&drawn.seen(), drawn.total());
         let sample = drawn.sample(&whole, None);
         // All of the 100, and 50 of the 900.
         assert_eq!(sample.motions, 150);

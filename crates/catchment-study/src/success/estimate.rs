@@ -23,7 +23,7 @@ use super::strata::{STRATA, Strata};
 use super::{ErrorStratum, Slope};
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::{Cancelled, Exec};
-use catchment_core::method::correction::{Stop, Whole, Z95, allot, next};
+use catchment_core::method::correction::{CombinedShares, Stop, Z95, allot, next};
 use catchment_core::method::descent::Follower;
 use catchment_core::pose::Dof;
 use catchment_core::problem::Problem;
@@ -108,7 +108,7 @@ pub(crate) fn sample_by<E: From<Cancelled>>(
     let motions = plain.unwrap_or(motions);
     let mut drawn = Drawn::new(labels, plain.is_some());
     let mut seen = drawn.seen();
-    let mut whole = Whole::of(&seen, 0);
+    let mut whole = CombinedShares::of(&seen, 0);
     while let Some(batch) = next(Stop::Samples(motions), drawn.total(), seen.len(), Duration::ZERO, &whole)
         .filter(|_| !seen.is_empty())
     {
@@ -118,7 +118,7 @@ pub(crate) fn sample_by<E: From<Cancelled>>(
         let outcomes = follow(&numbered, &part)?;
         drawn.take(batch.poses, &numbered, &outcomes);
         seen = drawn.seen();
-        whole = Whole::of(&seen, drawn.total());
+        whole = CombinedShares::of(&seen, drawn.total());
         if batch.last || numbered.is_empty() {
             break;
         }

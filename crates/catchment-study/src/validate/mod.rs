@@ -35,7 +35,7 @@ use crate::plan::{PlannedPose, Prediction, TrialPlanError, check_accuracy, foret
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
 use catchment_core::pose::PoseError;
-use catchment_core::poses::{Observed, OffsetsAt, Tried};
+use catchment_core::poses::{ObservedOutcome, OffsetsAt, RobotTrial};
 use catchment_core::problem::Problem;
 pub use friction::{FrictionInterval, FrictionTried};
 pub use lines::TrialLine;
@@ -105,7 +105,7 @@ pub struct Judged {
     /// The number of the trial.
     pub trial: u64,
     /// The observed outcome; null if the trial was not made.
-    pub observed: Option<Observed>,
+    pub observed: Option<ObservedOutcome>,
     /// Whether the outcome contradicts the prediction. False if the prediction is undecided, the trial was
     /// not made, or the pose lies within one standard deviation of the border: there the error of the robot
     /// decides.
@@ -118,12 +118,12 @@ pub struct Judged {
     pub docked: Option<bool>,
     /// The prediction in the table.
     #[serde(skip)]
-    planned: Option<Observed>,
+    planned: Option<ObservedOutcome>,
 }
 
 impl Judged {
     /// Of a trial, the prediction of its pose, and whether it docked.
-    fn new(tried: &Tried, prediction: Prediction, docked: Option<bool>) -> Self {
+    fn new(tried: &RobotTrial, prediction: Prediction, docked: Option<bool>) -> Self {
         Self {
             trial: tried.trial,
             observed: tried.observed,
@@ -147,9 +147,9 @@ impl Judged {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Count {
     /// The predicted outcome; null if it was undecided.
-    pub predicted: Option<Observed>,
+    pub predicted: Option<ObservedOutcome>,
     /// The observed outcome.
-    pub observed: Observed,
+    pub observed: ObservedOutcome,
     /// Whether the poses are closer to the border than one standard deviation of the robot.
     pub either: bool,
     /// Number of trials.
@@ -276,7 +276,7 @@ const STAGE: &str = "motions";
 /// See [`ValidateError`].
 pub fn run(
     problem: &Problem,
-    tried: &[Tried],
+    tried: &[RobotTrial],
     settings: &ValidationSettings,
     exec: &Exec,
 ) -> Result<Validation, ValidateError> {
@@ -289,10 +289,10 @@ pub fn run(
         return Err(ValidateError::NothingMade);
     }
     let turns = problem.alignment().symmetry > 1;
-    let docks = |observed: Observed| match observed {
-        Observed::Aligned => true,
-        Observed::AlignedElsewhere => turns,
-        Observed::Jammed | Observed::Missed => false,
+    let docks = |observed: ObservedOutcome| match observed {
+        ObservedOutcome::Aligned => true,
+        ObservedOutcome::AlignedElsewhere => turns,
+        ObservedOutcome::Jammed | ObservedOutcome::Missed => false,
     };
     // A pose that is tried several times is followed once.
     let mut poses: Vec<PoseError> = Vec::new();
@@ -309,7 +309,7 @@ pub fn run(
     let part = exec.part([0.0, share], STAGE);
     let (prediction, mut followed) =
         foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
-    let judged = |(trial, number): (&Tried, &usize)| {
+    let judged = |(trial, number): (&RobotTrial, &usize)| {
         Judged::new(trial, prediction[*number], trial.observed.map(docks))
     };
     let trials: Vec<Judged> = tried.iter().zip(&number).map(judged).collect();
@@ -360,13 +360,13 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings
     } else {
         (PredictionVerdict::Consistent, 1)
     };
-    let straight = |outcome: Option<Observed>| outcome == Some(Observed::Aligned);
+    let straight = |outcome: Option<ObservedOutcome>| outcome == Some(ObservedOutcome::Aligned);
     let turned = made().filter(|trial| {
         let both = trial.docked == Some(true) && trial.prediction().docks();
         both && straight(trial.observed) != straight(trial.prediction().predicted)
     });
     let otherwise = trials.iter().filter(|trial| {
-        let docks = |outcome| matches!(outcome, Observed::Aligned | Observed::AlignedElsewhere);
+        let docks = |outcome| matches!(outcome, ObservedOutcome::Aligned | ObservedOutcome::AlignedElsewhere);
         let planned = trial.planned.map(docks);
         // On the border itself rounding decides.
         planned.is_some_and(|planned| planned != trial.prediction().docks()) && !trial.prediction().either
@@ -414,11 +414,11 @@ fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
 /// The confusion matrix as a list of what occurs: clear poses first, in the order of the outcomes.
 fn counts(trials: &[Judged]) -> Vec<Count> {
     let mut counts: Vec<Count> = Vec::new();
-    let predictions: Vec<Option<Observed>> =
-        Observed::ALL.into_iter().map(Some).chain(std::iter::once(None)).collect();
+    let predictions: Vec<Option<ObservedOutcome>> =
+        ObservedOutcome::ALL.into_iter().map(Some).chain(std::iter::once(None)).collect();
     for either in [false, true] {
         for predicted in &predictions {
-            for observed in Observed::ALL {
+            for observed in ObservedOutcome::ALL {
                 let same = |trial: &&Judged| {
                     let prediction = trial.prediction();
                     prediction.either == either

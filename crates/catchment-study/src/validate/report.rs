@@ -8,7 +8,7 @@ use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, grouped, percent};
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::poses::Observed;
+use catchment_core::poses::ObservedOutcome;
 
 /// Disagreements, and lines, that are shown.
 const SHOWN: usize = 10;
@@ -127,22 +127,22 @@ impl Validation {
     fn matrix(&self) -> Table {
         let outcomes = ["aligned", "elsewhere", "jammed", "missed"].map(Column::new);
         let mut table = Table::new([Column::new("predicted \\ observed").left()].into_iter().chain(outcomes));
-        let mut rows: Vec<(bool, Option<Observed>)> = Vec::new();
+        let mut rows: Vec<(bool, Option<ObservedOutcome>)> = Vec::new();
         for Count { either, predicted, .. } in &self.counts {
             if !rows.contains(&(*either, *predicted)) {
                 rows.push((*either, *predicted));
             }
         }
         for row in rows {
-            let trials = |observed: Observed| {
+            let trials = |observed: ObservedOutcome| {
                 let same =
                     |count: &&Count| (count.either, count.predicted) == row && count.observed == observed;
                 self.counts.iter().find(same).map_or(0, |count| count.trials).into()
             };
             let (either, predicted) = row;
-            let name = predicted.map_or("undecided", Observed::name);
+            let name = predicted.map_or("undecided", ObservedOutcome::name);
             let name = if either { format!("either ({name})") } else { name.to_owned() };
-            table.push([name.into()].into_iter().chain(Observed::ALL.map(trials)));
+            table.push([name.into()].into_iter().chain(ObservedOutcome::ALL.map(trials)));
         }
         table
     }
@@ -200,7 +200,7 @@ impl Validation {
             );
             table.push([
                 trial.trial.to_string().into(),
-                trial.observed.map(Observed::name).into(),
+                trial.observed.map(ObservedOutcome::name).into(),
                 margin.into(),
                 units.pose(&trial.point.error).into(),
             ]);
@@ -220,8 +220,8 @@ impl Validation {
             let prediction = &point.prediction;
             let cells = [trial.to_string().into(), point.line.into()].into_iter();
             let cells = cells.chain(poses.values(&point.error)).chain([
-                prediction.predicted.map_or("undecided", Observed::name).into(),
-                observed.map(Observed::name).into(),
+                prediction.predicted.map_or("undecided", ObservedOutcome::name).into(),
+                observed.map(ObservedOutcome::name).into(),
                 prediction.either.into(),
                 (*disagrees).into(),
             ]);

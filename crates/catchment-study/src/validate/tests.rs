@@ -33,7 +33,7 @@ fn trials(
     accuracy: &PoseError,
     friction: f64,
     seed: u64,
-) -> Vec<Tried> {
+) -> Vec<RobotTrial> {
     let motions = descent::DescentSettings::with_friction(friction).unwrap();
     let mut judge = plan::Judge::new(bench, &motions);
     let random = Stream::new(seed);
@@ -41,11 +41,11 @@ fn trials(
         let z = normals(|n| random.uniform(6 * k as u64 + n));
         let (at, by) = (real.to_array(), accuracy.to_array());
         let error = PoseError::from_array(std::array::from_fn(|k| at[k] + by[k] * z[k]));
-        Tried {
+        RobotTrial {
             trial: k as u64 + 1,
             line: 1,
             error: *written,
-            observed: Some(judge.predict(&error).unwrap_or(Observed::Jammed)),
+            observed: Some(judge.predict(&error).unwrap_or(ObservedOutcome::Jammed)),
             predicted: None,
         }
     });
@@ -67,7 +67,7 @@ fn verdicts(
     let mut counts = [0; 3];
     for seed in 0..runs {
         let made = trials(bench, [real, written], accuracy, friction, seed);
-        let docked = |o| matches!(o, Observed::Aligned | Observed::AlignedElsewhere);
+        let docked = |o| matches!(o, ObservedOutcome::Aligned | ObservedOutcome::AlignedElsewhere);
         let judged = made
             .iter()
             .zip(&prediction)
@@ -158,20 +158,20 @@ fn v_face() -> Problem {
     Problem::of(catchment_core::design::read(text, Path::new("")).unwrap().design).unwrap()
 }
 
-fn row(trial: u64, x: f64, observed: Option<Observed>) -> Tried {
-    Tried { trial, line: 1, error: PoseError { x, ..PoseError::default() }, observed, predicted: None }
+fn row(trial: u64, x: f64, observed: Option<ObservedOutcome>) -> RobotTrial {
+    RobotTrial { trial, line: 1, error: PoseError { x, ..PoseError::default() }, observed, predicted: None }
 }
 
-fn judged(rows: &[(f64, Option<Observed>)]) -> Validation {
-    let tried: Vec<Tried> =
+fn judged(rows: &[(f64, Option<ObservedOutcome>)]) -> Validation {
+    let tried: Vec<RobotTrial> =
         rows.iter().enumerate().map(|(k, (x, seen))| row(k as u64 + 1, *x, *seen)).collect();
     let accuracy = PoseError { x: 0.02, ..PoseError::default() };
     run(&v_face(), &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap()
 }
 
-const DOCKED: Option<Observed> = Some(Observed::Aligned);
-const JAMMED: Option<Observed> = Some(Observed::Jammed);
-const MISSED: Option<Observed> = Some(Observed::Missed);
+const DOCKED: Option<ObservedOutcome> = Some(ObservedOutcome::Aligned);
+const JAMMED: Option<ObservedOutcome> = Some(ObservedOutcome::Jammed);
+const MISSED: Option<ObservedOutcome> = Some(ObservedOutcome::Missed);
 
 #[test]
 fn counts_margins_and_lines_are_those_of_the_table() {
@@ -194,7 +194,7 @@ fn counts_margins_and_lines_are_those_of_the_table() {
     // The one that may go either way stands apart.
     assert_eq!((found.agreement.agreed, found.agreement.trials), (6, 6));
     let either: Vec<&Count> = found.counts.iter().filter(|count| count.either).collect();
-    assert_eq!((either.len(), either[0].trials, either[0].observed), (1, 1, Observed::Missed));
+    assert_eq!((either.len(), either[0].trials, either[0].observed), (1, 1, ObservedOutcome::Missed));
     assert_eq!(found.counts.iter().map(|count| count.trials).sum::<usize>(), 7);
     let [line] = &found.lines[..] else { panic!("one line") };
     assert_eq!(
@@ -299,8 +299,8 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
 fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let fourfold = problem("bench-pyramid.toml");
     let accuracy = PoseError { x: 0.002, y: 0.002, ..PoseError::default() };
-    let tried: Vec<Tried> =
-        (1..=6).map(|k| row(k, 0.02 * k as f64, Some(Observed::AlignedElsewhere))).collect();
+    let tried: Vec<RobotTrial> =
+        (1..=6).map(|k| row(k, 0.02 * k as f64, Some(ObservedOutcome::AlignedElsewhere))).collect();
     let found = run(&fourfold, &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
     assert_eq!((found.verdict, found.turned), (PredictionVerdict::Consistent, 6));
     let mut design = fourfold.design().clone();
@@ -310,10 +310,15 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
             .unwrap();
     assert_eq!((found.verdict, found.evidence.beyond, found.turned), (PredictionVerdict::Inconsistent, 6, 0));
     // Turned by nearly a quarter it does dock there, and that is predicted.
-    let turned =
-        Tried { error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() }, ..tried[0].clone() };
+    let turned = RobotTrial {
+        error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() },
+        ..tried[0].clone()
+    };
     let found = run(&fourfold, &[turned], &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.trials[0].prediction().predicted, found.turned), (Some(Observed::AlignedElsewhere), 0));
+    assert_eq!(
+        (found.trials[0].prediction().predicted, found.turned),
+        (Some(ObservedOutcome::AlignedElsewhere), 0)
+    );
 }
 
 /// Trials within one accuracy of the border are counted apart, and stand neither in the list of disagreements nor in its column.

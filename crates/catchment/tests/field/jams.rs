@@ -1,7 +1,7 @@
 //! Why real-shaped docks jam: the features that a person would name from the drawing.
 
 use catchment::prelude::*;
-use catchment::run::jams::{Firmness, Jams, JamsSettings, run};
+use catchment::run::jams::{Jams, JamsSettings, Stability, run};
 use std::path::Path;
 
 fn found(problem: &Problem, motions: usize) -> Jams {
@@ -29,7 +29,7 @@ fn a_peg_stands_on_the_plate() {
     let (names, share) = foremost(&found);
     assert_eq!(names, "top on top");
     assert!(share > 0.8, "{share}");
-    assert_eq!(found.jams[0].examined.unwrap().firmness, Firmness::Level);
+    assert_eq!(found.jams[0].examined.unwrap().firmness, Stability::Level);
 }
 
 /// Three balls in three grooves: a ball that misses its groove lies on the top of a block.

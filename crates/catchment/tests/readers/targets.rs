@@ -11,7 +11,7 @@ use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
 use catchment::poses::{
-    Distribution, OffsetsAt, PoseTable, Spread, TriedTable, parse_draw, parse_pose, read_dynamics,
+    Distribution, OffsetsAt, PoseTable, RobotTrialTable, Spread, parse_draw, parse_pose, read_dynamics,
     read_robots,
 };
 use catchment::report::Report;
@@ -174,7 +174,7 @@ pub(crate) fn pose_table(bytes: &[u8]) {
                 }
             }
         }
-        match TriedTable::parse(&text, &design, at) {
+        match RobotTrialTable::parse(&text, &design, at) {
             Ok(table) => {
                 let mut numbers: Vec<u64> = table.rows.iter().map(|row| row.trial).collect();
                 numbers.sort_unstable();

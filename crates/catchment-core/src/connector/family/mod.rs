@@ -27,7 +27,7 @@ const SOCKET_THICKNESS: f64 = 0.25;
 
 /// Two halves as drawn: both facing +z, each in its own frame.
 #[derive(Debug)]
-pub(super) struct Drawn {
+pub(super) struct DrawnHalves {
     /// The fixed half.
     pub(super) fixed: Half,
     /// The moving half, not yet mounted.
@@ -65,7 +65,7 @@ fn drawing(spec: &FamilySpec) -> &dyn Draw {
 }
 
 /// Draws a family.
-pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<GeometryDefect>> {
+pub(super) fn draw(spec: &FamilySpec) -> Result<DrawnHalves, Vec<GeometryDefect>> {
     let family = spec.family();
     let mut check = Check { family: family.name(), problems: Vec::new() };
     let height = spec.aspect_ratio();
@@ -100,7 +100,7 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<GeometryDefect>> {
     };
     let (fixed, moving) = (half(HalfRole::Fixed, fixed), half(HalfRole::Moving, moving));
     let face_height = drawing.face_height().unwrap_or(height / 2.0);
-    if problems.is_empty() { Ok(Drawn { fixed, moving, face_height }) } else { Err(problems) }
+    if problems.is_empty() { Ok(DrawnHalves { fixed, moving, face_height }) } else { Err(problems) }
 }
 
 /// The surfaces of the fixed and the moving half, as far as they could be built.

@@ -151,7 +151,7 @@ impl Within {
 
 /// What is drawn in a drawing.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct DrawnLoops {
     /// Closed loops, in D.
     pub(super) loops: Vec<Vec<DVec2>>,
     /// Entities or elements, with all that is in them, that are hidden and left out.
@@ -164,7 +164,11 @@ fn line_of(text: &str, at: usize) -> usize {
 }
 
 /// The closed loops of a drawing; curves are left by their chords by at most `chord_error`, in D.
-pub(super) fn read(spec: &FileSpec, file: &FileBytes, chord_error: f64) -> Result<Drawn, OutlineProblem> {
+pub(super) fn read(
+    spec: &FileSpec,
+    file: &FileBytes,
+    chord_error: f64,
+) -> Result<DrawnLoops, OutlineProblem> {
     if file.size > MOST_BYTES {
         return Err(OutlineProblem::TooLarge { bytes: file.size });
     }
@@ -179,7 +183,7 @@ pub(super) fn read(spec: &FileSpec, file: &FileBytes, chord_error: f64) -> Resul
         return Err(OutlineProblem::Empty { hidden });
     }
     let loops = strokes.into_iter().map(|stroke| stroke.corners.into_iter().map(|p| p * scale).collect());
-    Ok(Drawn { loops: loops.collect(), hidden })
+    Ok(DrawnLoops { loops: loops.collect(), hidden })
 }
 
 /// The regions that loops bound.

@@ -6,7 +6,7 @@
 
 use super::{OutlineProblem, Stroke, Within, line_of};
 use crate::design::{LengthUnit, Quantity, QuantityUnit};
-use crate::xml::svg::{self, Refusal};
+use crate::xml::svg::{self, UnsupportedSvg};
 use crate::xml::{Tag, XmlAttribute};
 use glam::DVec2;
 use kurbo::{Affine, Arc, BezPath, Circle, Ellipse, PathEl, Point, Rect, RoundedRect, Shape, SvgArc, Vec2};
@@ -23,7 +23,7 @@ const LARGEST: f64 = 1e9;
 const SAME_SCALE: f64 = 1e-3;
 
 /// What is said of a part of a picture, with its line.
-fn refused(text: &str, refusal: &Refusal) -> OutlineProblem {
+fn refused(text: &str, refusal: &UnsupportedSvg) -> OutlineProblem {
     let message = format!("{}: {}", refusal.message, refusal.help);
     OutlineProblem::Syntax { line: line_of(text, refusal.at.start), message }
 }
@@ -53,7 +53,11 @@ pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
             );
             Err(refused(
                 text,
-                &Refusal { at, message, help: "let width and height have the proportions of the viewBox" },
+                &UnsupportedSvg {
+                    at,
+                    message,
+                    help: "let width and height have the proportions of the viewBox",
+                },
             ))
         }
         (across, _) => Ok(across.map(|(metres, _)| metres)),
@@ -89,8 +93,8 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
 }
 
 /// What an element draws, in its own coordinates.
-fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Refusal> {
-    let number = |name: &str| -> Result<Option<f64>, Refusal> {
+fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, UnsupportedSvg> {
+    let number = |name: &str| -> Result<Option<f64>, UnsupportedSvg> {
         let Some(XmlAttribute { value, span }) = tag.attribute(name) else { return Ok(None) };
         let read = value.trim().trim_end_matches("px").parse::<f64>().ok();
         let read = read.filter(|number| number.abs() <= LARGEST);
@@ -151,12 +155,12 @@ fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Refusa
     Ok(path)
 }
 
-const fn wrong(at: Range<usize>, message: String, help: &'static str) -> Refusal {
-    Refusal { at, message, help }
+const fn wrong(at: Range<usize>, message: String, help: &'static str) -> UnsupportedSvg {
+    UnsupportedSvg { at, message, help }
 }
 
 /// The corners of a polygon: pairs of numbers, all of which count.
-fn polygon(points: &XmlAttribute<'_>, is_closed: bool) -> Result<BezPath, Refusal> {
+fn polygon(points: &XmlAttribute<'_>, is_closed: bool) -> Result<BezPath, UnsupportedSvg> {
     const HELP: &str = "repair the list of points, or save the picture again from the drawing program";
     let mut numbers = svgtypes::NumberListParser::from(points.value.as_ref());
     let mut path = BezPath::new();

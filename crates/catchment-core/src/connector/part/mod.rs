@@ -162,7 +162,8 @@ fn profile(
         }
         OutlineSpec::File(spec) => {
             let file = file.ok_or_else(|| refused(OutlineProblem::NoFile))?;
-            let outline::Drawn { loops, hidden } = outline::read(spec, file, chord_error).map_err(refused)?;
+            let outline::DrawnLoops { loops, hidden } =
+                outline::read(spec, file, chord_error).map_err(refused)?;
             let corners = loops.iter().map(Vec::len).sum();
             (loops, Some(MeshContent { hidden, ..MeshContent::of(&file.bytes, corners) }))
         }

@@ -15,15 +15,15 @@ mod body;
 mod header;
 
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::{FileBytes, Held};
+use super::source::{FileBytes, FileContent};
 use crate::design::MeshPreparation;
 use body::Body;
 use glam::DVec3;
 use header::{Element, Header};
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
-    parse(&file.bytes, treatment).map(Held::of_triangles)
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<FileContent, Vec<MeshProblem>> {
+    parse(&file.bytes, treatment).map(FileContent::of_triangles)
 }
 
 fn refused(message: impl Into<String>) -> Vec<MeshProblem> {

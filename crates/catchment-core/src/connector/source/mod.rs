@@ -66,7 +66,7 @@ pub(super) fn beside(files: &FilesInMemory) -> impl Fn(&Path, u64) -> io::Result
 
 /// What a mesh file holds.
 #[derive(Debug, Clone)]
-pub(super) struct Held {
+pub(super) struct FileContent {
     /// The triangles of every body that the file tells apart.
     pub(super) bodies: Vec<Vec<Triangle>>,
     /// Metres in one of its coordinates, where it says so.
@@ -75,7 +75,7 @@ pub(super) struct Held {
     pub(super) curves: Option<step::FromCurves>,
 }
 
-impl Held {
+impl FileContent {
     /// Of a file that tells no bodies apart and says no unit.
     pub(super) fn of_triangles(triangles: Vec<Triangle>) -> Self {
         Self { bodies: vec![triangles], metres: None, curves: None }
@@ -87,7 +87,7 @@ struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
     /// What the bytes of a file hold.
-    read: fn(&FileBytes, &FileSpec, &Exec) -> Result<Held, Vec<MeshProblem>>,
+    read: fn(&FileBytes, &FileSpec, &Exec) -> Result<FileContent, Vec<MeshProblem>>,
     /// What the first bytes of a file say of it as a whole.
     refuse_early: fn(&FileBytes, MeshPreparation) -> Result<(), Vec<MeshProblem>>,
 }

@@ -22,7 +22,7 @@ mod child;
 mod reply;
 
 use super::mesh::{MeshProblem, most_read};
-use super::source::{FileBytes, Held, UnitProblem, scale};
+use super::source::{FileBytes, FileContent, UnitProblem, scale};
 use crate::design::{FileSpec, FileUnit, LengthUnit, hex};
 use crate::exec::{Exec, Stopwatch};
 use sha2::{Digest, Sha256};
@@ -141,17 +141,17 @@ pub(in crate::connector) struct FromCurves {
 
 /// What leads to the same triangles: the file, the deflection in mm, and how many there may be.
 #[derive(Clone, PartialEq)]
-struct Asked {
+struct MeshingRequest {
     sha256: String,
     deflection: f64,
     most_triangles: usize,
 }
 
 /// Files that were meshed, the latest last.
-static MESHED: Mutex<VecDeque<(Asked, Held)>> = Mutex::new(VecDeque::new());
+static MESHED: Mutex<VecDeque<(MeshingRequest, FileContent)>> = Mutex::new(VecDeque::new());
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<FileContent, Vec<MeshProblem>> {
     let beginning = file.bytes.trim_ascii_start();
     if !beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).starts_with(BEGINNING) {
         return Err(vec![StepProblem::NotStep.into()]);
@@ -162,7 +162,7 @@ pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Hel
         return Err(vec![UnitProblem::NotMm { stated }.into()]);
     }
     let scale = scale(spec, Some(LengthUnit::Mm.metres())).map_err(|problem| vec![problem.into()])?;
-    let asked = Asked {
+    let asked = MeshingRequest {
         sha256: hex(&Sha256::digest(&file.bytes)),
         // 0 leaves it to the size of the part.
         deflection: spec.treatment.deflection.map_or(0.0, |d| d / scale),
@@ -184,7 +184,12 @@ pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Hel
     Ok(held)
 }
 
-fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<Held, Vec<MeshProblem>> {
+fn meshed(
+    bytes: &[u8],
+    asked: &MeshingRequest,
+    spec: &FileSpec,
+    exec: &Exec,
+) -> Result<FileContent, Vec<MeshProblem>> {
     let most_bytes = exec.memory_budget();
     let arguments = [
         // Isolated: no variable and no folder at hand says what is imported. The script adds what the person has installed.

@@ -3,7 +3,7 @@
 
 use super::{FromCurves, StepProblem};
 use crate::connector::mesh::{self, FileOffset, MeshProblem, Triangle, TriangleLocation, most_read};
-use crate::connector::source::Held;
+use crate::connector::source::FileContent;
 use crate::design::{LengthUnit, MeshPreparation, hex};
 use glam::DVec3;
 use serde::Deserialize;
@@ -44,7 +44,7 @@ pub(super) fn read(
     answer: &[u8],
     program: &str,
     treatment: MeshPreparation,
-) -> Result<Held, Vec<MeshProblem>> {
+) -> Result<FileContent, Vec<MeshProblem>> {
     let broken = || {
         let message = "its answer is broken".to_owned();
         vec![StepProblem::Died { program: program.to_owned(), message }.into()]
@@ -88,7 +88,7 @@ pub(super) fn read(
     }
     let sha256 = hex(&Sha256::digest(rest));
     let curves = FromCurves { deflection, reached, by, sha256 };
-    Ok(Held { bodies, metres: Some(LengthUnit::Mm.metres()), curves: Some(curves) })
+    Ok(FileContent { bodies, metres: Some(LengthUnit::Mm.metres()), curves: Some(curves) })
 }
 
 fn corner(bytes: &[u8]) -> DVec3 {

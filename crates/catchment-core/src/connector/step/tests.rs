@@ -11,7 +11,7 @@ fn answer(head: &str, doubles: &[f64], corners: &[u32]) -> Vec<u8> {
 const HEAD: &str = r#"{"bodies": [[3, 1]], "deflection": 0.01, "reached": 0.009, "by": "OCP 8"}"#;
 const POINTS: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5];
 
-fn read_answer(bytes: &[u8]) -> Result<Held, Vec<MeshProblem>> {
+fn read_answer(bytes: &[u8]) -> Result<FileContent, Vec<MeshProblem>> {
     reply::read(bytes, "python3", MeshPreparation::DEFAULT)
 }
 

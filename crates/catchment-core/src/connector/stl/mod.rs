@@ -18,7 +18,7 @@ pub use write::{StlEncoding, write};
 
 use super::Half;
 use super::mesh::{self, MOST_READ, MeshProblem};
-use super::source::{FileBytes, Held};
+use super::source::{FileBytes, FileContent};
 use crate::design::MeshPreparation;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
@@ -27,8 +27,8 @@ pub const MAX_BYTES: u64 = 128 << 20;
 pub const MOST_BYTES: u64 = 84 + 50 * MOST_READ as u64;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<Held, Vec<MeshProblem>> {
-    parse::parse(&file.bytes, file.size, treatment).map(Held::of_triangles)
+pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<FileContent, Vec<MeshProblem>> {
+    parse::parse(&file.bytes, file.size, treatment).map(FileContent::of_triangles)
 }
 
 /// What the first bytes of a file say of it as a whole: a binary file with too many triangles is refused before they are read.

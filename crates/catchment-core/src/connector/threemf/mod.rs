@@ -17,7 +17,7 @@
 mod model;
 
 use super::mesh::{self, FileOffset, MAX_TRIANGLES, MeshProblem, Triangle, TriangleLocation};
-use super::source::{FileBytes, Held, ZIP};
+use super::source::{FileBytes, FileContent, ZIP};
 use crate::budget::{Budget, Limit};
 use glam::{DAffine3, DVec3};
 use model::{Geometry, Model};
@@ -50,7 +50,7 @@ fn refused(message: impl Into<String>) -> Vec<MeshProblem> {
 }
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
+pub(super) fn read(file: &FileBytes) -> Result<FileContent, Vec<MeshProblem>> {
     if file.bytes.is_empty() {
         return Err(vec![MeshProblem::Empty]);
     }
@@ -74,7 +74,7 @@ pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
         let path = item.path.map_or_else(|| root.clone(), |path| part_name(&path));
         build.add(&path, item.object, item.transform, 0)?;
     }
-    Ok(Held { bodies: build.bodies, metres: Some(metres), curves: None })
+    Ok(FileContent { bodies: build.bodies, metres: Some(metres), curves: None })
 }
 
 /// The name of a part as archives have it.

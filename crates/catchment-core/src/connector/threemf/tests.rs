@@ -28,16 +28,16 @@ fn model(head: &str, resources: &str, build: &str) -> String {
     )
 }
 
-fn held(bytes: Vec<u8>) -> Result<Held, String> {
+fn held(bytes: Vec<u8>) -> Result<FileContent, String> {
     read(&FileBytes::whole(bytes)).map_err(|problems| problems[0].to_string())
 }
 
-fn of_model(text: &str) -> Result<Held, String> {
+fn of_model(text: &str) -> Result<FileContent, String> {
     held(package(&[(USUAL_MODEL, text)]))
 }
 
 /// Six times the volume of each body.
-fn volumes(held: &Held) -> Vec<f64> {
+fn volumes(held: &FileContent) -> Vec<f64> {
     let six = |t: &Triangle| t.corners[0].dot(t.corners[1].cross(t.corners[2]));
     held.bodies.iter().map(|body| (body.iter().map(six).sum::<f64>() * 1e9).round() / 1e9).collect()
 }

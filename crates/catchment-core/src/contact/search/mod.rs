@@ -90,7 +90,7 @@ impl Trees {
 
 /// What is asked of heights.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Asked {
+pub(super) struct HeightQuery {
     /// From where the half is lowered.
     pub(super) ceiling: f64,
     /// Any height above this one is as good as the greatest.
@@ -101,7 +101,7 @@ pub(super) struct Asked {
     pub(super) covered: bool,
 }
 
-impl Asked {
+impl HeightQuery {
     /// The greatest height of all.
     pub(super) const WHOLE: Self =
         Self { ceiling: f64::INFINITY, enough: f64::INFINITY, floor: f64::NEG_INFINITY, covered: false };
@@ -307,7 +307,7 @@ impl<'a> Turned<'a> {
 struct Lowered<'a> {
     turned: &'a Turned<'a>,
     lateral: DVec2,
-    asked: Asked,
+    asked: HeightQuery,
     found: Carried,
     /// No height is the greatest below this one.
     floor: f64,
@@ -316,7 +316,7 @@ struct Lowered<'a> {
 impl Lowered<'_> {
     /// Whether anything between these heights may still count, which are right to some rounding.
     fn may_count(&self, [least, most]: [f64; 2], sure: f64) -> bool {
-        let Asked { ceiling, enough, .. } = self.asked;
+        let HeightQuery { ceiling, enough, .. } = self.asked;
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY);
         if best > enough {
             return false;
@@ -422,7 +422,7 @@ impl Trees {
         rotation: &DMat3,
         lateral: DVec2,
         counts: Counts,
-        asked: Asked,
+        asked: HeightQuery,
         seed: Option<Number>,
     ) -> Carried {
         let turned = Turned::new(pair, self, rotation, lateral.extend(0.0), counts);

@@ -174,7 +174,7 @@ fn leaks(tree: &Tree, cell: &Cell) -> bool {
 
 /// The first way out of the seat's part, by floors.
 #[derive(Debug, Clone)]
-pub(super) struct WayOut {
+pub(super) struct EscapeRoute {
     /// Below it the seat's part docks, in D.
     pub(super) level: f64,
     /// The boxes that were come to before, each with the height of its way.
@@ -190,7 +190,7 @@ const LEAST_BLOCKING: usize = 32;
 const MOST_BLOCKING: usize = 256;
 const PART_BLOCKING: usize = 256;
 
-impl WayOut {
+impl EscapeRoute {
     /// Looks for it.
     ///
     /// # Errors
@@ -243,8 +243,8 @@ fn floor(cell: &Cell) -> Option<f64> {
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop.
-pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<WayOut, Cancelled> {
-    let way_out = WayOut::find(tree, seat, exec)?;
+pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<EscapeRoute, Cancelled> {
+    let way_out = EscapeRoute::find(tree, seat, exec)?;
     let level = way_out.level;
     // Beyond the pass at the level itself lies what may lead elsewhere, however deep.
     for (number, _) in way_out.inside.iter().filter(|(_, way)| *way < level) {

@@ -46,7 +46,7 @@ use crate::contact::{Nearby, Pair, SEAT_CORE};
 use crate::exec::{Cancelled, Exec, Stopwatch};
 use crate::landscape::Grid;
 use crate::pose::Dof;
-use flood::{Seat, WayOut, flood, retention};
+use flood::{EscapeRoute, Seat, flood, retention};
 use grown::Growth;
 use home::Home;
 use interval::Interval;
@@ -247,7 +247,7 @@ pub(crate) fn certify(
     // How well the seat holds is told best where labels say what comes back and what does not.
     let last = (tree.cells.len() + at_last).min(boxes);
     loop {
-        let way_out = WayOut::find(&tree, &seat, exec)?;
+        let way_out = EscapeRoute::find(&tree, &seat, exec)?;
         let mut in_the_way = coarse(&tree, &way_out);
         let room = if is_over() { 0 } else { last.saturating_sub(tree.cells.len()) };
         in_the_way.truncate(room >> tree.axes.len());
@@ -277,7 +277,7 @@ fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
 }
 
 /// What is in the way of the seat's part and not as small as it gets.
-fn coarse(tree: &Tree, way_out: &WayOut) -> Vec<usize> {
+fn coarse(tree: &Tree, way_out: &EscapeRoute) -> Vec<usize> {
     way_out.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
 }
 

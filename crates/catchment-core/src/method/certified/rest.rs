@@ -13,7 +13,7 @@
 //! Not promised: a bound close to the true escape height. It improves as boxes become small, and each rest
 //! has [`BOXES`] of them.
 
-use super::flood::{Seat, WayOut};
+use super::flood::{EscapeRoute, Seat};
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
 use super::tree::Tree;
@@ -81,7 +81,7 @@ fn depth(
     let seat = Seat { mated: f64::NEG_INFINITY, level, holds: &holds, home: None, meets: &meets };
     let most = tree.cells.len() + BOXES;
     loop {
-        let way_out = WayOut::find(tree, &seat, exec)?;
+        let way_out = EscapeRoute::find(tree, &seat, exec)?;
         let mut in_the_way = coarse(tree, &way_out);
         in_the_way.truncate(most.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {

@@ -39,7 +39,7 @@ pub fn wilson95(share: f64, trials: f64) -> [f64; 2] {
 
 /// What was seen in a stratum.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Seen {
+pub struct StratumCounts {
     /// Share of the box, p.
     pub(crate) share: f64,
     /// Poses followed.
@@ -54,7 +54,7 @@ pub struct Seen {
     spread: f64,
 }
 
-impl Seen {
+impl StratumCounts {
     /// A stratum that holds `share` of the box.
     pub fn new(share: f64) -> Self {
         Self { share, ..Self::default() }
@@ -104,7 +104,7 @@ impl Seen {
 
 /// What all strata together say, as shares of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Whole {
+pub struct CombinedShares {
     /// Share of the box that is accepted.
     pub fraction: f64,
     /// Its 95 % confidence interval.
@@ -113,9 +113,9 @@ pub struct Whole {
     pub(crate) plain: f64,
 }
 
-impl Whole {
+impl CombinedShares {
     /// After `total` poses.
-    pub fn of(seen: &[Seen], total: usize) -> Self {
+    pub fn of(seen: &[StratumCounts], total: usize) -> Self {
         let (mut fraction, mut open, mut variance) = (0.0, 0.0, 0.0);
         let mut squares = [0.0; 2];
         for s in seen {

@@ -38,7 +38,7 @@ use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::Grid;
 use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
-pub use interval::{Seen, Whole};
+pub use interval::{CombinedShares, StratumCounts};
 use rayon::prelude::*;
 pub use schedule::{Batch, allot, next};
 use serde::{Deserialize, Serialize};
@@ -166,11 +166,11 @@ pub fn estimate(
     }
     let strata = Strata::count(by, grid.len(), exec)?;
     let present: Vec<usize> = (0..strata.len()).filter(|s| strata.cells(*s) > 0).collect();
-    let share = |s: &usize| Seen::new(strata.cells(*s) as f64 / grid.len() as f64);
-    let mut seen: Vec<Seen> = present.iter().map(share).collect();
+    let share = |s: &usize| StratumCounts::new(strata.cells(*s) as f64 / grid.len() as f64);
+    let mut seen: Vec<StratumCounts> = present.iter().map(share).collect();
     let started = Stopwatch::start();
     let mut total = 0;
-    let mut whole = Whole::of(&seen, total);
+    let mut whole = CombinedShares::of(&seen, total);
     while let Some(batch) = schedule::next(stop, total, present.len(), started.elapsed(), &whole) {
         let given = schedule::allot(batch.poses, &seen);
         let numbered: Vec<(usize, usize)> = (0..present.len())
@@ -196,14 +196,15 @@ pub fn estimate(
             stratum.add(batch.poses, given, counts);
         }
         total += batch.poses;
-        whole = Whole::of(&seen, total);
+        whole = CombinedShares::of(&seen, total);
         if batch.last {
             break;
         }
     }
     let measure = grid.measure();
-    let against = |(s, seen): (&usize, &Seen)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
-    let differing = Whole::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
+    let against =
+        |(s, seen): (&usize, &StratumCounts)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
+    let differing = CombinedShares::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
     Ok(UnbiasedSum {
         sum: whole.fraction * measure,
         ci95: whole.ci95.map(|share| share * measure),

@@ -9,7 +9,7 @@
 //! The sizes depend only on the number of strata, so that the first n poses are the same for every stopping
 //! rule: a run with a time limit and a run with the same number of poses give the same bytes.
 
-use super::interval::{Seen, Whole};
+use super::interval::{CombinedShares, StratumCounts};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -49,7 +49,13 @@ pub struct Batch {
 }
 
 /// The batch after `total` poses in `strata` strata that took `elapsed` and gave `whole`; none when it is enough.
-pub fn next(stop: Stop, total: usize, strata: usize, elapsed: Duration, whole: &Whole) -> Option<Batch> {
+pub fn next(
+    stop: Stop,
+    total: usize,
+    strata: usize,
+    elapsed: Duration,
+    whole: &CombinedShares,
+) -> Option<Batch> {
     let scheduled = if total == 0 {
         FIRST.max(FIRST_PER_STRATUM * strata)
     } else {
@@ -85,7 +91,7 @@ pub fn next(stop: Stop, total: usize, strata: usize, elapsed: Duration, whole: &
 }
 
 /// How far the sampling is, in [0, 1], after `total` poses.
-pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Whole) -> f64 {
+pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &CombinedShares) -> f64 {
     if total == 0 {
         return 0.0;
     }
@@ -98,9 +104,9 @@ pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Whol
 
 /// Parts a batch among the strata: one pose each, the others in proportion to the doubt (Neyman, J. R. Stat. Soc. 97
 /// (1934) 558).
-pub fn allot(poses: usize, seen: &[Seen]) -> Vec<usize> {
+pub fn allot(poses: usize, seen: &[StratumCounts]) -> Vec<usize> {
     let spare = poses.saturating_sub(seen.len());
-    let doubt: f64 = seen.iter().map(Seen::doubt).sum();
+    let doubt: f64 = seen.iter().map(StratumCounts::doubt).sum();
     let ideal: Vec<f64> = seen.iter().map(|s| spare as f64 * (s.doubt() / doubt)).collect();
     let mut given: Vec<usize> = ideal.iter().map(|x| 1 + *x as usize).collect();
     let rest = poses.saturating_sub(given.iter().sum());
@@ -116,7 +122,7 @@ pub fn allot(poses: usize, seen: &[Seen]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    const WHOLE: Whole = Whole { fraction: 0.3, ci95: [0.29, 0.31], plain: 0.0 };
+    const WHOLE: CombinedShares = CombinedShares { fraction: 0.3, ci95: [0.29, 0.31], plain: 0.0 };
 
     /// The sizes of all batches.
     fn batches(stop: Stop, strata: usize, each: Duration) -> Vec<usize> {
@@ -162,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_batch_is_parted_completely_and_mostly_where_the_doubt_is() {
-        let mut seen = [Seen::new(0.5), Seen::new(0.3), Seen::new(0.2)];
+        let mut seen = [StratumCounts::new(0.5), StratumCounts::new(0.3), StratumCounts::new(0.2)];
         assert_eq!(allot(3, &seen), [1, 1, 1]);
         assert_eq!(allot(103, &seen), [51, 31, 21]);
         seen[0].add(100, 100, [100, 0]);

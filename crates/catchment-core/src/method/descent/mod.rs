@@ -52,7 +52,7 @@ pub use fall::fall;
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
 pub use immobility::{Immobility, ImmobilityOrder, immobility};
 pub use rest::{Rest, settle};
-pub use sticking::{Doubt, HARDLY, Sticking, sticking};
+pub use sticking::{FrictionAmbiguity, HARDLY, Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -64,7 +64,7 @@ use motion::{Motion, NoObserver, Until};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use sticking::{Doubting, OnTheWay};
+use sticking::{AmbiguityObserver, HoldingFrictionObserver};
 
 /// Settings of [`run`] that may change its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -180,8 +180,8 @@ impl<'a> Follower<'a> {
 
     /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
     /// wedges where it jams. See [`sticking()`].
-    pub fn follow_doubting(&mut self, error: &PoseError) -> (End, Doubt) {
-        let mut doubting = Doubting::default();
+    pub fn follow_doubting(&mut self, error: &PoseError) -> (End, FrictionAmbiguity) {
+        let mut doubting = AmbiguityObserver::default();
         let end = self.0.follow(error, Until::Known, &mut doubting);
         (end, doubting.doubt(end.outcome, self.0.settings.friction))
     }
@@ -190,7 +190,7 @@ impl<'a> Follower<'a> {
     ///
     /// With friction it goes another way: this says what holds where motion without it (or with the friction of the settings) comes by, and no more.
     pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
-        let mut holding = OnTheWay::up_to(most);
+        let mut holding = HoldingFrictionObserver::up_to(most);
         // All the way, also where it is known before that it docks.
         let homing = std::mem::take(&mut self.0.homing);
         let end = self.0.follow(error, Until::Known, &mut holding);

@@ -44,7 +44,7 @@ pub struct Sticking {
 
 /// What Coulomb's law leaves open of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Doubt {
+pub struct FrictionAmbiguity {
     /// It slipped by a place where some force could hold it as well.
     pub may_stick: bool,
     /// It jams, and wedges there: some force would hold it against a pull straight out as well.
@@ -211,22 +211,22 @@ impl Touching {
 
 /// Whether a motion comes by a place where it slips and could as well stick, and what touches where it was seen last.
 #[derive(Debug, Default)]
-pub(super) struct Doubting {
+pub(super) struct AmbiguityObserver {
     touching: Touching,
     /// Whether it may stick where it was seen last: it does not count where that is its end.
     here: bool,
     may_stick: bool,
 }
 
-impl Doubting {
+impl AmbiguityObserver {
     /// What is open of a motion that ended so.
-    pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> Doubt {
+    pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> FrictionAmbiguity {
         let jams = outcome == Outcome::Jammed && !self.touching.rows.is_empty();
-        Doubt { may_stick: self.may_stick, wedges: jams && self.touching.holds(&OUT, friction) }
+        FrictionAmbiguity { may_stick: self.may_stick, wedges: jams && self.touching.holds(&OUT, friction) }
     }
 }
 
-impl MotionObserver for Doubting {
+impl MotionObserver for AmbiguityObserver {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.may_stick |= self.here;
         self.touching.see_on_the_way(motion, state);
@@ -241,7 +241,7 @@ impl MotionObserver for Doubting {
 
 /// The least friction at which some force would hold it somewhere on the way, the end left out.
 #[derive(Debug)]
-pub(super) struct OnTheWay {
+pub(super) struct HoldingFrictionObserver {
     touching: Touching,
     /// At the place that was seen last.
     here: f64,
@@ -251,7 +251,7 @@ pub(super) struct OnTheWay {
 /// To so much it is found.
 const WAY_HOLDS_TO: f64 = 1e-4;
 
-impl OnTheWay {
+impl HoldingFrictionObserver {
     pub(super) fn up_to(most: f64) -> Self {
         Self { touching: Touching::default(), here: most, least: most }
     }
@@ -261,7 +261,7 @@ impl OnTheWay {
     }
 }
 
-impl MotionObserver for OnTheWay {
+impl MotionObserver for HoldingFrictionObserver {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
         self.touching.see_on_the_way(motion, state);

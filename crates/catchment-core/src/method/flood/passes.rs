@@ -44,9 +44,9 @@ pub(super) fn passes(
         return Ok(Vec::new());
     }
     let of_run = |run: std::ops::Range<usize>| {
-        let mut found = Found::new(count);
+        let mut found = PassTable::new(count);
         let (mut here, mut next) = (Vec::new(), Vec::new());
-        let load = |k: usize, words: &mut Vec<u64>, found: &mut Found| {
+        let load = |k: usize, words: &mut Vec<u64>, found: &mut PassTable| {
             slabs.load(heights, k, |cell| basins.labels[cell], words);
             slabs.least_of_cubes(words, |u, v| found.meet(u, v), exec)
         };
@@ -77,7 +77,7 @@ pub(super) const fn bytes(basins: u64) -> u64 {
 }
 
 /// Passes of a run.
-struct Found {
+struct PassTable {
     basins: usize,
     /// The lowest pass of pairs met lately; most cells lie between the same basins as the cell before.
     lately: Vec<Pass>,
@@ -94,7 +94,7 @@ const LEAST_ROOM: usize = 1 << 14;
 /// No pass.
 const NONE: Pass = Pass { level: u32::MAX, a: u32::MAX, b: u32::MAX };
 
-impl Found {
+impl PassTable {
     fn new(basins: usize) -> Self {
         let room = basins.saturating_mul(ROOM).max(LEAST_ROOM);
         Self { basins, lately: vec![NONE; LATELY], passes: Vec::new(), room }

@@ -30,7 +30,7 @@
 //! Not promised: any later contact, or that the first contact is unique (figure 3.6 has two).
 
 use super::stepping::{self, Faces, Halt};
-use super::{KinematicSettings, PlanarFace, Unfit};
+use super::{KinematicSettings, PlanarFace, UnsuitableDesign};
 use crate::acceptance::Outcome;
 use crate::connector::{Half, Surface};
 use crate::contact::Contact;
@@ -174,10 +174,10 @@ impl LeverPose {
     ///
     /// # Errors
     /// A design or a pose that the method does not apply to.
-    pub fn of(problem: &Problem, error: &PoseError) -> Result<Self, Unfit> {
+    pub fn of(problem: &Problem, error: &PoseError) -> Result<Self, UnsuitableDesign> {
         let settings = KinematicSettings::of(problem.design())?;
         if error.y != 0.0 || error.roll != 0.0 || error.yaw != 0.0 {
-            return Err(Unfit::Pose);
+            return Err(UnsuitableDesign::Pose);
         }
         let (pair, alignment) = (problem.pair(), problem.alignment());
         let cor = alignment.center_of_rotation;
@@ -365,7 +365,7 @@ mod tests {
     #[test]
     fn what_it_does_not_know_is_refused() {
         let v = problem(Family::VFace, 0.5, 1.0);
-        assert_eq!(LeverPose::of(&v, &PoseError { yaw: 0.1, ..pose(0.0, 0.0) }), Err(Unfit::Pose));
+        assert_eq!(LeverPose::of(&v, &PoseError { yaw: 0.1, ..pose(0.0, 0.0) }), Err(UnsuitableDesign::Pose));
         let missed = LeverPose::of(&v, &pose(3.0, 0.1)).unwrap();
         assert_eq!((missed.height, missed.lever, missed.outcome), (None, None, Outcome::Missed));
         let wide = LeverPose::of(&problem(Family::XFace, 0.5, 1.0), &pose(0.0, FRAC_PI_2)).unwrap();

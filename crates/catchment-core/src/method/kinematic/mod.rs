@@ -82,7 +82,7 @@ pub const START_MEASURE: f64 = (2.0 / STEPS as f64) * (PI / STEPS as f64);
 
 /// Why the method cannot decide a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Unfit {
+pub enum UnsuitableDesign {
     /// Another connector.
     #[error("it knows the faces v-face, s-face and x-face alone")]
     Face,
@@ -111,7 +111,7 @@ pub enum Unfit {
 pub enum KinematicError {
     /// The design is none of the method's.
     #[error(transparent)]
-    Unfit(#[from] Unfit),
+    Unfit(#[from] UnsuitableDesign),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
@@ -124,31 +124,31 @@ impl KinematicSettings {
     /// The settings that stand for a design.
     ///
     /// # Errors
-    /// See [`Unfit`].
-    pub fn of(design: &Design) -> Result<Self, Unfit> {
-        let ConnectorSpec::Family(spec) = &design.connector else { return Err(Unfit::Face) };
+    /// See [`UnsuitableDesign`].
+    pub fn of(design: &Design) -> Result<Self, UnsuitableDesign> {
+        let ConnectorSpec::Family(spec) = &design.connector else { return Err(UnsuitableDesign::Face) };
         let face = match spec.family() {
             Family::VFace => PlanarFace::VFace,
             Family::SFace => PlanarFace::SFace,
             Family::XFace => PlanarFace::XFace,
-            _ => return Err(Unfit::Face),
+            _ => return Err(UnsuitableDesign::Face),
         };
         let alignment = &design.alignment;
         if alignment.free != DofSet::EMPTY.with(Dof::X).with(Dof::Pitch) {
-            return Err(Unfit::Free);
+            return Err(UnsuitableDesign::Free);
         }
         if spec.base_thickness().is_some_and(|base| base > 0.0) {
-            return Err(Unfit::Base);
+            return Err(UnsuitableDesign::Base);
         }
         if alignment.center_of_rotation > 0.0 {
-            return Err(Unfit::RotationPoint);
+            return Err(UnsuitableDesign::RotationPoint);
         }
         if alignment.mount != Mount::Y {
-            return Err(Unfit::Mount);
+            return Err(UnsuitableDesign::Mount);
         }
         // Limits change nothing: these seats have no play.
         if alignment.docked.depth.to_bits() != Docked::DEFAULT_DEPTH.to_bits() {
-            return Err(Unfit::Docked);
+            return Err(UnsuitableDesign::Docked);
         }
         let rotation_point = -2.0 * alignment.center_of_rotation;
         Ok(Self { face, aspect_ratio: spec.aspect_ratio(), rotation_point })
@@ -332,14 +332,14 @@ mod tests {
         assert_eq!(with(1), with(2));
         let counts = with(1).counts();
         assert!(counts[0] > 20 && counts[1] > 20 && counts[2] > 20, "{counts:?}");
-        assert_eq!(KinematicSettings::of(&design(Family::Pyramid, 0.0)), Err(Unfit::Face));
-        assert_eq!(KinematicSettings::of(&design(Family::XFace, 0.5)), Err(Unfit::RotationPoint));
+        assert_eq!(KinematicSettings::of(&design(Family::Pyramid, 0.0)), Err(UnsuitableDesign::Face));
+        assert_eq!(KinematicSettings::of(&design(Family::XFace, 0.5)), Err(UnsuitableDesign::RotationPoint));
         let mut other = design(Family::SFace, 0.0);
         other.alignment.free = DofSet::ALL;
-        assert_eq!(KinematicSettings::of(&other), Err(Unfit::Free));
+        assert_eq!(KinematicSettings::of(&other), Err(UnsuitableDesign::Free));
         let mut deep = design(Family::SFace, 0.0);
         deep.alignment.docked.depth = 0.1;
-        assert_eq!(KinematicSettings::of(&deep), Err(Unfit::Docked));
+        assert_eq!(KinematicSettings::of(&deep), Err(UnsuitableDesign::Docked));
     }
 
     /// A sample of the whole set of the tables (11 × 11 designs, 41 × 41 starts), spread by a low-discrepancy sequence.

@@ -1,6 +1,6 @@
 //! Parser of distributions: from a file, or a line.
 
-use super::super::{Fault, Found, shortened};
+use super::super::{PoseDefect, PoseDiagnostics, shortened};
 use super::{Circumstance, Dynamics, ScalarDistribution};
 use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
 use crate::suggest::{number_help, value_help};
@@ -22,7 +22,7 @@ const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { mea
 /// # Errors
 /// What is wrong with the text, with its bytes.
 pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Diagnostics> {
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     let read = draw(text, design);
     match read {
         Ok(read) => Ok(read),
@@ -34,10 +34,13 @@ pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDi
     }
 }
 
-fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), (Range<usize>, Fault)> {
+fn draw(
+    text: &str,
+    design: &Design,
+) -> Result<(Circumstance, ScalarDistribution), (Range<usize>, PoseDefect)> {
     let Some((name, law)) = text.split_once('=') else {
         let message = format!("`{}` is no circumstance and its law", shortened(text));
-        return Err((0..text.len(), Fault::new(message, "write \"friction=0.1..0.3\"")));
+        return Err((0..text.len(), PoseDefect::new(message, "write \"friction=0.1..0.3\"")));
     };
     let of = named(name.trim()).map_err(|fault| (0..name.len(), fault))?;
     let law = line(law, of, design).and_then(|law| sound(law, of));
@@ -50,11 +53,11 @@ fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution
 /// Everything that is wrong with the file, each in its place.
 pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
-    let mut found = Found::default();
+    let mut found = PoseDiagnostics::default();
     let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
     for (error, span) in syntax.iter().zip(&broken) {
         let help = value_help(&source.text, span.start);
-        let fault = Fault { message: error.message().to_owned(), help };
+        let fault = PoseDefect { message: error.message().to_owned(), help };
         found.push(fault, || Some(span.clone()));
     }
     let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
@@ -65,7 +68,7 @@ pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, D
 }
 
 struct Reader<'a> {
-    found: Found,
+    found: PoseDiagnostics,
     /// Where the text is no TOML: what is wrong there is an echo.
     broken: Vec<Range<usize>>,
     design: &'a Design,
@@ -73,7 +76,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn note(&mut self, span: Range<usize>, fault: Fault) {
+    fn note(&mut self, span: Range<usize>, fault: PoseDefect) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
             self.found.push(fault, || Some(span).filter(|span| !span.is_empty()));
         }
@@ -83,21 +86,21 @@ impl Reader<'_> {
         const HELP: &str = "begin with [dynamics]";
         for (name, _) in root.iter().filter(|(name, _)| name.get_ref() != "dynamics") {
             let message = format!("unknown key `{}` in the file", shortened(name.get_ref()));
-            self.note(name.span(), Fault::new(message, HELP));
+            self.note(name.span(), PoseDefect::new(message, HELP));
         }
         let Some(value) = root.get("dynamics") else {
             if self.broken.is_empty() {
-                self.note(0..0, Fault::new("the file declares no dynamics", HELP));
+                self.note(0..0, PoseDefect::new("the file declares no dynamics", HELP));
             }
             return;
         };
         let DeValue::Table(table) = value.get_ref() else {
-            self.note(value.span(), Fault::new("`dynamics` is no table", HELP));
+            self.note(value.span(), PoseDefect::new("`dynamics` is no table", HELP));
             return;
         };
         if table.is_empty() && self.broken.is_empty() {
             let message = "it declares nothing";
-            self.note(value.span(), Fault::new(message, "such as speed = \"50 ± 10 mm/s\""));
+            self.note(value.span(), PoseDefect::new(message, "such as speed = \"50 ± 10 mm/s\""));
         }
         for (name, value) in table {
             let of = match named(name.get_ref()) {
@@ -118,7 +121,7 @@ impl Reader<'_> {
         &mut self,
         value: &Value<'_>,
         of: Circumstance,
-    ) -> Result<ScalarDistribution, (Range<usize>, Fault)> {
+    ) -> Result<ScalarDistribution, (Range<usize>, PoseDefect)> {
         if let DeValue::Table(table) = value.get_ref() {
             return self.table(table, value.span(), of);
         }
@@ -130,14 +133,14 @@ impl Reader<'_> {
         table: &DeTable<'_>,
         span: Range<usize>,
         of: Circumstance,
-    ) -> Result<ScalarDistribution, (Range<usize>, Fault)> {
+    ) -> Result<ScalarDistribution, (Range<usize>, PoseDefect)> {
         const KEYS: [&str; 7] = ["mean", "sigma", "from", "to", "median", "factor", "measured"];
         for (name, _) in table {
             if !KEYS.contains(&&**name.get_ref()) {
                 let help = nearest(name.get_ref(), KEYS)
                     .map_or_else(|| TABLES.to_owned(), |meant| format!("did you mean `{meant}`?"));
                 let message = format!("unknown key `{}` in {}", shortened(name.get_ref()), of.name());
-                return Err((name.span(), Fault::new(message, help)));
+                return Err((name.span(), PoseDefect::new(message, help)));
             }
         }
         let design = self.design;
@@ -164,14 +167,14 @@ impl Reader<'_> {
         let list = table.get("measured").filter(|_| table.len() == 1);
         let Some(list) = list else {
             let message = format!("the law of {} is not complete, or two at once", of.name());
-            return Err((span, Fault::new(message, TABLES)));
+            return Err((span, PoseDefect::new(message, TABLES)));
         };
         let DeValue::Array(values) = list.get_ref() else {
-            return Err((list.span(), Fault::new("`measured` is no list", "measured = [0.1, 0.2]")));
+            return Err((list.span(), PoseDefect::new("`measured` is no list", "measured = [0.1, 0.2]")));
         };
         if values.is_empty() || values.len() > MOST_VALUES {
             let message = format!("{} measured values", values.len());
-            return Err((list.span(), Fault::new(message, format!("give 1 to {MOST_VALUES}"))));
+            return Err((list.span(), PoseDefect::new(message, format!("give 1 to {MOST_VALUES}"))));
         }
         let mut measured = Vec::new();
         for value in values {
@@ -185,29 +188,29 @@ impl Reader<'_> {
 type Value<'t> = Spanned<DeValue<'t>>;
 
 /// A number or a text, as it is written.
-fn written(value: &Value<'_>) -> Result<String, (Range<usize>, Fault)> {
+fn written(value: &Value<'_>) -> Result<String, (Range<usize>, PoseDefect)> {
     match value.get_ref() {
         DeValue::String(text) => Ok(text.to_string()),
         // TOML lets digits be grouped.
         DeValue::Integer(integer) => Ok(integer.as_str().replace('_', "")),
         DeValue::Float(float) => Ok(float.as_str().replace('_', "")),
-        _ => Err((value.span(), Fault::new("it is no number and no law", FORM))),
+        _ => Err((value.span(), PoseDefect::new("it is no number and no law", FORM))),
     }
 }
 
 /// The circumstance of this name.
-fn named(name: &str) -> Result<Circumstance, Fault> {
+fn named(name: &str) -> Result<Circumstance, PoseDefect> {
     let names = Circumstance::ALL.map(Circumstance::name);
     let found = Circumstance::ALL.into_iter().find(|of| of.name() == name);
     found.ok_or_else(|| {
         let help = nearest(name, names)
             .map_or_else(|| format!("one of {}", names.join(", ")), |meant| format!("did you mean {meant}?"));
-        Fault::new(format!("there is no circumstance `{}`", shortened(name)), help)
+        PoseDefect::new(format!("there is no circumstance `{}`", shortened(name)), help)
     })
 }
 
 /// A law on a line.
-fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribution, Fault> {
+fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribution, PoseDefect> {
     let two = |separator: &str| {
         let (first, second) = text.split_once(separator)?;
         Some((first.trim(), second.trim()))
@@ -242,28 +245,30 @@ fn unit_of(text: &str) -> &str {
 }
 
 /// A number without a unit.
-fn plain(text: &str) -> Result<f64, Fault> {
+fn plain(text: &str) -> Result<f64, PoseDefect> {
     let read = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     read.ok_or_else(|| {
         let help = number_help(text).unwrap_or_else(|| FORM.to_owned());
-        Fault::new(format!("`{}` is no number", shortened(text.trim())), help)
+        PoseDefect::new(format!("`{}` is no number", shortened(text.trim())), help)
     })
 }
 
 /// A number of a circumstance, in its unit; one without a unit has that which is written beside it.
-fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, Fault> {
+fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, PoseDefect> {
     let (text, own) = (text.trim(), unit_of(text.trim()));
     let unit = if own.is_empty() { beside.unwrap_or_default() } else { own };
     let number = text[..text.len() - own.len()].trim();
     if number.is_empty() {
-        return Err(Fault::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
+        return Err(PoseDefect::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
     }
-    let told =
-        |c: crate::design::DesignDefect| Fault { message: format!("{}: {c}", of.name()), help: c.help() };
+    let told = |c: crate::design::DesignDefect| PoseDefect {
+        message: format!("{}: {c}", of.name()),
+        help: c.help(),
+    };
     match of {
         Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),
         Circumstance::Friction | Circumstance::Restitution => {
-            Err(Fault::new(format!("{} has no unit", of.name()), "give a bare number"))
+            Err(PoseDefect::new(format!("{} has no unit", of.name()), "give a bare number"))
         }
         Circumstance::Mass => {
             let factor = match unit {
@@ -272,7 +277,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
                 "lb" => 0.453_592_37,
                 _ => {
                     let message = format!("mass: there is no unit `{}`", shortened(unit));
-                    return Err(Fault::new(message, "kg, g or lb"));
+                    return Err(PoseDefect::new(message, "kg, g or lb"));
                 }
             };
             Ok(factor * plain(number)?)
@@ -287,7 +292,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
                 None if unit.is_empty() => "",
                 None => {
                     let message = format!("{}: `{}` is no rate", of.name(), shortened(unit));
-                    return Err(Fault::new(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
+                    return Err(PoseDefect::new(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
                 }
             };
             let read = format!("{number} {length}").parse::<Quantity>().map_err(told)?;
@@ -300,18 +305,18 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
 }
 
 /// A law that is one, and lies in the range of what it describes.
-fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, Fault> {
+fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, PoseDefect> {
     let name = of.name();
     match &law {
         ScalarDistribution::Normal { sigma, .. } if *sigma < 0.0 => {
-            return Err(Fault::new(format!("{name}: a standard deviation cannot be negative"), FORM));
+            return Err(PoseDefect::new(format!("{name}: a standard deviation cannot be negative"), FORM));
         }
         ScalarDistribution::Uniform { from, to } if from > to => {
-            return Err(Fault::new(format!("{name}: {from} is above {to}"), "the lower first"));
+            return Err(PoseDefect::new(format!("{name}: {from} is above {to}"), "the lower first"));
         }
         ScalarDistribution::Lognormal { median, factor } if *factor < 1.0 || *median <= 0.0 => {
             let message = format!("{name}: a lognormal law has a median above 0 and a factor of 1 or more");
-            return Err(Fault::new(message, "such as \"0.2 */ 1.3\""));
+            return Err(PoseDefect::new(message, "such as \"0.2 */ 1.3\""));
         }
         _ => {}
     }
@@ -325,7 +330,7 @@ fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution
         } else {
             format!("{name}: {:.0} % of this law is out of range", 100.0 * (1.0 - inside))
         };
-        return Err(Fault::new(message, help));
+        return Err(PoseDefect::new(message, help));
     }
     Ok(law)
 }

@@ -2,7 +2,7 @@
 
 use super::super::covariance::{IDENTITY, Matrix, cholesky, least_eigenvalue};
 use super::super::distribution::size;
-use super::super::{Fault, shortened};
+use super::super::{PoseDefect, shortened};
 use super::read::{Reader, Value};
 use crate::design::Quantity;
 use crate::pose::{Dof, PoseError};
@@ -185,7 +185,7 @@ impl Reader<'_> {
         for (dof, (text, span)) in dofs.iter().zip(texts) {
             let read = text
                 .parse::<Quantity>()
-                .map_err(|c| Fault { message: c.to_string(), help: c.help() })
+                .map_err(|c| PoseDefect { message: c.to_string(), help: c.help() })
                 .and_then(|quantity| size(*dof, quantity, self.design));
             match read {
                 Ok(factor) => factors.push(factor),

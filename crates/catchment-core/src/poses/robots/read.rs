@@ -3,7 +3,7 @@
 use super::super::covariance::IDENTITY;
 use super::super::distribution::size;
 use super::super::written::in_range;
-use super::super::{Fault, Found, OffsetsAt, PoseTable, shortened};
+use super::super::{OffsetsAt, PoseDefect, PoseDiagnostics, PoseTable, shortened};
 use super::{Robot, Spread};
 use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
 use crate::pose::{Dof, PoseError};
@@ -32,11 +32,12 @@ pub fn read_robots(
     table: &mut dyn FnMut(&str) -> Result<SourceText, String>,
 ) -> Result<Vec<Robot>, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
-    let mut reader = Reader { found: Found::default(), broken: Vec::new(), foreign: None, design, table };
+    let mut reader =
+        Reader { found: PoseDiagnostics::default(), broken: Vec::new(), foreign: None, design, table };
     for error in syntax {
         let span = error.span().unwrap_or(0..0);
         let help = value_help(&source.text, span.start);
-        reader.found.push(Fault { message: error.message().to_owned(), help }, || Some(span.clone()));
+        reader.found.push(PoseDefect { message: error.message().to_owned(), help }, || Some(span.clone()));
         reader.broken.push(span);
     }
     let robots = reader.robots(document.get_ref());
@@ -51,7 +52,7 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// What is read so far.
 pub(super) struct Reader<'a> {
-    found: Found,
+    found: PoseDiagnostics,
     /// Where the text is no TOML: what is wrong there is an echo.
     broken: Vec<Range<usize>>,
     /// What is wrong with a table.
@@ -61,14 +62,14 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    pub(super) fn note(&mut self, span: Range<usize>, fault: Fault) {
+    pub(super) fn note(&mut self, span: Range<usize>, fault: PoseDefect) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
             self.found.push(fault, || Some(span).filter(|span| !span.is_empty()));
         }
     }
 
     pub(super) fn refuse(&mut self, span: Range<usize>, message: impl Into<String>, help: &str) {
-        self.note(span, Fault::new(message, help));
+        self.note(span, PoseDefect::new(message, help));
     }
 
     fn robots(&mut self, root: &DeTable<'_>) -> Vec<Robot> {
@@ -168,7 +169,7 @@ impl Reader<'_> {
         &mut self,
         value: &Value<'_>,
         key: &str,
-        read: impl Fn(Dof, Quantity, &Design) -> Result<f64, Fault>,
+        read: impl Fn(Dof, Quantity, &Design) -> Result<f64, PoseDefect>,
     ) -> Option<[f64; 5]> {
         let DeValue::Table(table) = value.get_ref() else {
             let help = format!("{key} = {{ x = \"1 mm\", yaw = \"2 deg\" }}");
@@ -226,7 +227,7 @@ impl Reader<'_> {
 
     pub(super) fn dof(&mut self, name: &str, span: Range<usize>) -> Option<Dof> {
         let read = name.parse::<Dof>();
-        read.map_err(|unknown| self.note(span, Fault { message: unknown.to_string(), help: None })).ok()
+        read.map_err(|unknown| self.note(span, PoseDefect { message: unknown.to_string(), help: None })).ok()
     }
 
     fn quantity(&mut self, value: &Value<'_>) -> Option<Quantity> {
@@ -241,7 +242,7 @@ impl Reader<'_> {
         };
         // TOML lets digits be grouped.
         let read = text.replace('_', "").parse::<Quantity>();
-        read.map_err(|c| self.note(value.span(), Fault { message: c.to_string(), help: c.help() })).ok()
+        read.map_err(|c| self.note(value.span(), PoseDefect { message: c.to_string(), help: c.help() })).ok()
     }
 
     fn measured(&mut self, value: &Value<'_>) -> Option<Spread> {
@@ -287,15 +288,15 @@ impl Reader<'_> {
 pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Diagnostics> {
     let read = PoseTable::parse(&source.text, design, OffsetsAt::Face);
     let poses = read.map(|table| table.errors().to_vec()).and_then(|poses| {
-        let mut found = Found::default();
+        let mut found = PoseDiagnostics::default();
         if poses.len() < FEWEST_ROWS {
-            let fault = Fault::new(
+            let fault = PoseDefect::new(
                 format!("{} row says nothing of how errors spread", poses.len()),
                 "measure more of them",
             );
             found.push(fault, || None);
         } else if poses.iter().all(|pose| *pose == PoseError::default()) {
-            found.push(Fault::new("every error of the table is 0", "is it the right table?"), || None);
+            found.push(PoseDefect::new("every error of the table is 0", "is it the right table?"), || None);
         }
         found.refuse()?;
         Ok(poses)

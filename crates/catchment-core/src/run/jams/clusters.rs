@@ -6,9 +6,9 @@
 //! whatever the random gaps between them; so do rests at more than [`MOST_PLACES`] positions. Rests at the
 //! same position belong to one jam even if their contacts are described differently.
 
-use super::firmness::{self, Firmness, Held};
+use super::firmness::{self, RestStability, Stability};
 use super::images::Images;
-use super::rests::Rested;
+use super::rests::RestEnd;
 use crate::disjoint::DisjointSets;
 use crate::exec::{Cancelled, Exec};
 use crate::pose::CorPose;
@@ -39,13 +39,13 @@ pub(in crate::run) struct Cluster {
     /// At how many places that are images of each other they lie.
     pub(in crate::run) places: usize,
     /// How firmly the middle one holds, where it was asked.
-    pub(in crate::run) held: Option<Held>,
+    pub(in crate::run) held: Option<RestStability>,
 }
 
 /// Gathers rests into jams, the largest first.
 pub(in crate::run) fn gather(
     problem: &Problem,
-    rests: &[Rested],
+    rests: &[RestEnd],
     images: &Images,
     seed: u64,
     exec: &Exec,
@@ -62,12 +62,12 @@ pub(in crate::run) fn gather(
     }
     let leader = |group: &(usize, Vec<usize>)| &rests[group.1[0]];
     // How firmly each holds: level ones on the same features are one.
-    let held: Vec<Held> = groups
+    let held: Vec<RestStability> = groups
         .iter()
         .map(|group| {
             exec.check()?;
             let held = firmness::held(problem.pair(), leader(group), seed);
-            if held.firmness != Firmness::Ridge {
+            if held.firmness != Stability::Ridge {
                 return Ok(held);
             }
             let others = group.1[1..].iter().copied();
@@ -77,7 +77,7 @@ pub(in crate::run) fn gather(
     let mut sets = DisjointSets::new(groups.len());
     for j in 0..groups.len() {
         for k in 0..j {
-            let both_level = [j, k].iter().all(|g| held[*g].firmness == Firmness::Level);
+            let both_level = [j, k].iter().all(|g| held[*g].firmness == Stability::Level);
             let (a, b) = (&leader(&groups[j]).pose, &leader(&groups[k]).pose);
             let at_one_place = || images.may_be_near(a, b, SAME) && images.nearest(a, b).1 <= SAME;
             if both_level && groups[j].0 == groups[k].0 || at_one_place() {
@@ -100,7 +100,7 @@ pub(in crate::run) fn gather(
 }
 
 /// Parts rests on the same features into those that lie near each other.
-fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>> {
+fn near(rests: &[RestEnd], members: &[usize], images: &Images) -> Vec<Vec<usize>> {
     let mut places: Vec<Vec<usize>> = Vec::new();
     let pose = |k: usize| &rests[k].pose;
     let within = |a: &CorPose, b: &CorPose, most: f64| {
@@ -131,9 +131,9 @@ fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>>
 impl Cluster {
     fn of(
         problem: &Problem,
-        rests: &[Rested],
+        rests: &[RestEnd],
         members: Vec<usize>,
-        held: &Held,
+        held: &RestStability,
         images: &Images,
         seed: u64,
     ) -> Self {
@@ -156,7 +156,7 @@ impl Cluster {
         let nearest = (0..members.len()).min_by(|a, b| off(&around[*a]).total_cmp(&off(&around[*b])));
         let middle = members[nearest.unwrap_or_default()];
         // On level ground around a hole the mean lies in the hole, and what is nearest to it at its edge: one that lies level stands for all.
-        let (middle, own_held) = if matches!(held.firmness, Firmness::Level | Firmness::Ridge) {
+        let (middle, own_held) = if matches!(held.firmness, Stability::Level | Stability::Ridge) {
             let tried = std::iter::once(middle).chain(members.iter().copied());
             level(problem, rests, tried, seed).map_or((middle, None), |(member, held)| (member, Some(held)))
         } else {
@@ -180,7 +180,7 @@ impl Cluster {
             }
         }
         let is_image = |place: &usize| images.nearest(pose(*place), pose(middle)).1 <= SAME;
-        let places = if firmness == Firmness::Level {
+        let places = if firmness == Stability::Level {
             if members.len() < ENOUGH * places.len() { 1 } else { levels(rests, &places, images) }
         } else if places.iter().all(is_image) {
             places.len()
@@ -194,16 +194,16 @@ impl Cluster {
 /// The first of some rests that lies level, and how, of as many as are asked.
 fn level(
     problem: &Problem,
-    rests: &[Rested],
+    rests: &[RestEnd],
     members: impl Iterator<Item = usize>,
     seed: u64,
-) -> Option<(usize, Held)> {
+) -> Option<(usize, RestStability)> {
     let mut held = members.take(LEVEL_TRIES).map(|k| (k, firmness::held(problem.pair(), &rests[k], seed)));
-    held.find(|(_, held)| held.firmness == Firmness::Level)
+    held.find(|(_, held)| held.firmness == Stability::Level)
 }
 
 /// On how many levels that are images of each other these places lie, each [`NEAR`] another of its level; 1 where they are no images, or lie all over.
-fn levels(rests: &[Rested], places: &[usize], images: &Images) -> usize {
+fn levels(rests: &[RestEnd], places: &[usize], images: &Images) -> usize {
     if places.len() > MOST_PLACES {
         return 1;
     }

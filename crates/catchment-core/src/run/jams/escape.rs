@@ -12,8 +12,8 @@
 //! and again around its highest point. The climb belongs to an existing path, so it is an upper bound on the
 //! escape height.
 
-use super::firmness::{Ground, STEEPEST, Space, ground, moved};
-use super::rests::Rested;
+use super::firmness::{HeightAside, STEEPEST, Space, ground, moved};
+use super::rests::RestEnd;
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::{FLUSH, Nearby, Pair};
 use crate::method::affordable;
@@ -45,7 +45,7 @@ const LOWER: f64 = 1e-5;
 /// An escape path from a jam.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct WayOut {
+pub struct EscapePath {
     /// Upper bound on the escape height, in D.
     #[serde(rename = "climb_at_most_d")]
     pub climb: f64,
@@ -57,7 +57,7 @@ pub struct WayOut {
 
 /// What counts as out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::run) enum Leaving {
+pub(in crate::run) enum EscapeCriterion {
     /// Docked, off, or a lower rest; walls are in the way.
     Jam,
     /// Off, or any other rest; walls may be lifted over.
@@ -69,22 +69,22 @@ pub(in crate::run) enum Leaving {
 
 /// One way, as far as it leads out.
 #[derive(Debug, Clone, Copy)]
-struct Way {
+struct EscapeAttempt {
     along: [f64; 5],
     /// How far along the half is out.
     length: f64,
-    out: WayOut,
+    out: EscapePath,
     /// Where the motion ends that leads out.
     end: PoseError,
 }
 
 struct Search<'a> {
     space: Space,
-    rest: &'a Rested,
+    rest: &'a RestEnd,
     nearby: Nearby<'a>,
     follower: Follower<'a>,
-    best: Option<Way>,
-    leaving: Leaving,
+    best: Option<EscapeAttempt>,
+    leaving: EscapeCriterion,
     /// Whether nothing is above the rest: it may be lifted straight up, and heights are those of a half that comes from above.
     open: bool,
 }
@@ -92,11 +92,11 @@ struct Search<'a> {
 /// The lowest way out that is found, and where the motion ends that leads out; none where all that are tried climb on, or end at walls.
 pub(in crate::run) fn way_out(
     pair: &Pair,
-    rest: &Rested,
+    rest: &RestEnd,
     motions: &descent::DescentSettings,
-    leaving: Leaving,
+    leaving: EscapeCriterion,
     seed: u64,
-) -> Option<(WayOut, PoseError)> {
+) -> Option<(EscapePath, PoseError)> {
     let space = Space::of(pair);
     let stream = Stream::new(seed).branch(FARTHEST.to_bits());
     let simple = if space.count() <= FEW { WAYS_OF_FEW } else { WAYS };
@@ -107,7 +107,7 @@ pub(in crate::run) fn way_out(
         follower: Follower::new(pair, motions),
         best: None,
         leaving,
-        open: leaving != Leaving::Jam && is_open(pair, rest),
+        open: leaving != EscapeCriterion::Jam && is_open(pair, rest),
         space,
     };
     let home = search.space.towards(rest, &PoseError::default());
@@ -147,9 +147,9 @@ impl Search<'_> {
             let length = k as f64 * STEP;
             let pose = self.space.displaced(self.rest, way, length);
             let z = match self.look(&pose, last + STEEPEST * STEP) {
-                Ground::At(z) => z,
-                Ground::Blocked => return,
-                Ground::Gone => {
+                HeightAside::At(z) => z,
+                HeightAside::Blocked => return,
+                HeightAside::Gone => {
                     let over = self.space.error(self.rest, way, length);
                     return self.found(way, length, top, (Outcome::Missed, over));
                 }
@@ -160,7 +160,7 @@ impl Search<'_> {
             }
             let falls = z < last - LOWER * STEP;
             // Level ground beyond is another rest as soon as it is far enough.
-            let is_level = self.leaving != Leaving::Jam
+            let is_level = self.leaving != EscapeCriterion::Jam
                 && top > LOWER
                 && z <= last + LOWER * STEP
                 && (climbing || length - asked > ELSEWHERE);
@@ -176,32 +176,32 @@ impl Search<'_> {
     }
 
     /// The height at a pose.
-    fn look(&mut self, pose: &CorPose, ceiling: f64) -> Ground {
+    fn look(&mut self, pose: &CorPose, ceiling: f64) -> HeightAside {
         if !self.open {
             return ground(&mut self.nearby, pose, ceiling);
         }
         self.nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
-        self.nearby.height_below(pose.lateral, f64::INFINITY).0.map_or(Ground::Gone, Ground::At)
+        self.nearby.height_below(pose.lateral, f64::INFINITY).0.map_or(HeightAside::Gone, HeightAside::At)
     }
 
     fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, (to, end): (Outcome, PoseError)) {
         let over = self.space.error(self.rest, way, length);
-        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over }, end });
+        self.best = Some(EscapeAttempt { along: *way, length, out: EscapePath { climb, to, over }, end });
     }
 
     /// Where motion leads from a place on a way, if that is out.
     fn leads_out(&mut self, way: &[f64; 5], length: f64) -> Option<(Outcome, PoseError)> {
         let from = self.space.error(self.rest, way, length);
         let end = match self.leaving {
-            Leaving::Jam => self.follower.settle(&from),
-            Leaving::Rest { .. } => self.follower.come_to_rest(&from),
+            EscapeCriterion::Jam => self.follower.settle(&from),
+            EscapeCriterion::Rest { .. } => self.follower.come_to_rest(&from),
         };
         let is_lower = end.height.is_some_and(|height| height < self.rest.height - LOWER);
         let is_out = match (end.outcome, self.leaving) {
-            (Outcome::Missed, _) | (Outcome::Aligned, Leaving::Jam) => true,
+            (Outcome::Missed, _) | (Outcome::Aligned, EscapeCriterion::Jam) => true,
             (Outcome::Undecided, _) => false,
-            (Outcome::Jammed, Leaving::Jam) => is_lower,
-            (_, Leaving::Rest { is_level }) => is_lower || self.is_elsewhere(&end.error, is_level),
+            (Outcome::Jammed, EscapeCriterion::Jam) => is_lower,
+            (_, EscapeCriterion::Rest { is_level }) => is_lower || self.is_elsewhere(&end.error, is_level),
         };
         is_out.then_some((end.outcome, end.error))
     }
@@ -215,7 +215,7 @@ impl Search<'_> {
     }
 
     /// The climb of a way, looked at more and more closely about its highest place.
-    fn finer(&mut self, best: &Way) -> WayOut {
+    fn finer(&mut self, best: &EscapeAttempt) -> EscapePath {
         let mut top = best.out.climb;
         let (mut from, mut to, mut last) = (0.0, best.length, self.rest.height);
         let mut step = STEP;
@@ -225,7 +225,7 @@ impl Search<'_> {
             for k in 1..((to - from) / step).round() as usize {
                 let length = from + k as f64 * step;
                 let pose = self.space.displaced(self.rest, &best.along, length);
-                if let Ground::At(z) = self.look(&pose, last + STEEPEST * STEP) {
+                if let HeightAside::At(z) = self.look(&pose, last + STEEPEST * STEP) {
                     if z > highest.1 {
                         highest = (length, z);
                     }
@@ -237,11 +237,11 @@ impl Search<'_> {
             last = begun.max(highest.1 - STEEPEST * step);
             (from, to) = ((highest.0 - step).max(0.0), (highest.0 + step).min(best.length));
         }
-        WayOut { climb: top, ..best.out }
+        EscapePath { climb: top, ..best.out }
     }
 }
 
 /// Whether a half lowered from far above comes to the rest: nothing is above it.
-fn is_open(pair: &Pair, rest: &Rested) -> bool {
+fn is_open(pair: &Pair, rest: &RestEnd) -> bool {
     pair.height(&rest.pose).is_some_and(|height| height <= rest.height + OPEN)
 }

@@ -11,7 +11,7 @@
 //! The true minimum may be lower.
 
 use super::PUSH;
-use super::rests::Rested;
+use super::rests::RestEnd;
 use crate::acceptance::Stream;
 use crate::contact::{FLUSH, Nearby, Pair};
 use crate::pose::{CorPose, Dof, PoseError, rotation};
@@ -34,7 +34,7 @@ const MOVES: u64 = 64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Firmness {
+pub enum Stability {
     /// Height rises in proportion to the displacement, in every direction.
     Sharp,
     /// In some direction height rises with the square of the displacement.
@@ -45,7 +45,7 @@ pub enum Firmness {
     Ridge,
 }
 
-impl Firmness {
+impl Stability {
     /// The lower-case name used in files and reports.
     pub const fn name(self) -> &'static str {
         match self {
@@ -59,9 +59,9 @@ impl Firmness {
 
 /// How firmly a half rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::run) struct Held {
+pub(in crate::run) struct RestStability {
     /// In a word.
-    pub(in crate::run) firmness: Firmness,
+    pub(in crate::run) firmness: Stability,
     /// Least rise found of the COR when pushed by [`PUSH`], in D; none where walls stop it all around.
     pub(in crate::run) rise: Option<f64>,
     /// The direction of that push: offset of the COR in D and turns in radians, per error; 0 where walls stop it.
@@ -70,7 +70,7 @@ pub(in crate::run) struct Held {
 
 /// What becomes of the height aside of a rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::run) enum Ground {
+pub(in crate::run) enum HeightAside {
     /// z of the COR, in D.
     At(f64),
     /// A wall is in the way.
@@ -138,7 +138,7 @@ impl Space {
     }
 
     /// From a rest towards another pose error, and how far that is; none where it is the same.
-    pub(in crate::run) fn towards(&self, rest: &Rested, to: &PoseError) -> Option<[f64; 5]> {
+    pub(in crate::run) fn towards(&self, rest: &RestEnd, to: &PoseError) -> Option<[f64; 5]> {
         let (from, to) = (rest.error.to_array(), to.to_array());
         let mut way = [0.0; 5];
         for dof in &self.free {
@@ -149,7 +149,7 @@ impl Space {
     }
 
     /// Where a push by `length` in a direction leads from a rest.
-    pub(in crate::run) fn displaced(&self, rest: &Rested, way: &[f64; 5], length: f64) -> CorPose {
+    pub(in crate::run) fn displaced(&self, rest: &RestEnd, way: &[f64; 5], length: f64) -> CorPose {
         let lateral = rest.pose.lateral + DVec2::new(way[0], way[1]) * length;
         let turn = [way[2], way[3], way[4]].map(|part| part * length / self.rho);
         let rotation = if self.spherical {
@@ -165,7 +165,7 @@ impl Space {
     }
 
     /// The pose error there. Of angles that are not all free it is their sum, also beyond 90° of pitch; what is locked stays exactly 0.
-    pub(in crate::run) fn error(&self, rest: &Rested, way: &[f64; 5], length: f64) -> PoseError {
+    pub(in crate::run) fn error(&self, rest: &RestEnd, way: &[f64; 5], length: f64) -> PoseError {
         let pose = self.displaced(rest, way, length);
         let error = pose.to_error(self.cor);
         if self.spherical {
@@ -202,14 +202,14 @@ pub(in crate::run) fn normal(stream: Stream, j: u64) -> f64 {
 }
 
 /// The height at a pose that is reached from no higher than `ceiling`.
-pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> Ground {
+pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> HeightAside {
     nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
     let (below, covered) = nearby.height_below(pose.lateral, ceiling);
     match below {
-        Some(z) if covered && nearby.overlaps(pose.lateral.extend(z)) => Ground::Blocked,
-        Some(z) => Ground::At(z),
-        None if covered => Ground::Blocked,
-        None => Ground::Gone,
+        Some(z) if covered && nearby.overlaps(pose.lateral.extend(z)) => HeightAside::Blocked,
+        Some(z) => HeightAside::At(z),
+        None if covered => HeightAside::Blocked,
+        None => HeightAside::Gone,
     }
 }
 
@@ -217,15 +217,15 @@ pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f
 pub(in crate::run) const STEEPEST: f64 = 20.0;
 
 /// How firmly a half rests.
-pub(in crate::run) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
+pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStability {
     let space = Space::of(pair);
     let mut nearby = pair.about(2.0 * PUSH);
     let mut rise = |way: &[f64; 5], push: f64| {
         let pose = space.displaced(rest, way, push);
         match ground(&mut nearby, &pose, rest.height + STEEPEST * push) {
-            Ground::At(z) => z - rest.height,
-            Ground::Blocked => f64::INFINITY,
-            Ground::Gone => f64::NEG_INFINITY,
+            HeightAside::At(z) => z - rest.height,
+            HeightAside::Blocked => f64::INFINITY,
+            HeightAside::Gone => f64::NEG_INFINITY,
         }
     };
     let stream = Stream::new(seed).branch(PUSH.to_bits());
@@ -239,7 +239,7 @@ pub(in crate::run) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
         }
     }
     if best.1 == f64::INFINITY {
-        return Held { firmness: Firmness::Sharp, rise: None, weakest: PoseError::default() };
+        return RestStability { firmness: Stability::Sharp, rise: None, weakest: PoseError::default() };
     }
     for k in 0..MOVES {
         // Smaller and smaller moves: from a radian to a hundredth.
@@ -256,13 +256,13 @@ pub(in crate::run) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
     }
     let (way, least) = best;
     let firmness = if least < -FALL {
-        Firmness::Ridge
+        Stability::Ridge
     } else if least < LEVEL * PUSH {
-        Firmness::Level
+        Stability::Level
     } else if rise(&way, TENTH * PUSH) < ROUNDED * least {
-        Firmness::Rounded
+        Stability::Rounded
     } else {
-        Firmness::Sharp
+        Stability::Sharp
     };
-    Held { firmness, rise: least.is_finite().then_some(least), weakest: space.as_error(&way) }
+    RestStability { firmness, rise: least.is_finite().then_some(least), weakest: space.as_error(&way) }
 }

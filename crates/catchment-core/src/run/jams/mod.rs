@@ -35,8 +35,8 @@ mod tests;
 pub(super) mod words;
 
 pub use depth::DepthError;
-pub use escape::WayOut;
-pub use firmness::Firmness;
+pub use escape::EscapePath;
+pub use firmness::Stability;
 pub use pairs::{Sticks, TouchingPair, what_sticks};
 pub use words::{contact_in_words, contacts_in_words, lifted};
 
@@ -54,7 +54,7 @@ use clusters::Cluster;
 use images::Images;
 use pairs::touching;
 use rayon::prelude::*;
-use rests::{Follow, Rested, Which};
+use rests::{PoseFollower, RestEnd, RestFilter};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -221,7 +221,7 @@ pub struct JammingPair {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Examined {
     /// `sharp`, `rounded`, `level` or `ridge`.
-    pub firmness: Firmness,
+    pub firmness: Stability,
     /// Displacement of the test, in the metric of the motion, in D.
     pub push_d: f64,
     /// Smallest rise found, in D: an upper bound on the true minimum. Null if walls block every direction.
@@ -234,7 +234,7 @@ pub struct Examined {
     #[serde(default)]
     pub sticks: Option<Sticking>,
     /// Lowest escape path that was found; null if the search found no path.
-    pub way_out: Option<WayOut>,
+    pub way_out: Option<EscapePath>,
     /// Number of nearby poses that were followed.
     pub pushed: usize,
     /// Number of these that returned to the rest.
@@ -383,7 +383,7 @@ fn of(
     depth::check(problem, settings.certified, followed_by.friction)?;
     let settings = JamsSettings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
-    let follow = Follow { problem, features: &features, motions: followed_by, which: Which::Jams };
+    let follow = PoseFollower { problem, features: &features, motions: followed_by, which: RestFilter::Jams };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(JamsError::Nothing);
     };
@@ -392,7 +392,7 @@ fn of(
     let counts = count(&of_box);
     let expected = of_errors.as_deref().map(count);
     let own = of_box.iter().filter_map(|(_, rested)| rested.as_ref()).count();
-    let rests: Vec<Rested> =
+    let rests: Vec<RestEnd> =
         of_box.into_iter().chain(of_errors.into_iter().flatten()).filter_map(|(_, rested)| rested).collect();
     let images = Images::of(&features, problem.alignment());
     let found = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
@@ -459,7 +459,7 @@ pub(super) fn shares(counts: [usize; 4]) -> BTreeMap<Outcome, Share> {
     Outcome::ALL.into_iter().zip(counts.map(|count| Share::of(count, all))).collect()
 }
 
-fn count(ends: &[(Outcome, Option<Rested>)]) -> [usize; 4] {
+fn count(ends: &[(Outcome, Option<RestEnd>)]) -> [usize; 4] {
     Outcome::ALL.map(|outcome| ends.iter().filter(|(end, _)| *end == outcome).count())
 }
 
@@ -483,7 +483,7 @@ impl RestGroup {
     pub(super) fn of(
         problem: &Problem,
         features: &Features,
-        rests: &[Rested],
+        rests: &[RestEnd],
         own: usize,
         is_expected: bool,
         cluster: &Cluster,

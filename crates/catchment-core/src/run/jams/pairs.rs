@@ -1,6 +1,6 @@
 //! Pairs of features in contact in many rests, by name: the features to redesign.
 
-use super::rests::{Follow, Rested, Which};
+use super::rests::{PoseFollower, RestEnd, RestFilter};
 use super::{FeatureContact, NamedFeature};
 use crate::contact::Features;
 use crate::exec::{Cancelled, Exec};
@@ -38,7 +38,7 @@ pub fn what_sticks(
 ) -> Result<(usize, Vec<Sticks>), Cancelled> {
     let features = Features::of(problem.pair());
     let motions = descent::DescentSettings::default();
-    let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
+    let follow = PoseFollower { problem, features: &features, motions: &motions, which: RestFilter::Jams };
     let rest = |(pose, friction): &(PoseError, f64)| {
         exec.check()?;
         let settings =
@@ -46,9 +46,9 @@ pub fn what_sticks(
         let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
         Ok(rested.map(|rested| (rested, *friction)))
     };
-    let rests: Vec<Option<(Rested, f64)>> =
+    let rests: Vec<Option<(RestEnd, f64)>> =
         exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
-    let (rests, frictions): (Vec<Rested>, Vec<f64>) = rests.into_iter().flatten().unzip();
+    let (rests, frictions): (Vec<RestEnd>, Vec<f64>) = rests.into_iter().flatten().unzip();
     let sticks = touching(problem, &features, &rests).into_iter().map(|(touching, at)| {
         let mut critical: Vec<f64> = at.into_iter().map(|k| frictions[k]).collect();
         critical.sort_by(f64::total_cmp);
@@ -62,7 +62,7 @@ pub fn what_sticks(
 pub(super) fn touching(
     problem: &Problem,
     features: &Features,
-    rests: &[Rested],
+    rests: &[RestEnd],
 ) -> Vec<(TouchingPair, Vec<usize>)> {
     let mut pairs: BTreeMap<[String; 2], (TouchingPair, Vec<usize>)> = BTreeMap::new();
     for (number, rest) in rests.iter().enumerate() {
@@ -71,7 +71,7 @@ pub(super) fn touching(
                 let FeatureContact { fixed, moving, .. } = rest.name(problem, features, met);
                 (TouchingPair { count: 0, fixed, moving }, Vec::new())
             };
-            let (pair, at) = pairs.entry(Rested::names(features, met)).or_insert_with(touching);
+            let (pair, at) = pairs.entry(RestEnd::names(features, met)).or_insert_with(touching);
             if at.last() != Some(&number) {
                 at.push(number);
                 pair.count += 1;

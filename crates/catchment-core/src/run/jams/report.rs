@@ -1,6 +1,6 @@
 //! Text form of jams.
 
-use super::words::{Places, contact_in_words};
+use super::words::{RestDescriptions, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
@@ -31,7 +31,7 @@ impl Subject for Jams {
             document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
         }
         document.section(None).table(self.outcome_table());
-        let places = Places::of(design, self.settings.friction);
+        let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {
             document.section(None);
             self.describe(&mut document, places, number, jam);
@@ -69,7 +69,7 @@ impl Jams {
         table
     }
 
-    fn describe(&self, document: &mut Document, places: Places<'_>, number: usize, jam: &Jam) {
+    fn describe(&self, document: &mut Document, places: RestDescriptions<'_>, number: usize, jam: &Jam) {
         let images = match jam.places {
             0 | 1 => String::new(),
             n => format!(", at {n} places that are images of each other"),
@@ -95,7 +95,7 @@ impl Jams {
             );
         }
         if let Some(examined) = &jam.examined {
-            Places::order(document, examined);
+            RestDescriptions::order(document, examined);
             // Friction stops a half just before all contacts of the mated pose close: how it would be held there means nothing.
             if self.settings.friction == 0.0 || jam.docked_with_symmetry.is_none() {
                 places.held(document, examined);
@@ -197,7 +197,7 @@ impl Jams {
     }
 }
 
-fn escape(places: Places<'_>, examined: &Examined) -> String {
+fn escape(places: RestDescriptions<'_>, examined: &Examined) -> String {
     let Some(way) = &examined.way_out else { return "no escape path was found".to_owned() };
     let to = match way.to {
         Outcome::Aligned => "docks",

@@ -1,7 +1,7 @@
 //! Poses followed to their rests, with the features in contact there.
 
-use super::escape::Leaving;
-use super::firmness::{Firmness, Space};
+use super::escape::EscapeCriterion;
+use super::firmness::{Space, Stability};
 use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::HalfRole;
@@ -27,7 +27,7 @@ const PUSHES: usize = 4;
 
 /// Which ends are places of rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::run) enum Which {
+pub(in crate::run) enum RestFilter {
     /// Those that did not dock.
     Jams,
     /// All.
@@ -35,17 +35,17 @@ pub(in crate::run) enum Which {
 }
 
 /// What follows poses.
-pub(in crate::run) struct Follow<'a> {
+pub(in crate::run) struct PoseFollower<'a> {
     pub(in crate::run) problem: &'a Problem,
     pub(in crate::run) features: &'a Features,
     /// How.
     pub(in crate::run) motions: &'a descent::DescentSettings,
-    pub(in crate::run) which: Which,
+    pub(in crate::run) which: RestFilter,
 }
 
 /// Where a motion came to rest.
 #[derive(Debug, Clone)]
-pub(in crate::run) struct Rested {
+pub(in crate::run) struct RestEnd {
     pub(in crate::run) outcome: Outcome,
     pub(in crate::run) error: PoseError,
     pub(in crate::run) pose: CorPose,
@@ -53,14 +53,14 @@ pub(in crate::run) struct Rested {
     /// Gaps up to this touch, in D.
     pub(in crate::run) touching: f64,
     /// What touches, by pairs of features in their order.
-    pub(in crate::run) met: Vec<Met>,
+    pub(in crate::run) met: Vec<FeatureMeeting>,
     /// The classes of these pairs, sorted.
     pub(in crate::run) signature: Vec<[u32; 2]>,
 }
 
 /// Two features that touch.
 #[derive(Debug, Clone)]
-pub(in crate::run) struct Met {
+pub(in crate::run) struct FeatureMeeting {
     pub(in crate::run) features: [u32; 2],
     pub(in crate::run) contacts: Vec<Contact>,
 }
@@ -70,13 +70,13 @@ pub(in crate::run) fn classes(features: &Features, [fixed, moving]: [u32; 2]) ->
     [features.class(HalfRole::Fixed, fixed), features.class(HalfRole::Moving, moving)]
 }
 
-impl Follow<'_> {
+impl PoseFollower<'_> {
     /// Follows every pose; where it rests, if that is asked.
     pub(in crate::run) fn all(
         &self,
         poses: &[PoseError],
         exec: &Exec,
-    ) -> Result<Vec<(Outcome, Option<Rested>)>, Cancelled> {
+    ) -> Result<Vec<(Outcome, Option<RestEnd>)>, Cancelled> {
         let done = AtomicUsize::new(0);
         exec.install(|| {
             poses
@@ -100,16 +100,16 @@ impl Follow<'_> {
     /// Follows one pose as far as it matters.
     fn end(&self, follower: &mut Follower<'_>, pose: &PoseError) -> Rest {
         match self.which {
-            Which::Jams => follower.settle(pose),
-            Which::All => follower.come_to_rest(pose),
+            RestFilter::Jams => follower.settle(pose),
+            RestFilter::All => follower.come_to_rest(pose),
         }
     }
 
     fn is_rest(&self, outcome: Outcome) -> bool {
-        outcome == Outcome::Jammed || self.which == Which::All && outcome == Outcome::Aligned
+        outcome == Outcome::Jammed || self.which == RestFilter::All && outcome == Outcome::Aligned
     }
 
-    pub(super) fn rested(&self, rest: &Rest) -> Option<Rested> {
+    pub(super) fn rested(&self, rest: &Rest) -> Option<RestEnd> {
         let height = rest.height.filter(|_| self.is_rest(rest.outcome))?;
         let alignment = self.problem.alignment();
         let pose = CorPose::from_error(&rest.error, alignment.center_of_rotation, alignment.free);
@@ -121,19 +121,19 @@ impl Follow<'_> {
                 contacts.push(*contact);
             }
         }
-        let met: Vec<Met> =
-            by_pair.into_iter().map(|(features, contacts)| Met { features, contacts }).collect();
+        let met: Vec<FeatureMeeting> =
+            by_pair.into_iter().map(|(features, contacts)| FeatureMeeting { features, contacts }).collect();
         let mut signature: Vec<[u32; 2]> =
             met.iter().map(|met| classes(self.features, met.features)).collect();
         signature.sort_unstable();
         let Rest { outcome, error, touching, .. } = *rest;
-        Some(Rested { outcome, error, pose, height, touching, met, signature })
+        Some(RestEnd { outcome, error, pose, height, touching, met, signature })
     }
 
     /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed; and where the motion ends that leads out.
     pub(in crate::run) fn examine(
         &self,
-        rest: &Rested,
+        rest: &RestEnd,
         cluster: &Cluster,
         seed: u64,
     ) -> (Examined, Option<PoseError>) {
@@ -158,8 +158,8 @@ impl Follow<'_> {
         });
         let back = back.count();
         let leaving = match self.which {
-            Which::Jams => Leaving::Jam,
-            Which::All => Leaving::Rest { is_level: held.firmness == Firmness::Level },
+            RestFilter::Jams => EscapeCriterion::Jam,
+            RestFilter::All => EscapeCriterion::Rest { is_level: held.firmness == Stability::Level },
         };
         let mut holding = Holding::at_rest(pair, &rest.error, rest.height, rest.touching);
         let immobility = holding.as_ref().and_then(|holding| immobility(pair, holding, &rest.error, seed));
@@ -188,20 +188,25 @@ impl Follow<'_> {
     }
 }
 
-impl Rested {
+impl RestEnd {
     /// Everything that touches, named.
     pub(in crate::run) fn touched(&self, problem: &Problem, features: &Features) -> Vec<FeatureContact> {
         self.met.iter().map(|met| self.name(problem, features, met)).collect()
     }
 
     /// The names of two features that touch.
-    pub(in crate::run) fn names(features: &Features, met: &Met) -> [String; 2] {
+    pub(in crate::run) fn names(features: &Features, met: &FeatureMeeting) -> [String; 2] {
         let [fixed, moving] = met.features;
         [features.get(HalfRole::Fixed, fixed).name(), features.get(HalfRole::Moving, moving).name()]
     }
 
     /// Two features that touch, named.
-    pub(in crate::run) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> FeatureContact {
+    pub(in crate::run) fn name(
+        &self,
+        problem: &Problem,
+        features: &Features,
+        met: &FeatureMeeting,
+    ) -> FeatureContact {
         let face = {
             let cor = self.pose.lateral.extend(self.height);
             cor + face_from_cor(&self.pose.rotation, problem.alignment().center_of_rotation)

@@ -1,6 +1,6 @@
 //! Description of rests in words: position, stability, escape height, contacts.
 
-use super::{Examined, Extent, FeatureContact, Firmness, NamedFeature};
+use super::{Examined, Extent, FeatureContact, NamedFeature, Stability};
 use crate::design::Design;
 use crate::document::{DesignUnits, Document, rounded_down, significant};
 use crate::method::descent::{Immobility, ImmobilityOrder, Sticking};
@@ -63,7 +63,7 @@ impl Sticking {
 impl Examined {
     /// Whether nothing but so much friction holds it.
     pub fn is_held_by_friction(&self, friction: f64) -> bool {
-        friction > 0.0 && (self.firmness == Firmness::Ridge || self.immobility.is_none())
+        friction > 0.0 && (self.firmness == Stability::Ridge || self.immobility.is_none())
     }
 }
 
@@ -101,12 +101,12 @@ pub fn lifted(design: &Design, climb: f64) -> String {
 
 /// Places of rest of a design in words.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::run) struct Places<'a> {
+pub(in crate::run) struct RestDescriptions<'a> {
     units: DesignUnits<'a>,
     friction: f64,
 }
 
-impl<'a> Places<'a> {
+impl<'a> RestDescriptions<'a> {
     pub(in crate::run) const fn of(design: &'a Design, friction: f64) -> Self {
         Self { units: DesignUnits::of(design), friction }
     }
@@ -178,13 +178,13 @@ impl<'a> Places<'a> {
             return format!("held by friction alone; {back} of {pushed} neighbouring poses stay or return");
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
-            (Firmness::Level, Some(rise)) => {
+            (Stability::Level, Some(rise)) => {
                 format!(
                     "almost level: displaced by {push} in the weakest direction it rises by {}",
                     self.units.fine(rise)
                 )
             }
-            (Firmness::Ridge, _) => {
+            (Stability::Ridge, _) => {
                 format!(
                     "unstable: displaced by {push} in the weakest direction it falls; it came to rest on a ridge"
                 )

@@ -29,8 +29,8 @@ mod tests;
 
 use super::jams::clusters::{self, Cluster};
 use super::jams::images::Images;
-use super::jams::rests::{Follow, Rested, Which};
-use super::jams::{DepthError, Examined, Extent, FeatureContact, RestGroup, WayOut, depth, shares};
+use super::jams::rests::{PoseFollower, RestEnd, RestFilter};
+use super::jams::{DepthError, EscapePath, Examined, Extent, FeatureContact, RestGroup, depth, shares};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Features;
 use crate::document::Share;
@@ -169,13 +169,13 @@ pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<R
     let settings = RestsSettings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
     let motions_of = descent::DescentSettings::default();
-    let follow = Follow { problem, features: &features, motions: &motions_of, which: Which::All };
+    let follow = PoseFollower { problem, features: &features, motions: &motions_of, which: RestFilter::All };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(RestsError::Nothing);
     };
     let ends = follow.all(&poses, exec)?;
     let counts = Outcome::ALL.map(|outcome| ends.iter().filter(|(end, _)| *end == outcome).count());
-    let rests: Vec<Rested> = ends.into_iter().filter_map(|(_, rested)| rested).collect();
+    let rests: Vec<RestEnd> = ends.into_iter().filter_map(|(_, rested)| rested).collect();
     let images = Images::of(&features, problem.alignment());
     let clusters = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
     let mut groups: Vec<RestGroup> = clusters
@@ -226,7 +226,7 @@ fn leads_to(
     problem: &Problem,
     images: &Images,
     middles: &[CorPose],
-    way: &WayOut,
+    way: &EscapePath,
     end: &PoseError,
 ) -> Option<usize> {
     if way.to == Outcome::Missed {

@@ -1,6 +1,6 @@
 //! Text form of rests.
 
-use super::super::jams::words::Places;
+use super::super::jams::words::RestDescriptions;
 use super::super::jams::{contacts_in_words, lifted};
 use super::{RestPlace, Rests};
 use crate::acceptance::{Outcome, Warning};
@@ -56,7 +56,7 @@ impl Subject for Rests {
 
 impl Rests {
     fn describe(&self, document: &mut Document, design: &Design, number: usize, rest: &RestPlace) {
-        let places = Places::of(design, 0.0);
+        let places = RestDescriptions::of(design, 0.0);
         let images = match rest.places {
             0 | 1 => String::new(),
             n => format!(", at {n} places that are images of each other"),
@@ -66,7 +66,7 @@ impl Rests {
         document.row(format!("rest {number}"), format!("basin {share} of the error box{docked}{images}"));
         places.pose(document, &rest.pose, rest.above_mated_d, &rest.extent);
         if let Some(examined) = &rest.examined {
-            Places::order(document, examined);
+            RestDescriptions::order(document, examined);
             places.held(document, examined);
             document.row("  escape height", self.escape(design, rest));
         }
@@ -78,7 +78,7 @@ impl Rests {
     /// How far it must be lifted to leave, and where that leads, in words.
     fn escape(&self, design: &Design, rest: &RestPlace) -> String {
         let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
-        Places::of(design, 0.0).escape(depth, &self.leads_to(rest))
+        RestDescriptions::of(design, 0.0).escape(depth, &self.leads_to(rest))
     }
 
     /// The same for pictures: `lifted by 1.2 mm at most, and it slides off`.

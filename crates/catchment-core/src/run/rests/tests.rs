@@ -34,7 +34,7 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
         assert!((turn - turn.round()).abs() < 1e-3, "{place:?}");
         // Motions end within 10⁻⁵ of a turn, over half a width.
         assert!((place.height_d - 0.5).abs() < 1e-5, "{place:?}");
-        assert_eq!(place.examined.unwrap().firmness, crate::run::jams::Firmness::Sharp);
+        assert_eq!(place.examined.unwrap().firmness, crate::run::jams::Stability::Sharp);
         assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
         let held = place.examined.unwrap().immobility.unwrap();
         assert_eq!(held.order, descent::ImmobilityOrder::First, "{place:?}");

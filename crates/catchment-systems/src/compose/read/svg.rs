@@ -5,7 +5,7 @@ use super::rings::{CORNERS, Ring, region};
 use super::{Measure, ParsedRegion, ReadError};
 use catchment::budget::{Budget, Overspent};
 use catchment::design::{Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText};
-use catchment::xml::svg::{self, Refusal, SvgShape};
+use catchment::xml::svg::{self, SvgShape, UnsupportedSvg};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
 use std::collections::BTreeMap;
@@ -61,8 +61,8 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, Rea
 }
 
 /// What is said of a part of a picture.
-fn diagnostic(text: &str, refusal: Refusal) -> Diagnostic {
-    let Refusal { at, message, help } = refusal;
+fn diagnostic(text: &str, refusal: UnsupportedSvg) -> Diagnostic {
+    let UnsupportedSvg { at, message, help } = refusal;
     // A broken document has a place, but nothing there that is to be shown as a whole.
     let inside = |at: usize| (0..=at.min(text.len())).rev().find(|k| text.is_char_boundary(*k)).unwrap_or(0);
     Diagnostic::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
