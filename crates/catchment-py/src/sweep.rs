@@ -13,7 +13,9 @@ use catchment::exec::{Exec, Stopwatch};
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{FinishedDesigns, SweepReport, figure};
-use catchment::study::sweep::{DesignResult, Keep, Nowhere, SweepAxis, SweepError, SweepPlan, SweepSettings};
+use catchment::study::sweep::{
+    DesignResult, DesignStore, NoStore, SweepAxis, SweepError, SweepPlan, SweepSettings,
+};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::io;
@@ -33,7 +35,7 @@ struct Both<'a> {
     kept: Option<&'a FinishedDesigns>,
 }
 
-impl Keep for Both<'_> {
+impl DesignStore for Both<'_> {
     fn find(&self, key: &str) -> Option<DesignResult> {
         self.found.get(key).cloned().or_else(|| self.kept?.find(key))
     }
@@ -137,7 +139,7 @@ impl Sweep {
             let found = found.into_iter().map(read).collect::<Result<BTreeMap<String, DesignResult>, _>>()?;
             let keep = Both { found, kept: self.parts.as_ref() };
             let is_nothing = keep.found.is_empty() && keep.kept.is_none();
-            let keep: &dyn Keep = if is_nothing { &Nowhere } else { &keep };
+            let keep: &dyn DesignStore = if is_nothing { &NoStore } else { &keep };
             let base = self.plan.base().clone();
             let found = self.plan.clone().run(keep, exec).map_err(refused)?;
             let timing = Timing { total_s: started.seconds(), threads: exec.threads() };

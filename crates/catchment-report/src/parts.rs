@@ -1,7 +1,7 @@
 //! Finished designs in a temporary folder beside the result, until the result is complete.
 
 use crate::write;
-use catchment_study::sweep::{DesignResult, Keep};
+use catchment_study::sweep::{DesignResult, DesignStore};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -65,7 +65,7 @@ impl FinishedDesigns {
     }
 }
 
-impl Keep for FinishedDesigns {
+impl DesignStore for FinishedDesigns {
     fn find(&self, key: &str) -> Option<DesignResult> {
         let path = self.file(key);
         let small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= LARGEST);

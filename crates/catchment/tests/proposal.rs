@@ -7,7 +7,7 @@ use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
 use catchment::study::proposal::{
-    Beside, PartFile, PartFrames, PartLayout, Proposal, ProposalError, ProposalSettings, propose,
+    PartDetail, PartFile, PartFrames, PartLayout, Proposal, ProposalError, ProposalSettings, propose,
 };
 use glam::{DAffine3, DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
@@ -278,7 +278,7 @@ fn a_bought_ball_is_part_of_a_half() {
     let alone = propose(&parts, &settings(PartFrames::Facing), &folder.path().join("d.toml"), &Exec::new());
     assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
     let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
-    let with = [Vec::new(), vec![Beside::Part(ball.clone())]];
+    let with = [Vec::new(), vec![PartDetail::Part(ball.clone())]];
     let found = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(PartFrames::Facing) });
     assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
     assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
@@ -287,7 +287,7 @@ fn a_bought_ball_is_part_of_a_half() {
     let off = PoseError { x: 0.2, y: -0.1, ..PoseError::default() };
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
     // What is wrong with a part is said as of a design.
-    let with = [vec![Beside::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
+    let with = [vec![PartDetail::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
     let wrong = ProposalSettings { with, ..settings(PartFrames::Facing) };
     let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
@@ -299,7 +299,7 @@ fn a_bought_ball_is_part_of_a_half() {
     let first = write(folder.path(), "first \"half\".stl", &half(-0.24), &frame);
     let second = write(folder.path(), "second.stl", &half(0.24), &frame);
     let parts = [parts[0].clone(), first];
-    let with = [Vec::new(), vec![Beside::File(second), Beside::Part(ball)]];
+    let with = [Vec::new(), vec![PartDetail::File(second), PartDetail::Part(ball)]];
     let settings = ProposalSettings { with, ..settings(PartFrames::Facing) };
     let found = proposed(&parts, folder.path(), &settings);
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);

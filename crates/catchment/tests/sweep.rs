@@ -6,7 +6,9 @@ use catchment::design::{Diagnostic, SourceText};
 use catchment::exec::OutOfBudget;
 use catchment::prelude::*;
 use catchment::report::SweepReport;
-use catchment::study::sweep::{DesignResult, Keep, Nowhere, Sweep, SweepError, SweepPlan, SweepSettings};
+use catchment::study::sweep::{
+    DesignResult, DesignStore, NoStore, Sweep, SweepError, SweepPlan, SweepSettings,
+};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Mutex;
@@ -35,7 +37,7 @@ fn family(name: &str, free: &str) -> String {
 /// Sums by aspect ratio (rows) and centre of rotation −1, −0.5, 0, 0.5, 1 (columns).
 fn table(text: &str, cells: &str, samples: usize) -> Vec<Vec<f64>> {
     let axes = ["aspect_ratio=0.25,0.5,1,2,4", "cor=-1..1/5"];
-    let sweep = plan(text, &axes, cells, samples).unwrap().run(&Nowhere, &Exec::new()).unwrap();
+    let sweep = plan(text, &axes, cells, samples).unwrap().run(&NoStore, &Exec::new()).unwrap();
     let sums: Vec<f64> = sweep.designs.iter().map(|trial| trial.found.figures().unwrap().sum).collect();
     sums.chunks(5).map(<[f64]>::to_vec).collect()
 }
@@ -99,7 +101,7 @@ struct Memory {
     found: AtomicUsize,
 }
 
-impl Keep for Memory {
+impl DesignStore for Memory {
     fn find(&self, key: &str) -> Option<DesignResult> {
         let found = self.kept.lock().unwrap().get(key).cloned();
         self.found.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
@@ -117,7 +119,7 @@ fn small(axes: &[&str]) -> SweepPlan {
     plan(&family("x-face", "['x', 'pitch']"), axes, "9", 50).unwrap()
 }
 
-fn run(plan: SweepPlan, keep: &dyn Keep, threads: usize) -> Sweep {
+fn run(plan: SweepPlan, keep: &dyn DesignStore, threads: usize) -> Sweep {
     plan.run(keep, &Exec::new().with_threads(threads).unwrap()).unwrap()
 }
 
@@ -127,7 +129,7 @@ fn threads_and_what_was_kept_change_nothing() {
     let memory = Memory::default();
     let whole = run(small(&axes), &memory, 1);
     assert_eq!(memory.kept.lock().unwrap().len(), 9);
-    assert_eq!(run(small(&axes), &Nowhere, 3), whole);
+    assert_eq!(run(small(&axes), &NoStore, 3), whole);
     // Half of them are lost: the others are not computed again.
     memory.kept.lock().unwrap().retain(|key, _| key.as_bytes()[0].is_multiple_of(2));
     let left = memory.kept.lock().unwrap().len();
@@ -146,7 +148,7 @@ fn threads_and_what_was_kept_change_nothing() {
 /// One design of a sweep is what a run of that design is.
 #[test]
 fn a_design_of_a_sweep_is_a_run() {
-    let sweep = run(small(&["cor=-1,0.5"]), &Nowhere, 1);
+    let sweep = run(small(&["cor=-1,0.5"]), &NoStore, 1);
     let text = family("x-face", "['x', 'pitch']") + "center_of_rotation = 0.5\n";
     let problem = Draft::read(SourceText::new("d.toml", text)).unwrap().build().unwrap();
     let answer = sweep.settings.run.on(&problem, &Exec::new()).unwrap();
@@ -162,10 +164,10 @@ fn a_design_of_a_sweep_is_a_run() {
 #[test]
 fn what_does_not_fit_side_by_side_is_computed_alone() {
     let fine = || plan(&family("x-face", "['x', 'pitch']"), &["cor=-1,0.5"], "40", 50).unwrap();
-    let ample = run(fine(), &Nowhere, 1);
+    let ample = run(fine(), &NoStore, 1);
     let within = |bytes: u64, threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap().with_memory_budget(bytes);
-        fine().run(&Nowhere, &exec)
+        fine().run(&NoStore, &exec)
     };
     let refused = within(FIGURES, 1).unwrap_err();
     let SweepError::Run(RunError::OutOfBudget(OutOfBudget { needed, .. })) = refused else {
@@ -180,7 +182,7 @@ fn what_cannot_be_built_is_told_and_stops_nothing() {
     let text = family("pyramid", "['x', 'yaw']");
     let plan = plan(&text, &["family=pyramid,cone"], "5", 10).unwrap();
     let base = plan.base().clone();
-    let sweep = run(plan, &Nowhere, 2);
+    let sweep = run(plan, &NoStore, 2);
     assert!(sweep.designs[0].found.figures().is_some());
     let DesignResult::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
     let alone = Draft::read(SourceText::new("d.toml", text.replace("pyramid", "cone")));
@@ -208,5 +210,5 @@ fn what_nobody_can_sweep_is_refused() {
     assert!(refused(&["cor=0..1/1000", "rho=1..2/1000"]).contains("1000000 designs"));
     assert!(refused(&["pins=1,2"]).contains("pins"), "not a parameter of the family");
     let nothing = plan(&family("pin-hole", "['x']"), &["pin_radius=0.8,0.9"], "5", 10).unwrap();
-    assert!(matches!(nothing.run(&Nowhere, &Exec::new()), Err(SweepError::AllRefused { designs: 2, .. })));
+    assert!(matches!(nothing.run(&NoStore, &Exec::new()), Err(SweepError::AllRefused { designs: 2, .. })));
 }

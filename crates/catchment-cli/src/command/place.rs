@@ -10,7 +10,7 @@ use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
 use catchment::study::proposal::{
-    AxisDirection, Beside, PartFile, PartFrames, Proposal, ProposalError, ProposalSettings, propose,
+    AxisDirection, PartDetail, PartFile, PartFrames, Proposal, ProposalError, ProposalSettings, propose,
     shown_length,
 };
 use catchment::terminal::shown;
@@ -215,7 +215,7 @@ fn settings(args: &PlaceArgs) -> Result<ProposalSettings, Failure> {
 }
 
 /// What was named beside a half's file: a file, or an element of a design's list of parts.
-fn beside(said: &[String], place: &Path) -> Result<Vec<Beside>, Failure> {
+fn beside(said: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
     let one = |text: &String| {
         if is_file(text) {
             let path = Path::new(text);
@@ -223,14 +223,14 @@ fn beside(said: &[String], place: &Path) -> Result<Vec<Beside>, Failure> {
                 let help = "name a file, or write a part as a design has it: 'sphere = { radius = 6 }, at = [21, 0, 8]'";
                 return Err(Failure::with_help(format!("there is no file {text}"), Some(help.to_owned())));
             }
-            return Ok(Beside::File(part(path, place)?));
+            return Ok(PartDetail::File(part(path, place)?));
         }
         if text.trim().lines().count() > 1 {
             let help = "write it in one line, as an inline table".to_owned();
             return Err(Failure::with_help("a part of several lines".to_owned(), Some(help)));
         }
         let text = text.trim();
-        Ok(Beside::Part(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") }))
+        Ok(PartDetail::Part(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") }))
     };
     said.iter().map(one).collect()
 }

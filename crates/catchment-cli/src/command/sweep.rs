@@ -18,7 +18,7 @@ use catchment::report::figure::{sweep_map, sweep_outlines};
 use catchment::report::schema::Timing;
 use catchment::report::{FinishedDesigns, SweepReport};
 use catchment::run::{Over, Run, RunError};
-use catchment::study::sweep::{Keep, Nowhere, Sweep, SweepAxis, SweepError, SweepPlan, SweepSettings};
+use catchment::study::sweep::{DesignStore, NoStore, Sweep, SweepAxis, SweepError, SweepPlan, SweepSettings};
 use catchment::terminal::{escaped, shown};
 use clap::Args;
 use std::path::Path;
@@ -122,9 +122,9 @@ fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
 
 /// Computes what is not kept; says what is where it stops.
 fn compute(plan: SweepPlan, parts: Option<&FinishedDesigns>, exec: &Exec) -> Result<Sweep, Failure> {
-    let Some(parts) = parts else { return plan.run(&Nowhere, exec).map_err(refused) };
+    let Some(parts) = parts else { return plan.run(&NoStore, exec).map_err(refused) };
     let designs = plan.len();
-    let keep: &dyn Keep = parts;
+    let keep: &dyn DesignStore = parts;
     plan.run(keep, exec).map_err(|error| {
         tell_kept(Some(parts), designs);
         refused(error)

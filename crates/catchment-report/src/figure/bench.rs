@@ -11,7 +11,7 @@ use catchment_core::document::percent;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::ObservedOutcome;
 use catchment_study::plan::{CELLS, Panel, PlannedPose};
-use catchment_study::validate::Judged;
+use catchment_study::validate::PredictedTrial;
 
 /// A trial that fared otherwise than predicted.
 const WRONG: &str = "#c62f2f";
@@ -70,7 +70,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
 
 /// Draws what was seen of trials over what was predicted.
 pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
-    let of = |trial: &Judged| Mark {
+    let of = |trial: &PredictedTrial| Mark {
         error: trial.point.error,
         shape: match trial.observed {
             None => Shape::NotMade,

@@ -5,7 +5,7 @@ use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, p
 use super::{FigureError, Picture};
 use crate::HoldReport;
 use catchment_core::document::significant;
-use catchment_study::hold::Both;
+use catchment_study::hold::LoadLimits;
 
 /// The middle of the polar chart, and its radius.
 const MIDDLE: [f64; 2] = [250.0, 330.0];
@@ -19,7 +19,7 @@ const BEYOND: f64 = 4.0;
 /// Shares of the preload below this are nothing: rounding.
 const NOTHING: f64 = 1e-6;
 
-/// A column of [`Both::columns`]: its name, colour and stroke.
+/// A column of [`LoadLimits::columns`]: its name, colour and stroke.
 struct Column {
     name: &'static str,
     number: usize,
@@ -36,7 +36,7 @@ const COLUMNS: [Column; 4] = [
 
 impl Column {
     /// Infinite where any load is withstood; none where nothing is known.
-    fn of(&self, withstood: &Both) -> Option<f64> {
+    fn of(&self, withstood: &LoadLimits) -> Option<f64> {
         withstood.columns()[self.number]
     }
 }
@@ -100,7 +100,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
         INK,
         &format!("sideways forces that it withstands [{unit}]"),
     );
-    let sides: Vec<(f64, Both)> =
+    let sides: Vec<(f64, LoadLimits)> =
         report.sideways.iter().map(|side| (side.direction_rad, side.withstood)).collect();
     if sides.is_empty() {
         svg.text([cx, cy], LABEL, Anchor::Middle, SOFT, "x and y are locked");
@@ -196,7 +196,7 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
         svg.text([x, y + 20.0], LABEL, Anchor::Start, SOFT, "rotations are locked");
         return;
     }
-    let torques: Vec<(String, Both)> = report
+    let torques: Vec<(String, LoadLimits)> = report
         .torques
         .iter()
         .map(|torque| {

@@ -230,7 +230,7 @@ mod tests {
     use catchment_core::design::SourceText;
     use catchment_core::exec::Exec;
     use catchment_core::run::{Over, Run, Sample};
-    use catchment_study::sweep::{Nowhere, SweepPlan, SweepSettings};
+    use catchment_study::sweep::{NoStore, SweepPlan, SweepSettings};
 
     fn swept(text: &str, axes: &[&str]) -> SweepReport {
         let source = SourceText::new("d.toml", text);
@@ -238,7 +238,7 @@ mod tests {
         let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
         let plan = SweepPlan::new(&source, SweepSettings { axes, run }, Ok).unwrap();
         let design = plan.base().clone();
-        SweepReport::new(&design, plan.run(&Nowhere, &Exec::new()).unwrap(), Vec::new(), None)
+        SweepReport::new(&design, plan.run(&NoStore, &Exec::new()).unwrap(), Vec::new(), None)
     }
 
     #[test]

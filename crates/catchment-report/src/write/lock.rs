@@ -65,7 +65,7 @@ impl Holder {
 }
 
 /// A lock that another holds.
-struct Held {
+struct HeldLock {
     by: Holder,
     /// The holder started this process, or this process was started with the lock: it is not released before this process ends.
     above: bool,
@@ -97,7 +97,7 @@ pub(super) fn claim(place: &Path, patience: Duration, exec: &Exec) -> Result<Opt
         let over = waited >= patience;
         // At first, too: what a process was started with does not change.
         if over || std::mem::take(&mut first) {
-            let Held { by, above } = held(&folder);
+            let HeldLock { by, above } = held(&folder);
             if above {
                 return Err(WriteError::LockedAbove { path, by });
             }
@@ -127,10 +127,10 @@ pub(super) fn is_at(file: &File, path: &Path) -> bool {
 
 /// Who holds the lock of a file.
 #[cfg(target_os = "linux")]
-fn held(file: &File) -> Held {
+fn held(file: &File) -> HeldLock {
     use rustix::fs::{major, minor};
     use std::os::unix::fs::MetadataExt;
-    let unknown = Held { by: Holder::Unknown, above: false };
+    let unknown = HeldLock { by: Holder::Unknown, above: false };
     let Ok(meta) = file.metadata() else { return unknown };
     let inode = format!("{:02x}:{:02x}:{}", major(meta.dev()), minor(meta.dev()), meta.ino());
     // As this /proc numbers processes, which may be seen from another name space.
@@ -144,16 +144,16 @@ fn held(file: &File) -> Held {
     });
     let locks = fs::read_to_string("/proc/locks").unwrap_or_default();
     let Some(id) = holder_in(&locks, &inode).filter(|id| *id != 0) else {
-        return Held { above: handed_down, ..unknown };
+        return HeldLock { above: handed_down, ..unknown };
     };
     let name = fs::read_to_string(format!("/proc/{id}/comm")).unwrap_or_default();
     let above = handed_down || std::iter::successors(Some(own), |id| parent(*id)).skip(1).any(|up| up == id);
-    Held { by: Holder::Process { id, name: name.trim_end().to_owned() }, above }
+    HeldLock { by: Holder::Process { id, name: name.trim_end().to_owned() }, above }
 }
 
 #[cfg(not(target_os = "linux"))]
-fn held(_: &File) -> Held {
-    Held { by: Holder::Unknown, above: false }
+fn held(_: &File) -> HeldLock {
+    HeldLock { by: Holder::Unknown, above: false }
 }
 
 /// The process that holds the `flock` lock of an inode, such as `08:01:42`, by lines as `/proc/locks` has them:

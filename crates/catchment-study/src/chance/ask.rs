@@ -1,6 +1,6 @@
 //! Poses and maps: a number of trials of each, and the share that docks.
 
-use super::found::{Chance, ChanceMap, Declared, PoseChance, PresetOpen};
+use super::found::{Chance, ChanceMap, DeclaredCircumstance, PoseChance, PresetOpen};
 use super::spread;
 use super::trial::{Draw, check, nominal};
 use super::{ChanceError, ChanceSettings, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question};
@@ -82,7 +82,7 @@ pub fn run(
     let counted = overall.as_ref().map_or(0, |overall| overall.trials);
     let places = poses.len() + map.as_ref().map_or(0, |map| map.cells.len());
     let made = places * settings.trials + counted + curve.iter().map(|at| at.trials).sum::<usize>();
-    let declared = settings.dynamics.declared().map(|(circumstance, law)| Declared {
+    let declared = settings.dynamics.declared().map(|(circumstance, law)| DeclaredCircumstance {
         circumstance,
         unit: circumstance.unit(),
         law: law.clone(),

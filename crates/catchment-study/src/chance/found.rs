@@ -19,7 +19,7 @@ pub struct Chance {
     /// The settings.
     pub settings: ChanceSettings,
     /// Every declared parameter with its distribution.
-    pub declared: Vec<Declared>,
+    pub declared: Vec<DeclaredCircumstance>,
     /// Distance that a half with the mean speed coasts until damping stops it, in D; null without speed or
     /// damping.
     pub coasting_d: Option<f64>,
@@ -40,7 +40,7 @@ pub struct Chance {
 /// A dynamic parameter and its distribution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Declared {
+pub struct DeclaredCircumstance {
     /// The parameter.
     pub circumstance: Circumstance,
     /// Unit of its values; empty if they have no unit.

@@ -46,7 +46,8 @@ use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Circumstance, Dynamics, Spread};
 use catchment_core::problem::Problem;
 pub use found::{
-    AtSpeed, ByOutcome, Chance, ChanceMap, Declared, Overall, PoseChance, PresetOpen, majority_of_three,
+    AtSpeed, ByOutcome, Chance, ChanceMap, DeclaredCircumstance, Overall, PoseChance, PresetOpen,
+    majority_of_three,
 };
 pub use report::unit_of;
 use serde::{Deserialize, Serialize};

@@ -48,7 +48,7 @@ pub(super) fn overall(
     let source = Source::of(errors, 0, settings.seed);
     let part = |from: f64, to: f64| exec.part([from, to], STAGE);
     let strata = Strata::decide(problem, &source, None, &part(0.0, PARTS[0]))?;
-    let asked = Asked { trials, source: &source, strata: &strata };
+    let asked = StratifiedTrials { trials, source: &source, strata: &strata };
     let still = asked.quasi_static(&part(PARTS[0], PARTS[1]))?;
     let mut factors: Vec<f64> = times.to_vec();
     factors.sort_by(f64::total_cmp);
@@ -83,13 +83,13 @@ pub(super) fn overall(
     Ok((Some(overall), curve))
 }
 
-struct Asked<'a> {
+struct StratifiedTrials<'a> {
     trials: &'a Trials<'a>,
     source: &'a Source<'a>,
     strata: &'a Strata,
 }
 
-impl Asked<'_> {
+impl StratifiedTrials<'_> {
     fn draw(&self, number: u64) -> Draw {
         let settings = self.trials.settings;
         Draw::of(&settings.dynamics, Stream::new(settings.seed).branch(OF_ERRORS).branch(number))

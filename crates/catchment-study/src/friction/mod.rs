@@ -85,14 +85,14 @@ pub struct Friction {
     /// Number of poses sampled from the error box, the same at every friction coefficient.
     pub motions: usize,
     /// Outcomes of the poses at every friction coefficient, 0 first.
-    pub curve: Vec<Rung>,
+    pub curve: Vec<FrictionLevel>,
     /// Critical friction by share: up to it this share of the poses that dock without friction still docks;
     /// `p95` is 95 %.
     #[serde(serialize_with = "by_share")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "report::kept_schema"))]
-    pub kept: Vec<Kept>,
+    pub kept: Vec<RetainedShare>,
     /// Contacts with stiction at the poses that are lost first.
-    pub sticks_first: SticksFirst,
+    pub sticks_first: FirstSticking,
     /// Poses that are lost at some friction coefficient and dock again at a larger one.
     pub come_back: usize,
 }
@@ -100,7 +100,7 @@ pub struct Friction {
 /// Outcomes of the poses at one friction coefficient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Rung {
+pub struct FrictionLevel {
     /// Friction coefficient.
     pub friction: f64,
     /// Poses that dock.
@@ -131,7 +131,7 @@ pub struct Rung {
 /// docks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Kept {
+pub struct RetainedShare {
     /// Critical friction coefficient.
     pub share: f64,
     /// Up to this friction.
@@ -146,7 +146,7 @@ pub struct Kept {
 /// Contacts with stiction at the poses that are lost first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SticksFirst {
+pub struct FirstSticking {
     /// Number of poses examined: those that are lost first and stick.
     pub poses: usize,
     /// The pairs of features in contact there, most frequent first.
@@ -263,7 +263,7 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
         motions: ways.len(),
         curve: rungs(&settings.frictions, &ways),
         kept: kept(&ways, top),
-        sticks_first: SticksFirst { poses, features },
+        sticks_first: FirstSticking { poses, features },
         come_back: ways.iter().filter(|way| way.comes_back()).count(),
         settings,
     })
@@ -360,7 +360,7 @@ impl Way {
     }
 }
 
-fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
+fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<FrictionLevel> {
     let rung = |(k, friction): (Option<usize>, f64)| {
         let at = |way: &Way| k.map_or((way.without, FrictionAmbiguity::default()), |k| way.at[k]);
         let count = |is: &dyn Fn(&Way) -> bool| ways.iter().filter(|way| is(way)).count();
@@ -368,7 +368,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
         let docked = |way: &Way| way.without == Outcome::Aligned;
         let by_statics = |way: &Way| docked(way) && way.holds > friction;
         let ended = |outcome: Outcome| Share::of(count(&|way| at(way).0 == outcome), ways.len());
-        Rung {
+        FrictionLevel {
             friction,
             aligned: ended(Outcome::Aligned),
             jammed: ended(Outcome::Jammed),
@@ -389,7 +389,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
 
 /// Quantiles of the critical friction, with intervals by order statistics (Conover, *Practical Nonparametric Statistics*, 3.2): ranks
 /// n q ± 1.96 √(n q (1 − q)), rounded outwards.
-fn kept(ways: &[Way], top: f64) -> Vec<Kept> {
+fn kept(ways: &[Way], top: f64) -> Vec<RetainedShare> {
     let mut critical: Vec<f64> = ways
         .iter()
         .filter(|way| way.without == Outcome::Aligned)
@@ -407,7 +407,12 @@ fn kept(ways: &[Way], top: f64) -> Vec<Kept> {
             ((1.0 - share) * count as f64, Z95 * (share * (1.0 - share) * count as f64).sqrt());
         let friction = of_rank((expected + 1e-9).floor());
         let low = if expected - spread < 1.0 { 0.0 } else { of_rank((expected - spread).floor() - 1.0) };
-        Kept { share, friction, ci95: [low, of_rank((expected + spread).ceil())], is_top: friction >= top }
+        RetainedShare {
+            share,
+            friction,
+            ci95: [low, of_rank((expected + spread).ceil())],
+            is_top: friction >= top,
+        }
     };
     SHARES.map(of_share).to_vec()
 }

@@ -1,6 +1,6 @@
 //! Text and table form of the effect of friction.
 
-use super::{Friction, Kept, Rung, SticksFirst};
+use super::{FirstSticking, Friction, FrictionLevel, RetainedShare};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Table, grouped, tenths};
@@ -25,7 +25,8 @@ impl Subject for Friction {
             let [lo, hi] = rung.aligned.ci95;
             rung.hardly_held as f64 > 0.5 * (hi - lo) * self.motions as f64
         });
-        if let Some(Rung { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held) {
+        if let Some(FrictionLevel { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held)
+        {
             warnings.push(note(format!(
                 "{} poses are lost at µ = {friction} and dock at 0.9 of it: rigid halves stick there; compliant halves, as real ones and those of physics \
                  engines, may slip",
@@ -130,7 +131,7 @@ impl Friction {
     }
 
     fn describe_sticking(&self, document: &mut Document) {
-        let SticksFirst { poses: count, features } = &self.sticks_first;
+        let FirstSticking { poses: count, features } = &self.sticks_first;
         if features.is_empty() {
             return;
         }
@@ -164,14 +165,14 @@ impl Friction {
 }
 
 /// The shares as the fields of an object: `p95`.
-pub(super) fn by_share<S: Serializer>(kept: &[Kept], serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn by_share<S: Serializer>(kept: &[RetainedShare], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(kept.iter().map(|kept| (named(kept.share), kept)))
 }
 
 /// The JSON schema of that.
 #[cfg(feature = "schema")]
 pub(super) fn kept_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let kept = generator.subschema_for::<Kept>();
+    let kept = generator.subschema_for::<RetainedShare>();
     let properties: serde_json::Map<String, serde_json::Value> =
         super::SHARES.iter().map(|share| (named(*share), kept.clone().to_value())).collect();
     schemars::json_schema!({ "type": "object", "properties": properties })

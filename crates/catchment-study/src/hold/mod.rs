@@ -72,7 +72,7 @@ const DIRECTIONS: [usize; 2] = [4, 3600];
 /// Holding force or torque for a load: as a share of the preload, or of the preload times D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Withstood {
+pub struct LoadLimit {
     /// If the half can move only in the direction of the load and up; null: any load is resisted.
     pub guided: Option<f64>,
     /// If the half can move in all free errors and up; null: any load is resisted.
@@ -82,11 +82,11 @@ pub struct Withstood {
 /// Resistance to a load without and with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Both {
+pub struct LoadLimits {
     /// Without friction; null if the preload is held only by friction.
-    pub smooth: Option<Withstood>,
+    pub smooth: Option<LoadLimit>,
     /// With the friction of the settings; null if that is 0.
-    pub rough: Option<Withstood>,
+    pub rough: Option<LoadLimit>,
 }
 
 /// A lateral force.
@@ -97,7 +97,7 @@ pub struct Sideways {
     pub direction_rad: f64,
     /// Holding force in this direction.
     #[serde(flatten)]
-    pub withstood: Both,
+    pub withstood: LoadLimits,
 }
 
 /// A torque about the axis of a free error.
@@ -110,7 +110,7 @@ pub struct Torque {
     pub sign: f64,
     /// Holding torque.
     #[serde(flatten)]
-    pub withstood: Both,
+    pub withstood: LoadLimits,
 }
 
 /// The weakest lateral directions; null if any force is resisted.
@@ -240,7 +240,7 @@ pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Ho
     let frictions = [0.0, settings.friction].map(|friction| holding.is_held(friction).then_some(friction));
     let rough = frictions[1].filter(|_| settings.friction > 0.0);
     let face = face_from_cor(holding.rotation(), pair.alignment.center_of_rotation);
-    let tried = Tried { holding, face, frictions: [frictions[0], rough], lever: settings.lever };
+    let tried = LoadedHalf { holding, face, frictions: [frictions[0], rough], lever: settings.lever };
     if tried.frictions == [None; 2] {
         return Err(HoldError::NotHeld);
     }
@@ -330,7 +330,7 @@ impl HoldSettings {
 const MOST_PLAY: f64 = 0.1;
 
 /// What is tried on a half.
-struct Tried {
+struct LoadedHalf {
     holding: Holding,
     /// The face centre of the moving half, from the centre of rotation.
     face: DVec3,
@@ -339,7 +339,7 @@ struct Tried {
     lever: f64,
 }
 
-impl Tried {
+impl LoadedHalf {
     fn sideways(&self, direction: f64) -> Sideways {
         let (sin, cos) = direction.sin_cos();
         let force = DVec3::new(snapped(cos), snapped(sin), 0.0);
@@ -364,14 +364,14 @@ impl Tried {
         Torque { axis, sign, withstood }
     }
 
-    fn withstood(&self, load: &Load) -> Both {
+    fn withstood(&self, load: &Load) -> LoadLimits {
         let with = |friction: Option<f64>| {
             let friction = friction?;
             let mut holding = self.holding.clone();
             let mut most = |guide| holding.most(load, guide, friction).filter(|most| most.is_finite());
-            Some(Withstood { guided: most(Guide::Along), free: most(Guide::Free) })
+            Some(LoadLimit { guided: most(Guide::Along), free: most(Guide::Free) })
         };
-        Both { smooth: with(self.frictions[0]), rough: with(self.frictions[1]) }
+        LoadLimits { smooth: with(self.frictions[0]), rough: with(self.frictions[1]) }
     }
 
     /// The weakest direction of a column: by golden section about the weakest of those that were tried.
@@ -420,11 +420,11 @@ fn snapped(part: f64) -> f64 {
     if part.abs() < NOTHING { 0.0 } else { part }
 }
 
-impl Both {
+impl LoadLimits {
     /// Without friction guided and free, with it guided and free: infinite where any load is withstood; none where nothing is known.
     pub fn columns(&self) -> [Option<f64>; COLUMNS] {
         let any = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
-        let of = |withstood: Option<Withstood>| {
+        let of = |withstood: Option<LoadLimit>| {
             [withstood.map(|of| any(of.guided)), withstood.map(|of| any(of.free))]
         };
         let ([smooth_guided, smooth_free], [rough_guided, rough_free]) = (of(self.smooth), of(self.rough));
@@ -438,15 +438,15 @@ impl Both {
 }
 
 impl Weakest {
-    /// The directions in the order of [`Both::columns`].
+    /// The directions in the order of [`LoadLimits::columns`].
     pub const fn columns(&self) -> [Option<Sideways>; COLUMNS] {
         [self.smooth_guided, self.smooth_free, self.rough_guided, self.rough_free]
     }
 }
 
 /// The least load that is withstood in free errors, with friction where it is known.
-fn least(all: impl Iterator<Item = Both>) -> Option<f64> {
-    let of = |both: Both| {
+fn least(all: impl Iterator<Item = LoadLimits>) -> Option<f64> {
+    let of = |both: LoadLimits| {
         let columns = both.columns();
         columns[3].or(columns[1]).map(|value| value.min(ANY))
     };

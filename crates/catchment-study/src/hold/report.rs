@@ -1,6 +1,6 @@
 //! Text and table form of holding forces.
 
-use super::{Both, COLUMNS, HoldingForces};
+use super::{COLUMNS, HoldingForces, LoadLimits};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{Cell, Column, DesignUnits, Document, Subject, Table, significant};
@@ -70,7 +70,7 @@ impl HoldingForces {
     }
 
     /// What is withstood of every load.
-    fn loads(&self) -> impl Iterator<Item = Both> {
+    fn loads(&self) -> impl Iterator<Item = LoadLimits> {
         let forces = self.sideways.iter().map(|side| side.withstood);
         forces.chain(self.torques.iter().map(|torque| torque.withstood))
     }
@@ -79,7 +79,7 @@ impl HoldingForces {
     fn records(&self) -> Table {
         let mut table =
             Table::data("load direction_rad sign smooth_guided smooth_free rough_guided rough_free");
-        let mut push = |head: [Cell; 3], withstood: &Both| {
+        let mut push = |head: [Cell; 3], withstood: &LoadLimits| {
             table.push(head.into_iter().chain(withstood.columns().map(Cell::from)));
         };
         for side in &self.sideways {

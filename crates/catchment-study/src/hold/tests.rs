@@ -17,11 +17,11 @@ fn found(problem: &Problem, settings: &HoldSettings) -> HoldingForces {
     run(problem, settings, &Exec::new()).unwrap()
 }
 
-fn guided(of: &Both) -> f64 {
+fn guided(of: &LoadLimits) -> f64 {
     of.smooth.unwrap().guided.unwrap()
 }
 
-fn free(of: &Both) -> f64 {
+fn free(of: &LoadLimits) -> f64 {
     of.smooth.unwrap().free.unwrap()
 }
 

@@ -50,13 +50,13 @@ const SHARP: f64 = 2e-3;
 const SHARPEST: f64 = 1e-3;
 
 /// Follows poses of a problem.
-pub struct Judge<'a> {
+pub struct DockingOracle<'a> {
     follower: Follower<'a>,
     problem: &'a Problem,
     followed: usize,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> DockingOracle<'a> {
     /// By these motions.
     pub fn new(problem: &'a Problem, motions: &'a DescentSettings) -> Self {
         Self { follower: Follower::new(problem.pair(), motions), problem, followed: 0 }
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     /// The nearest pose found that fares otherwise than `from`, which `docks` or does not; `other` is one that is known to.
     pub(crate) fn nearest(
         &self,
-        judge: &mut Judge<'_>,
+        judge: &mut DockingOracle<'_>,
         from: &PoseError,
         docks: bool,
         other: Option<&PoseError>,
@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
     /// Looks in directions beside the best one.
     fn beside(
         &self,
-        judge: &mut Judge<'_>,
+        judge: &mut DockingOracle<'_>,
         from: &PoseError,
         docks: bool,
         random: Stream,
@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
     /// Looks along a direction, as far as is worth it.
     fn ray(
         &self,
-        judge: &mut Judge<'_>,
+        judge: &mut DockingOracle<'_>,
         from: &PoseError,
         docks: bool,
         along: [f64; 5],
@@ -234,7 +234,7 @@ impl<'a> Search<'a> {
     /// Where what becomes of it changes, from where it does not to where it does.
     fn bisect(
         &self,
-        judge: &mut Judge<'_>,
+        judge: &mut DockingOracle<'_>,
         from: &PoseError,
         docks: bool,
         along: &[f64; 5],

@@ -24,7 +24,7 @@ mod slices;
 #[cfg(test)]
 mod tests;
 
-pub use border::{Border, Judge, Search};
+pub use border::{Border, DockingOracle, Search};
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, FrictionOutOfRange};
@@ -379,7 +379,7 @@ fn other_signs(
     let found = for_each(
         points.len(),
         exec,
-        || Judge::new(problem, motions),
+        || DockingOracle::new(problem, motions),
         |judge, k| {
             let PlannedPose { error, prediction, .. } = &points[k];
             if prediction.either {

@@ -10,7 +10,7 @@
 //! A point belongs to a line, along which outcomes are read outwards: for a grid and a lattice along their
 //! first error, for an arc at each yaw, for a bracket from zero.
 
-use super::border::{Judge, Search, random_direction};
+use super::border::{DockingOracle, Search, random_direction};
 use super::prediction::for_each;
 use super::{MOST_TRIALS, TrialPlanError};
 use crate::validate::LIMIT;
@@ -211,7 +211,7 @@ impl Maker<'_> {
         let found = for_each(
             poses.len(),
             exec,
-            || Judge::new(self.problem, self.motions),
+            || DockingOracle::new(self.problem, self.motions),
             |judge, k| {
                 let before = judge.followed();
                 let error = &poses[k].error;
@@ -289,7 +289,7 @@ impl Maker<'_> {
             return Err(TrialPlanError::TooMany { most: MOST_TRIALS });
         }
         let wanted = lines.unwrap_or((trials - controls) / 2);
-        let mut judge = Judge::new(self.problem, self.motions);
+        let mut judge = DockingOracle::new(self.problem, self.motions);
         if !judge.docks(&PoseError::default()) {
             return Err(TrialPlanError::NotDocked);
         }
@@ -341,7 +341,7 @@ impl Maker<'_> {
     /// How far from the border along a line, as a share of the way through the box, a point can be told to be on its side.
     fn told_apart(
         &self,
-        judge: &mut Judge<'_>,
+        judge: &mut DockingOracle<'_>,
         along: &[f64; 5],
         border: f64,
         sign: f64,
@@ -380,7 +380,7 @@ impl Maker<'_> {
     }
 
     /// Where along a direction the first pose fails, as a share of the way through the error box.
-    fn border(&self, judge: &mut Judge<'_>, along: &[f64; 5]) -> Option<f64> {
+    fn border(&self, judge: &mut DockingOracle<'_>, along: &[f64; 5]) -> Option<f64> {
         let fails = (1..=LOOKS).find(|k| !judge.docks(&self.scaled(along, *k as f64 / LOOKS as f64)))?;
         let [mut docks, mut fails] = [fails - 1, fails].map(|k| k as f64 / LOOKS as f64);
         for _ in 0..HALVINGS {

@@ -1,6 +1,6 @@
 //! Predicted outcomes of the poses of a plan, and their distances from the border.
 
-use super::border::{Border, Judge, Search};
+use super::border::{Border, DockingOracle, Search};
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
@@ -99,7 +99,7 @@ pub(crate) fn foretell(
 ) -> Result<(Vec<Prediction>, usize), Cancelled> {
     /// Part of the time that the poses themselves take.
     const FIRST: f64 = 0.05;
-    let judge = || Judge::new(problem, motions);
+    let judge = || DockingOracle::new(problem, motions);
     let first = exec.part([0.0, FIRST], "motions");
     let predicted = for_each(poses.len(), &first, judge, |judge, k| {
         let before = judge.followed();

@@ -11,7 +11,7 @@
 //! are projected along their other errors, over every pair of errors that vary, and no region is drawn under
 //! them: the region of any slice would be wrong for most of them.
 
-use super::border::Judge;
+use super::border::DockingOracle;
 use super::prediction::for_each;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
@@ -103,7 +103,7 @@ pub fn panels(
     let cells = for_each(
         rows * panels.len(),
         exec,
-        || Judge::new(problem, motions),
+        || DockingOracle::new(problem, motions),
         |judge, job| {
             let (panel, row) = (&panels[job / rows], job % rows);
             let mut pose = [0.0; 5];

@@ -6,18 +6,18 @@
 //!                                                                       └─▶ drawn apart: let down to first contact
 //! ```
 
-use super::judge::{Judged, Refusal, judge};
+use super::judge::{RejectedLayout, SeatCandidate, judge};
 use super::way::{AxisDirection, PartLayout};
-use super::{Looked, PartFrames, Parts, is_seat, rank, sink, ways};
+use super::{PartFrames, Parts, SeatSearch, is_seat, rank, sink, ways};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec2;
 
 /// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
 pub(super) fn docked(
     both: &Parts<'_>,
-    looked: &mut Looked,
+    looked: &mut SeatSearch,
     exec: &Exec,
-) -> Result<Vec<(AxisDirection, sink::Drawn)>, Cancelled> {
+) -> Result<Vec<(AxisDirection, sink::ApproachResult)>, Cancelled> {
     let ways = ways(both.settings.approach);
     let look = |ways: &[AxisDirection]| {
         exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
@@ -29,11 +29,13 @@ pub(super) fn docked(
         // Of a diagonal it says nothing that it does not hold.
         let [fixed, moving] = &both.diagonals;
         let common: Vec<AxisDirection> = fixed.iter().copied().filter(|way| moving.contains(way)).collect();
-        looks.extend(look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::Drawn::Holds(_))));
+        looks.extend(
+            look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::ApproachResult::Holds(_))),
+        );
     }
     exec.check()?;
     let holds = looks.iter().filter_map(|(way, drawn)| match drawn {
-        sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
+        sink::ApproachResult::Holds(sunk) => Some((*way, *sunk)),
         _ => None,
     });
     let holds: Vec<(AxisDirection, sink::Sunk)> = holds.collect();
@@ -43,7 +45,7 @@ pub(super) fn docked(
     rank(&mut looked.judged, both.settings.free, both.told, exec)?;
     if !looked.has_seat() {
         // A groove holds one way only, which is none to a lattice.
-        let rests = |drawn: &sink::Drawn| matches!(drawn, sink::Drawn::Flat { .. });
+        let rests = |drawn: &sink::ApproachResult| matches!(drawn, sink::ApproachResult::Flat { .. });
         let is_asked = both.settings.frames == PartFrames::Assembled || both.settings.approach.is_some();
         let flat: Vec<AxisDirection> =
             looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
@@ -58,10 +60,15 @@ pub(super) fn docked(
 }
 
 /// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
-fn let_in(both: &Parts<'_>, way: AxisDirection, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
+fn let_in(
+    both: &Parts<'_>,
+    way: AxisDirection,
+    sunk: sink::Sunk,
+    exec: &Exec,
+) -> Result<SeatCandidate, RejectedLayout> {
     let lie = PartLayout::Assembled { approach: way };
     let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
-    let near = |found: &Judged| {
+    let near = |found: &SeatCandidate| {
         let lift = sunk.height + 0.5 * sunk.climb;
         found.lift <= lift
     };
@@ -83,17 +90,18 @@ fn let_in(both: &Parts<'_>, way: AxisDirection, sunk: sink::Sunk, exec: &Exec) -
 /// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
 pub(super) fn let_down(
     both: &Parts<'_>,
-    looks: &[(AxisDirection, sink::Drawn)],
-    looked: &mut Looked,
+    looks: &[(AxisDirection, sink::ApproachResult)],
+    looked: &mut SeatSearch,
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {
     let apart: Vec<AxisDirection> = looks
         .iter()
-        .filter(|(_, drawn)| matches!(drawn, sink::Drawn::Apart(_)))
+        .filter(|(_, drawn)| matches!(drawn, sink::ApproachResult::Apart(_)))
         .map(|(way, _)| *way)
         .collect();
     let found = exec.each(apart.len(), usize::MAX, "approaches", |k, exec| {
-        let sink::Drawn::Holds(sunk) = sink::drawn(both.lattices(), apart[k], true, both.grain) else {
+        let sink::ApproachResult::Holds(sunk) = sink::drawn(both.lattices(), apart[k], true, both.grain)
+        else {
             return None;
         };
         Some(let_in(both, apart[k], sunk, exec))

@@ -1,6 +1,6 @@
 //! A candidate: a relative orientation in which two parts may dock, in terms for the user.
 
-use super::judge::{Judged, Seat};
+use super::judge::{Seat, SeatCandidate};
 use super::way::PartLayout;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
@@ -81,8 +81,8 @@ pub fn shown_length(value: f64, unit: LengthUnit) -> String {
 }
 
 /// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
-pub(super) fn candidate(judged: &Judged, unit: f64, told: DisplayUnit) -> Candidate {
-    let Judged { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
+pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) -> Candidate {
+    let SeatCandidate { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
     Candidate {
         lie: *lie,
         score: judged.score(),

@@ -10,7 +10,7 @@
 //! Not promised: that the cause is unique.
 
 use super::halves::file_unit;
-use super::sink::{self, Drawn, Grain, Triangles, together};
+use super::sink::{self, ApproachResult, Grain, Triangles, together};
 use super::{AxisDirection, PartFile, ProposalSettings};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
@@ -58,13 +58,14 @@ pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
 /// The cause, of what comes of each approach, and what helps.
 pub(super) fn of(
     parts: [&Triangles; 2],
-    looks: &[(AxisDirection, Drawn)],
+    looks: &[(AxisDirection, ApproachResult)],
     grain: Grain,
     told: DisplayUnit,
 ) -> (String, Option<Advice>) {
     let text = words(parts, looks, grain, told);
-    let stops = |drawn: &Drawn| matches!(drawn, Drawn::Flat { .. } | Drawn::Passes);
-    let holds = |drawn: &Drawn| matches!(drawn, Drawn::Holds(_));
+    let stops =
+        |drawn: &ApproachResult| matches!(drawn, ApproachResult::Flat { .. } | ApproachResult::Passes);
+    let holds = |drawn: &ApproachResult| matches!(drawn, ApproachResult::Holds(_));
     let is_part_missing =
         looks.iter().any(|(_, drawn)| stops(drawn)) && !looks.iter().any(|(_, drawn)| holds(drawn));
     (text, is_part_missing.then_some(Advice::MissingPart))
@@ -73,15 +74,15 @@ pub(super) fn of(
 /// The cause in words.
 fn words(
     parts: [&Triangles; 2],
-    looks: &[(AxisDirection, Drawn)],
+    looks: &[(AxisDirection, ApproachResult)],
     grain: Grain,
     told: DisplayUnit,
 ) -> String {
-    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, ApproachResult::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
     }
     let flat = looks.iter().find_map(|(way, drawn)| match drawn {
-        Drawn::Flat { climb } => Some((way, *climb)),
+        ApproachResult::Flat { climb } => Some((way, *climb)),
         _ => None,
     });
     if let Some((way, climb)) = flat {
@@ -91,13 +92,13 @@ fn words(
             told.length(climb)
         );
     }
-    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Passes)) {
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, ApproachResult::Passes)) {
         return format!(
             "as drawn, approach {way}: the moving part meets nothing and passes through: no stop. What does it come to rest on?"
         );
     }
     let apart = looks.iter().filter_map(|(way, drawn)| match drawn {
-        Drawn::Apart(by) => Some((*by, way)),
+        ApproachResult::Apart(by) => Some((*by, way)),
         _ => None,
     });
     if let Some((by, way)) = apart.min_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -107,7 +108,7 @@ fn words(
         );
     }
     let blocked = looks.iter().filter_map(|(way, drawn)| match drawn {
-        Drawn::Blocked(by) => Some((*by, *way)),
+        ApproachResult::Blocked(by) => Some((*by, *way)),
         _ => None,
     });
     let blocked: Vec<(f64, AxisDirection)> = blocked.collect();

@@ -7,7 +7,7 @@
 //!
 //! Not promised: that no pose beyond it docks in combination with other errors.
 
-use super::judge::{Judged, Seat};
+use super::judge::{Seat, SeatCandidate};
 use super::{PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::acceptance::Outcome;
 use catchment_core::contact::Pair;
@@ -23,7 +23,7 @@ use std::path::Path;
 pub(super) fn designed(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,
-    (best, seat): (&Judged, &Seat),
+    (best, seat): (&SeatCandidate, &Seat),
     unit: f64,
     place: &Path,
     exec: &Exec,

@@ -1,9 +1,9 @@
 //! The design file of a proposal: the meaning of every line, and the reason for its value.
 
 use super::halves::{design_unit, file_unit, says_its_unit};
-use super::judge::{Judged, Seat};
+use super::judge::{Seat, SeatCandidate};
 use super::way::PartLayout;
-use super::{Beside, PartFile, ProposalSettings};
+use super::{PartDetail, PartFile, ProposalSettings};
 use catchment_core::design::{FileSpec, LengthUnit};
 use catchment_core::pose::{Dof, DofSet, Mount};
 use glam::DVec2;
@@ -56,18 +56,18 @@ fn named(part: &PartFile, unit: LengthUnit) -> (String, Option<String>) {
 }
 
 /// An element of a list of parts.
-fn element(beside: &Beside, unit: LengthUnit) -> String {
+fn element(beside: &PartDetail, unit: LengthUnit) -> String {
     match beside {
-        Beside::File(part) => {
+        PartDetail::File(part) => {
             let (mesh, stated) = named(part, unit);
             format!("    {{ {} }},", std::iter::once(mesh).chain(stated).collect::<Vec<_>>().join(", "))
         }
-        Beside::Part(text) => format!("    {text},"),
+        PartDetail::Part(text) => format!("    {text},"),
     }
 }
 
 /// What draws a half: its file, or a list of parts that begins with it.
-fn drawn(part: &PartFile, with: &[Beside], settings: &ProposalSettings) -> Vec<String> {
+fn drawn(part: &PartFile, with: &[PartDetail], settings: &ProposalSettings) -> Vec<String> {
     let unit = file_unit(settings);
     let is_step = FileSpec::new(&part.path, 1.0).is_step();
     let meshed = is_step.then(|| MESHED.to_owned());
@@ -84,7 +84,7 @@ fn drawn(part: &PartFile, with: &[Beside], settings: &ProposalSettings) -> Vec<S
         return [Some(mesh), body, meshed, stated, fewer].into_iter().flatten().collect();
     }
     let open = "# The file, and what belongs to it, in its coordinates.\nparts = [".to_owned();
-    let file = element(&Beside::File(part.clone()), unit);
+    let file = element(&PartDetail::File(part.clone()), unit);
     let more = with.iter().map(|one| element(one, unit));
     meshed.into_iter().chain([open, file]).chain(more).chain(["]".to_owned()]).collect()
 }
@@ -103,7 +103,7 @@ pub(super) fn halves(parts: &[PartFile; 2], settings: &ProposalSettings) -> Stri
 pub(super) fn text(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,
-    judged: &Judged,
+    judged: &SeatCandidate,
     seat: Seat,
     scale: f64,
     ranges: &[f64; 5],

@@ -1,7 +1,7 @@
 //! The halves of a proposal: a file for each, with its settings, in the unit of the design.
 
 use super::candidate::shown_unit;
-use super::{Beside, PartFile, ProposalError, ProposalSettings, file};
+use super::{PartDetail, PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::connector::{Half, HalfRole, of_half};
 use catchment_core::design::{
     ConnectorSpec, Diagnostics, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText,
@@ -30,8 +30,8 @@ pub(super) fn read(
     if settings.unit.is_none() {
         for (part, with) in parts.iter().zip(&settings.with) {
             let more = with.iter().filter_map(|beside| match beside {
-                Beside::File(file) => Some(file),
-                Beside::Part(_) => None,
+                PartDetail::File(file) => Some(file),
+                PartDetail::Part(_) => None,
             });
             let mut files = std::iter::once(part).chain(more);
             if let Some(file) = files.find(|file| !says_its_unit(&file.path)) {
@@ -106,7 +106,7 @@ pub(super) fn file_unit(settings: &ProposalSettings) -> LengthUnit {
 /// The unit of the design, in which answers are given: millimetres where files are in metres, unless parts are written in the unit of the files beside them.
 pub(super) fn design_unit(settings: &ProposalSettings) -> LengthUnit {
     let unit = file_unit(settings);
-    let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, Beside::Part(_)));
+    let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, PartDetail::Part(_)));
     if has_parts { unit } else { shown_unit(unit) }
 }
 

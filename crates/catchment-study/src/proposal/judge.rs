@@ -46,7 +46,7 @@ const MOST_PLAY: f64 = 0.05;
 
 /// Why parts do not dock as they were laid.
 #[derive(Debug, Clone)]
-pub(super) struct Refusal {
+pub(super) struct RejectedLayout {
     /// How far they are from where they would, in the unit of the halves; infinite where no distance says it.
     pub(super) by: f64,
     pub(super) why: String,
@@ -54,13 +54,13 @@ pub(super) struct Refusal {
     lie: Option<PartLayout>,
 }
 
-impl From<&str> for Refusal {
+impl From<&str> for RejectedLayout {
     fn from(why: &str) -> Self {
         Self::new(f64::INFINITY, why.to_owned())
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for RejectedLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { why, lie, .. } = self;
         lie.map_or(Ok(()), |lie| write!(f, "{lie}: "))?;
@@ -68,7 +68,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-impl Refusal {
+impl RejectedLayout {
     const fn new(by: f64, why: String) -> Self {
         Self { by, why, lie: None }
     }
@@ -81,7 +81,7 @@ impl Refusal {
 
 /// A candidate that was judged. Lengths in the unit of the halves.
 #[derive(Debug, Clone)]
-pub(super) struct Judged {
+pub(super) struct SeatCandidate {
     pub(super) lie: PartLayout,
     pub(super) width: f64,
     /// Whether that is more than what can touch, because a half may only be so much wider than D.
@@ -120,7 +120,7 @@ pub(super) struct Seat {
 /// The largest play that counts as a seat's, in D and radians: beyond it no wall is looked for.
 const LOOSEST: [f64; 2] = [0.25, 30.0 / 180.0 * std::f64::consts::PI];
 
-impl Judged {
+impl SeatCandidate {
     pub(super) fn score(&self) -> f64 {
         let held = match &self.seat {
             None => 1.0,
@@ -169,7 +169,7 @@ pub(super) fn judge(
     others: &[DVec2],
     sunk: Option<&Sunk>,
     told: DisplayUnit,
-) -> Result<Judged, Refusal> {
+) -> Result<SeatCandidate, RejectedLayout> {
     const APART: &str = "they pass each other by";
     let turns = lie.turns();
     let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
@@ -200,7 +200,7 @@ pub(super) fn judge(
             let why = format!(
                 "no play: one would sink {deep} into the other if it were {cell} narrower on each side; give it some play"
             );
-            return Err(Refusal::new(0.0, why));
+            return Err(RejectedLayout::new(0.0, why));
         }
     }
     let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
@@ -219,10 +219,10 @@ pub(super) fn judge(
     } else {
         if lift > MOST_APART * wide {
             let why = format!("blocked: {} above where they are drawn", told.length(lift));
-            return Err(Refusal::new(lift, why));
+            return Err(RejectedLayout::new(lift, why));
         }
         if lift < -MOST_APART * wide {
-            return Err(Refusal::new(-lift, format!("drawn {} apart", told.length(-lift))));
+            return Err(RejectedLayout::new(-lift, format!("drawn {} apart", told.length(-lift))));
         }
     }
     let placed = at(offset);
@@ -245,7 +245,7 @@ pub(super) fn judge(
     let own = OwnSpec { drawn, face_height: None, ..OwnSpec::new(0.0, nothing(), nothing()) };
     let connector = face::found(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
     let climb = climb(&Pair::new(&connector, &nothing_free()));
-    Ok(Judged {
+    Ok(SeatCandidate {
         lie,
         width,
         is_widened,

@@ -54,7 +54,7 @@ use catchment_core::problem::{Problem, ProblemError};
 use catchment_core::terminal::shown;
 use glam::{DMat3, DVec2};
 use halves::design_unit;
-use judge::{Judged, Refusal, judge};
+use judge::{RejectedLayout, SeatCandidate, judge};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -88,12 +88,12 @@ pub struct ProposalSettings {
     /// How far the surface of a file may move so that it is described with fewer triangles, in `unit`.
     pub simplify: Option<f64>,
     /// What belongs to the fixed and to the moving half beside its file.
-    pub with: [Vec<Beside>; 2],
+    pub with: [Vec<PartDetail>; 2],
 }
 
 /// What belongs to a half beside its file, in the coordinates of that: what no export has, or has elsewhere.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Beside {
+pub enum PartDetail {
     /// Another file.
     File(PartFile),
     /// A bought ball or pin, as an element of the design's list of parts: `{ sphere = { radius = 6 }, at = [21, 0, 8] }`.
@@ -208,13 +208,13 @@ impl<'a> Parts<'a> {
 
 /// What was judged, and what was refused.
 #[derive(Default)]
-struct Looked {
-    judged: Vec<Judged>,
-    refused: Vec<Refusal>,
+struct SeatSearch {
+    judged: Vec<SeatCandidate>,
+    refused: Vec<RejectedLayout>,
 }
 
-impl Looked {
-    fn add(&mut self, found: Vec<Result<Judged, Refusal>>) {
+impl SeatSearch {
+    fn add(&mut self, found: Vec<Result<SeatCandidate, RejectedLayout>>) {
         for one in found {
             match one {
                 Ok(one) => self.judged.push(one),
@@ -255,7 +255,7 @@ pub fn propose(
         }
         known => known == frames,
     };
-    let mut looked = Looked::default();
+    let mut looked = SeatSearch::default();
     let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
     // Of parts that lie flat on each other as drawn: said if no other way is found.
     let mut flat = None;
@@ -273,7 +273,7 @@ pub fn propose(
             // Of frames of their own it says nothing.
             why = (may_be_assembly || !may_be(PartFrames::Facing))
                 .then(|| cause::of(both.lattices(), &looks, both.grain, told));
-            let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::Drawn::Flat { .. }));
+            let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::ApproachResult::Flat { .. }));
             flat = are_flat.then(|| cause::of(both.lattices(), &looks, both.grain, told));
         }
     }
@@ -285,7 +285,7 @@ pub fn propose(
             doubts.push(cause::ELSEWHERE.to_owned());
         }
     }
-    let Looked { judged, mut refused } = looked;
+    let SeatSearch { judged, mut refused } = looked;
     let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit, told)).collect();
     let best = judged.first().filter(|best| is_seat(best));
     let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
@@ -296,7 +296,7 @@ pub fn propose(
         };
         // What is nearest to docking first, before all that is flat: what lacks nothing but play.
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
-        let (mut tight, refused): (Vec<Refusal>, Vec<Refusal>) =
+        let (mut tight, refused): (Vec<RejectedLayout>, Vec<RejectedLayout>) =
             refused.into_iter().partition(|refusal| refusal.by <= 0.0);
         // Of a cube every facing has no play: once is enough.
         let mut known = HashSet::new();
@@ -338,7 +338,7 @@ pub fn propose(
 }
 
 /// Parts in frames of their own: the places where one sinks into the other, or the shallow ones where none does.
-fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Cancelled> {
+fn anywhere(both: &Parts<'_>, looked: &mut SeatSearch, exec: &Exec) -> Result<(), Cancelled> {
     looked.add(sunk(both, exec)?);
     rank(&mut looked.judged, both.settings.free, both.told, exec)?;
     if !looked.has_seat() {
@@ -349,7 +349,7 @@ fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Ca
 }
 
 /// The steepest places, as exact contact judges them.
-fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
+fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, RejectedLayout>>, Cancelled> {
     let facing = both.settings.facing.map(ways);
     let mut found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
     if both.settings.facing == [None; 2] {
@@ -392,30 +392,30 @@ fn facing(
     settings: &ProposalSettings,
     told: DisplayUnit,
     exec: &Exec,
-) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
+) -> Result<Vec<Result<SeatCandidate, RejectedLayout>>, Cancelled> {
     let facing = settings.facing.map(ways);
     let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
     Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
-        let search::Place { lie, offset, .. } = places[k];
+        let search::SeatPlace { lie, offset, .. } = places[k];
         judge(pair, lie, offset, &round_numbers(pair, lie), None, told).map_err(|refusal| refusal.of(lie))
     }))
 }
 
-fn is_seat(judged: &Judged) -> bool {
+fn is_seat(judged: &SeatCandidate) -> bool {
     matches!(judged.seat, Some(Ok(_))) && judged.score() > LEAST
 }
 
 /// The best first, and what the best and those nearly as good hold.
 fn rank(
-    judged: &mut Vec<Judged>,
+    judged: &mut Vec<SeatCandidate>,
     free: Option<DofSet>,
     told: DisplayUnit,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
-    let sort = |judged: &mut Vec<Judged>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    let sort = |judged: &mut Vec<SeatCandidate>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
     sort(judged);
     // Places that came to the same seat.
-    let mut kept: Vec<Judged> = Vec::new();
+    let mut kept: Vec<SeatCandidate> = Vec::new();
     for one in judged.drain(..) {
         if !kept
             .iter()

@@ -34,7 +34,7 @@ const LEVEL: f32 = 2e-3;
 
 /// A place where parts may dock.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct SeatPlace {
     pub(super) lie: PartLayout,
     /// Where the origin of the turned moving half is, in plan view, in the frame of the fixed one.
     pub(super) offset: DVec2,
@@ -46,7 +46,7 @@ pub(super) fn places(
     halves: [&Half; 2],
     facing: [&[AxisDirection]; 2],
     exec: &Exec,
-) -> Result<Vec<Place>, Cancelled> {
+) -> Result<Vec<SeatPlace>, Cancelled> {
     let cell = cell(halves, facing);
     let found = scan(halves, facing, None, cell, exec)?;
     let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined(halves, found[k], cell));
@@ -62,7 +62,7 @@ pub(super) fn obstacle(
 ) -> Result<Option<(PartLayout, Obstruction)>, Cancelled> {
     let cell = cell(halves, facing);
     for side in [HalfRole::Fixed, HalfRole::Moving] {
-        for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
+        for SeatPlace { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
             let [top, bottom] = height_maps(halves, lie, cell);
             let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
             if let Some(found) = height_map::in_the_way(&top, &bottom, moved, cell) {
@@ -86,7 +86,7 @@ fn scan(
     without_narrow: Option<HalfRole>,
     cell: f64,
     exec: &Exec,
-) -> Result<Vec<Place>, Cancelled> {
+) -> Result<Vec<SeatPlace>, Cancelled> {
     let broad = height_map::broadest(fixed).min(height_map::broadest(moving));
     let seen = |half: &Half, side: HalfRole, turn: &DMat3| {
         let map = HeightMap::centered(half, turn, if side == HalfRole::Fixed { 1.0 } else { -1.0 }, cell);
@@ -98,7 +98,7 @@ fn scan(
         let [f, m] = lies[number];
         let top =
             seen(fixed, HalfRole::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
-        let (mut found, mut met): (Vec<Place>, Vec<HeightMap>) = (Vec::new(), Vec::new());
+        let (mut found, mut met): (Vec<SeatPlace>, Vec<HeightMap>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
@@ -115,7 +115,7 @@ fn scan(
         found
     });
     exec.check()?;
-    let mut found: Vec<Place> = found.into_iter().flatten().collect();
+    let mut found: Vec<SeatPlace> = found.into_iter().flatten().collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
     found.truncate(PLACES);
     Ok(found)
@@ -150,7 +150,7 @@ fn hollows(
     both: &HeightMaps<'_>,
     cell: f64,
     broad: f64,
-) -> Vec<Place> {
+) -> Vec<SeatPlace> {
     let size: [i32; 2] = std::array::from_fn(|k| height_map::signed(top.counts[k] + bottom.counts[k]) - 1);
     let first: [i32; 2] = bottom.counts.map(|count| 1 - height_map::signed(count));
     let mut heights = Vec::with_capacity((size[0] * size[1]) as usize);
@@ -184,13 +184,13 @@ fn hollows(
     }
     let place = |(score, [i, j]): (f32, [i32; 2])| {
         let cells = DVec2::new(f64::from(first[0] + i), f64::from(first[1] + j));
-        Place { lie, offset: top.first - bottom.first + cell * cells, score }
+        SeatPlace { lie, offset: top.first - bottom.first + cell * cells, score }
     };
     kept.into_iter().map(place).collect()
 }
 
 /// The place on finer and finer lattices: the middle of where the half lies deepest.
-fn refined([fixed, moving]: [&Half; 2], mut place: Place, cell: f64) -> Place {
+fn refined([fixed, moving]: [&Half; 2], mut place: SeatPlace, cell: f64) -> SeatPlace {
     let turns = place.lie.turns();
     let mut cell = cell;
     for _ in 0..LATTICES {

@@ -1,14 +1,14 @@
 //! The sampled errors, the motions followed for some of them, and the combined estimate.
 
 use super::ErrorStratum;
-use super::estimate::{Followed, Sample};
+use super::estimate::{FollowedError, Sample};
 use super::strata::{STRATA, name};
 use catchment_core::acceptance::Outcome;
 use catchment_core::method::correction::{CombinedShares, StratumCounts, wilson95};
 
 /// Errors that were drawn, by stratum, and what was followed of them in batches.
 #[derive(Debug)]
-pub(super) struct Drawn {
+pub(super) struct DrawnErrors {
     /// Whether there are no strata: every error is followed.
     is_plain: bool,
     labels: Vec<u8>,
@@ -32,7 +32,7 @@ struct Pose {
     outcome: Outcome,
 }
 
-impl Drawn {
+impl DrawnErrors {
     /// Errors by their strata, none followed yet.
     pub(super) fn new(labels: Vec<u8>, is_plain: bool) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); STRATA];
@@ -112,14 +112,14 @@ impl Drawn {
         let followed = |pose: &Pose| {
             let record = &self.records[pose.place];
             let of_stratum = record.weight(pose.batch, self.of(pose.place).len(), self.total, &self.sizes);
-            Followed {
+            FollowedError {
                 number: pose.number,
                 weight: self.share(pose.place) * of_stratum,
                 outcome: pose.outcome,
                 stratum: self.present[pose.place],
             }
         };
-        let poses: Vec<Followed> = self.poses.iter().map(followed).collect();
+        let poses: Vec<FollowedError> = self.poses.iter().map(followed).collect();
         let probability = whole.fraction;
         let mut ci95 = whole.ci95;
         let drawn = (!self.is_plain).then_some(self.labels.len());
@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn weights_are_the_shares_of_what_poses_stand_for() {
         let labels = (0..1000).map(|k| u8::from(k % 10 == 0)).collect();
-        let mut drawn = Drawn::new(labels, false);
+        let mut drawn = DrawnErrors::new(labels, false);
         for given in [[20, 60], [30, 60]] {
             let numbered = drawn.batch(&given);
             let docks = |(place, _): &(usize, u64)| {

@@ -17,7 +17,7 @@
 //! Slopes have normal intervals; in every stratum the share that docks is shifted towards a half by two poses
 //! of either outcome, so that a stratum without failures still has an uncertainty.
 
-use super::drawn::Drawn;
+use super::drawn::DrawnErrors;
 use super::source::{SAME, Source};
 use super::strata::{STRATA, Strata};
 use super::{ErrorStratum, Slope};
@@ -39,7 +39,7 @@ const BLOCK: usize = 4096;
 
 /// A pose that was followed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Followed {
+pub(crate) struct FollowedError {
     /// Its number among the errors of the source.
     pub(super) number: u64,
     /// The share of all errors that it stands for.
@@ -63,7 +63,7 @@ pub(crate) struct Sample {
     /// Plain motions whose interval would be as wide.
     pub(crate) plain: f64,
     /// The poses that were followed.
-    pub(crate) poses: Vec<Followed>,
+    pub(crate) poses: Vec<FollowedError>,
     /// What was seen of every stratum that has errors.
     pub(crate) strata: Vec<ErrorStratum>,
     /// The stratum of every error that was drawn.
@@ -106,7 +106,7 @@ pub(crate) fn sample_by<E: From<Cancelled>>(
         labels(source, factors, strata, drawn, exec)?
     };
     let motions = plain.unwrap_or(motions);
-    let mut drawn = Drawn::new(labels, plain.is_some());
+    let mut drawn = DrawnErrors::new(labels, plain.is_some());
     let mut seen = drawn.seen();
     let mut whole = CombinedShares::of(&seen, 0);
     while let Some(batch) = next(Stop::Samples(motions), drawn.total(), seen.len(), Duration::ZERO, &whole)

@@ -16,9 +16,9 @@
 //! Not promised: that no failing error is nearer. Failures in regions too thin for the random errors are
 //! found only by luck.
 
-use super::estimate::{Followed, Sample};
+use super::estimate::{FollowedError, Sample};
 use super::source::{SAME, Source, normals};
-use super::{AlongAxis, Failures, First};
+use super::{AlongAxis, Failures, NearestFailure};
 use catchment_core::acceptance::Outcome;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, Follower};
@@ -105,7 +105,7 @@ fn first(
     source: &Source<'_>,
     sample: &Sample,
     exec: &Exec,
-) -> Result<(Option<First>, usize), Cancelled> {
+) -> Result<(Option<NearestFailure>, usize), Cancelled> {
     let mean = descent::outcome(problem.pair(), &source.mean(), &source.motions).outcome;
     if mean != Outcome::Aligned {
         let failing = Failing { z: [0.0; 5], distance: 0.0, outcome: mean };
@@ -113,7 +113,7 @@ fn first(
     }
     let failed = sample.poses.iter().filter(|pose| pose.outcome != Outcome::Aligned);
     let mut candidates: Vec<([f64; 5], f64)> = failed
-        .map(|pose: &Followed| {
+        .map(|pose: &FollowedError| {
             let z = source.standard(pose.number);
             (z, source.distance(&z))
         })
@@ -208,11 +208,11 @@ fn nearest(
     Ok((failing.min_by(|a, b| a.distance.total_cmp(&b.distance)), motions))
 }
 
-fn told(problem: &Problem, source: &Source<'_>, failing: Failing) -> First {
+fn told(problem: &Problem, source: &Source<'_>, failing: Failing) -> NearestFailure {
     let error = source.pose(&failing.z, &SAME);
     let path = descent::trace(problem.pair(), &error, &source.motions);
     let last = path.waypoints.last();
-    First {
+    NearestFailure {
         error,
         sigmas: PoseError::from_array(source.in_sigmas(&failing.z)),
         distance: failing.distance,

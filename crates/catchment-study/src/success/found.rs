@@ -130,7 +130,7 @@ pub struct Failures {
     /// Statistics of the failures for each error.
     pub along: Vec<AlongAxis>,
     /// The nearest failure; null without a failure.
-    pub first: Option<First>,
+    pub first: Option<NearestFailure>,
 }
 
 /// Size of an error in failures and in successes.
@@ -149,7 +149,7 @@ pub struct AlongAxis {
 /// The nearest failure: the failing error nearest to the mean.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct First {
+pub struct NearestFailure {
     /// The pose error.
     pub error: PoseError,
     /// The pose error in σ from the mean (in half-widths for uniform errors).
@@ -209,13 +209,13 @@ pub struct Tolerable {
     #[serde(flatten)]
     pub all: Factor,
     /// Factor on each σ by itself, in the order of the errors.
-    pub alone: Vec<Alone>,
+    pub alone: Vec<SingleErrorFactor>,
 }
 
 /// Largest tolerable increase of a single σ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Alone {
+pub struct SingleErrorFactor {
     /// The error.
     pub axis: Dof,
     /// Its standard deviation with this factor, in D or radians.

@@ -47,8 +47,8 @@ use catchment_core::poses::{Moments, Robot, Spread};
 use catchment_core::problem::Problem;
 pub(crate) use found::Slope;
 pub use found::{
-    Alone, AlongAxis, AtFactor, AxisFit, ErrorStratum, ExpectedErrors, Factor, Failures, First, GridCost,
-    Headline, Improvement, NormalFit, RobotDocking, Success, Tolerable,
+    AlongAxis, AtFactor, AxisFit, ErrorStratum, ExpectedErrors, Factor, Failures, GridCost, Headline,
+    Improvement, NearestFailure, NormalFit, RobotDocking, SingleErrorFactor, Success, Tolerable,
 };
 pub use report::in_percent;
 use serde::{Deserialize, Serialize};
@@ -259,7 +259,7 @@ fn of_robot(
         alone.know(&found);
         let factor = alone.factor(settings.required, &step(k + 1))?;
         let sigma = factor.factor * sigma.to_array()[axis.index()];
-        each.push(Alone { axis: *axis, sigma, factor });
+        each.push(SingleErrorFactor { axis: *axis, sigma, factor });
         followed += alone.followed();
     }
     let mut fit = fit::fit(&robot.errors);

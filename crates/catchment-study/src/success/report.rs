@@ -1,6 +1,6 @@
 //! Text and table form of the success of robots.
 
-use super::{Factor, First, NormalFit, RobotDocking, Success};
+use super::{Factor, NearestFailure, NormalFit, RobotDocking, Success};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
@@ -206,7 +206,7 @@ impl RobotDocking {
         }
     }
 
-    fn describe_first(&self, first: &First, name: &str, design: &Design, document: &mut Document) {
+    fn describe_first(&self, first: &NearestFailure, name: &str, design: &Design, document: &mut Document) {
         let unit = if self.errors.kind == "uniform" { "of the half-width" } else { "σ" };
         let sigmas = first.sigmas.to_array();
         let axes = self.failures.along.iter().map(|along| along.axis);

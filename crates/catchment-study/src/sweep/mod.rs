@@ -59,7 +59,7 @@ pub struct SweepPlan {
 /// Single-axis limits of an error, in D or rad.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Along {
+pub struct SingleAxisLimit {
     /// The error.
     pub axis: Dof,
     /// Limit below zero; not negative.
@@ -103,7 +103,7 @@ pub struct Figures {
     /// Edge of the largest cube around zero.
     pub centered_edge: Option<f64>,
     /// Single-axis limits of each error.
-    pub tolerances: Vec<Along>,
+    pub tolerances: Vec<SingleAxisLimit>,
     /// Success probability, if expected errors were given.
     pub success: Option<f64>,
     /// Warnings, as sentences.
@@ -159,7 +159,7 @@ pub struct Sweep {
 }
 
 /// Where finished designs are kept, so that a sweep that was stopped goes on where it was.
-pub trait Keep: Sync {
+pub trait DesignStore: Sync {
     /// What was kept under a key, if it can be read.
     fn find(&self, key: &str) -> Option<DesignResult>;
     /// Keeps it.
@@ -171,9 +171,9 @@ pub trait Keep: Sync {
 
 /// Keeps nothing.
 #[derive(Debug, Clone, Copy)]
-pub struct Nowhere;
+pub struct NoStore;
 
-impl Keep for Nowhere {
+impl DesignStore for NoStore {
     fn find(&self, _: &str) -> Option<DesignResult> {
         None
     }
@@ -299,7 +299,7 @@ impl SweepPlan {
         &self.base
     }
 
-    /// One design, in the order of the combinations, and the key that [`Keep`] has it under: a part of [`SweepPlan::run`] that may be computed
+    /// One design, in the order of the combinations, and the key that [`DesignStore`] has it under: a part of [`SweepPlan::run`] that may be computed
     /// elsewhere. `None` where the halves do not build, which takes no time to find out again.
     ///
     /// # Errors
@@ -307,10 +307,10 @@ impl SweepPlan {
     pub fn design(&self, number: usize, exec: &Exec) -> Result<Option<(String, DesignResult)>, SweepError> {
         let Ok(problem) = self.drafts[number].clone().build() else { return Ok(None) };
         let key = key(&problem, &self.settings.run).map_err(SweepError::Keep)?;
-        one(&self.drafts[number], &self.settings.run, &Nowhere, exec).map(|found| Some((key, found)))
+        one(&self.drafts[number], &self.settings.run, &NoStore, exec).map(|found| Some((key, found)))
     }
 
-    /// The key that [`Keep`] has a design under; `None` where its halves do not build.
+    /// The key that [`DesignStore`] has a design under; `None` where its halves do not build.
     ///
     /// # Errors
     /// None at present: every run has a JSON form.
@@ -323,7 +323,7 @@ impl SweepPlan {
     ///
     /// # Errors
     /// See [`SweepError`]. What was finished until then is kept.
-    pub fn run(self, keep: &dyn Keep, exec: &Exec) -> Result<Sweep, SweepError> {
+    pub fn run(self, keep: &dyn DesignStore, exec: &Exec) -> Result<Sweep, SweepError> {
         let Self { settings, drafts, .. } = self;
         let count = drafts.len();
         exec.ensure_fits("the figures of the designs", count as u64 * FIGURES_BYTES, |_| Vec::new())?;
@@ -379,7 +379,7 @@ fn combination(axes: &[SweepAxis], number: usize) -> impl Iterator<Item = &str> 
 }
 
 /// One design, computed or taken from what is kept.
-fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<DesignResult, SweepError> {
+fn one(draft: &Draft, run: &Run, keep: &dyn DesignStore, exec: &Exec) -> Result<DesignResult, SweepError> {
     let problem = match draft.clone().build().and_then(Problem::checked) {
         Ok(problem) => problem,
         Err(error) => return Ok(DesignResult::Refused(reason(&error))),
@@ -427,8 +427,11 @@ const LAYOUT: u8 = 1;
 /// The figures of an answer.
 fn figures(answer: &Answer) -> Result<Figures, SweepError> {
     let merits = &answer.merits;
-    let along =
-        |t: &catchment_core::merit::tolerance::Tolerance| Along { axis: t.dof, minus: t.minus, plus: t.plus };
+    let along = |t: &catchment_core::merit::tolerance::Tolerance| SingleAxisLimit {
+        axis: t.dof,
+        minus: t.minus,
+        plus: t.plus,
+    };
     Ok(Figures {
         sum: answer.sum(),
         sum_ci95: answer.sum_ci95(),

@@ -15,7 +15,7 @@
 //! no coefficient beyond the last tried is excluded.
 
 use super::ValidationSettings;
-use crate::plan::{Judge, Search, for_each};
+use crate::plan::{DockingOracle, Search, for_each};
 use catchment_core::acceptance::Stream;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
@@ -137,7 +137,7 @@ fn beyond(
         descent::DescentSettings { friction, max_steps: CREEPS, ..descent::DescentSettings::default() };
     let search = Search::new(problem, &settings.accuracy, settings.limit);
     let random = Stream::new(settings.seed).branch(6);
-    let judge = || Judge::new(problem, &motions);
+    let judge = || DockingOracle::new(problem, &motions);
     let docks = for_each(trials.len(), exec, judge, |judge, k| judge.docks(&trials[k].0))?;
     let mut followed = trials.len();
     let otherwise: Vec<usize> = (0..trials.len()).filter(|k| docks[*k] != trials[*k].1).collect();

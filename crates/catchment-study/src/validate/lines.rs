@@ -1,6 +1,6 @@
 //! The observed border along each line of a plan.
 
-use super::Judged;
+use super::PredictedTrial;
 use crate::plan::outwards;
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
@@ -29,16 +29,17 @@ pub struct TrialLine {
 }
 
 /// The lines of a table, by their numbers; trials of no line are left out.
-pub(super) fn lines(problem: &Problem, trials: &[Judged]) -> Vec<TrialLine> {
-    let mut by_number: BTreeMap<usize, Vec<&Judged>> = BTreeMap::new();
+pub(super) fn lines(problem: &Problem, trials: &[PredictedTrial]) -> Vec<TrialLine> {
+    let mut by_number: BTreeMap<usize, Vec<&PredictedTrial>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.point.line > 0 && trial.docked.is_some()) {
         by_number.entry(trial.point.line).or_default().push(trial);
     }
     let far = |error: &PoseError| outwards(problem, error);
-    let line = |(number, mut made): (usize, Vec<&Judged>)| {
+    let line = |(number, mut made): (usize, Vec<&PredictedTrial>)| {
         made.sort_by(|a, b| far(&a.point.error).total_cmp(&far(&b.point.error)));
-        let last = |is: &dyn Fn(&Judged) -> bool| made.iter().rev().find(|t| is(t)).map(|t| t.point.error);
-        let first = |is: &dyn Fn(&Judged) -> bool| made.iter().find(|t| is(t)).map(|t| t.point.error);
+        let last =
+            |is: &dyn Fn(&PredictedTrial) -> bool| made.iter().rev().find(|t| is(t)).map(|t| t.point.error);
+        let first = |is: &dyn Fn(&PredictedTrial) -> bool| made.iter().find(|t| is(t)).map(|t| t.point.error);
         let last_success = last(&|t| t.docked == Some(true));
         let first_failure = first(&|t| t.docked == Some(false));
         let in_order = last_success.zip(first_failure).is_none_or(|(a, b)| far(&a) < far(&b));

@@ -101,7 +101,7 @@ impl PredictionVerdict {
 /// A trial with the prediction of its pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Judged {
+pub struct PredictedTrial {
     /// The number of the trial.
     pub trial: u64,
     /// The observed outcome; null if the trial was not made.
@@ -121,7 +121,7 @@ pub struct Judged {
     planned: Option<ObservedOutcome>,
 }
 
-impl Judged {
+impl PredictedTrial {
     /// Of a trial, the prediction of its pose, and whether it docked.
     fn new(tried: &RobotTrial, prediction: Prediction, docked: Option<bool>) -> Self {
         Self {
@@ -223,13 +223,13 @@ pub struct Validation {
     /// Successes at poses with a predicted failure.
     pub late: OneSided,
     /// Every trial that disagrees with the prediction, the farthest from the border first.
-    pub disagreements: Vec<Judged>,
+    pub disagreements: Vec<PredictedTrial>,
     /// The observed border, line by line.
     pub lines: Vec<TrialLine>,
     /// The coefficients of friction that explain the trials; null unless the settings estimate them.
     pub friction: Option<FrictionInterval>,
     /// Every trial in the order of the table.
-    pub trials: Vec<Judged>,
+    pub trials: Vec<PredictedTrial>,
     /// Number of trials that were not made.
     pub blank: usize,
     /// Number of exact motions.
@@ -310,9 +310,9 @@ pub fn run(
     let (prediction, mut followed) =
         foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
     let judged = |(trial, number): (&RobotTrial, &usize)| {
-        Judged::new(trial, prediction[*number], trial.observed.map(docks))
+        PredictedTrial::new(trial, prediction[*number], trial.observed.map(docks))
     };
-    let trials: Vec<Judged> = tried.iter().zip(&number).map(judged).collect();
+    let trials: Vec<PredictedTrial> = tried.iter().zip(&number).map(judged).collect();
     let friction = if settings.estimate_friction {
         let made: Vec<(PoseError, bool)> =
             trials.iter().filter_map(|trial| Some((trial.point.error, trial.docked?))).collect();
@@ -326,7 +326,7 @@ pub fn run(
 }
 
 /// Everything that follows from the trials without another motion.
-fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings) -> Validation {
+fn summary(problem: &Problem, trials: Vec<PredictedTrial>, settings: &ValidationSettings) -> Validation {
     let made = || trials.iter().filter(|trial| trial.docked.is_some());
     let clear = || made().filter(|trial| !trial.prediction().either);
     let agreed = clear().filter(|trial| !trial.disagrees).count();
@@ -371,7 +371,8 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings
         // On the border itself rounding decides.
         planned.is_some_and(|planned| planned != trial.prediction().docks()) && !trial.prediction().either
     });
-    let mut disagreements: Vec<Judged> = trials.iter().copied().filter(|trial| trial.disagrees).collect();
+    let mut disagreements: Vec<PredictedTrial> =
+        trials.iter().copied().filter(|trial| trial.disagrees).collect();
     disagreements.sort_by(|a, b| b.prediction().margin().total_cmp(&a.prediction().margin()));
     Validation {
         settings: settings.clone(),
@@ -395,12 +396,12 @@ fn summary(problem: &Problem, trials: Vec<Judged>, settings: &ValidationSettings
 }
 
 /// Disagreements of the trials that should dock, or of those that should not.
-fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
-    let clear = |trial: &&Judged| {
+fn one_sided(trials: &[PredictedTrial], docks: bool) -> OneSided {
+    let clear = |trial: &&PredictedTrial| {
         let prediction = trial.prediction();
         trial.docked.is_some() && prediction.docks() == docks && !prediction.either
     };
-    let side: Vec<&Judged> = trials.iter().filter(clear).collect();
+    let side: Vec<&PredictedTrial> = trials.iter().filter(clear).collect();
     let chances: Vec<f64> = side.iter().map(|trial| chance(trial.prediction().margin())).collect();
     let disagreeing = side.iter().filter(|trial| trial.disagrees).count();
     OneSided {
@@ -412,14 +413,14 @@ fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
 }
 
 /// The confusion matrix as a list of what occurs: clear poses first, in the order of the outcomes.
-fn counts(trials: &[Judged]) -> Vec<Count> {
+fn counts(trials: &[PredictedTrial]) -> Vec<Count> {
     let mut counts: Vec<Count> = Vec::new();
     let predictions: Vec<Option<ObservedOutcome>> =
         ObservedOutcome::ALL.into_iter().map(Some).chain(std::iter::once(None)).collect();
     for either in [false, true] {
         for predicted in &predictions {
             for observed in ObservedOutcome::ALL {
-                let same = |trial: &&Judged| {
+                let same = |trial: &&PredictedTrial| {
                     let prediction = trial.prediction();
                     prediction.either == either
                         && prediction.predicted == *predicted

@@ -1,7 +1,8 @@
 //! Text and table form of a verdict.
 
 use super::{
-    Count, Evidence, FEWEST, FrictionInterval, Judged, LEVEL, PredictionVerdict, TrialLine, Validation,
+    Count, Evidence, FEWEST, FrictionInterval, LEVEL, PredictedTrial, PredictionVerdict, TrialLine,
+    Validation,
 };
 use crate::plan::{PoseColumns, accuracy_words};
 use catchment_core::acceptance::Warning;
@@ -216,7 +217,7 @@ impl Validation {
         let columns = ["trial", "line"].map(Column::data).into_iter().chain(poses.errors());
         let columns = columns.chain(["predicted", "observed", "either", "disagrees"].map(Column::data));
         let mut table = Table::new(columns.chain(poses.margins()));
-        for Judged { trial, observed, disagrees, point, .. } in &self.trials {
+        for PredictedTrial { trial, observed, disagrees, point, .. } in &self.trials {
             let prediction = &point.prediction;
             let cells = [trial.to_string().into(), point.line.into()].into_iter();
             let cells = cells.chain(poses.values(&point.error)).chain([

@@ -35,7 +35,7 @@ fn trials(
     seed: u64,
 ) -> Vec<RobotTrial> {
     let motions = descent::DescentSettings::with_friction(friction).unwrap();
-    let mut judge = plan::Judge::new(bench, &motions);
+    let mut judge = plan::DockingOracle::new(bench, &motions);
     let random = Stream::new(seed);
     let tried = real.iter().zip(written).enumerate().map(|(k, (real, written))| {
         let z = normals(|n| random.uniform(6 * k as u64 + n));
@@ -71,7 +71,7 @@ fn verdicts(
         let judged = made
             .iter()
             .zip(&prediction)
-            .map(|(tried, prediction)| Judged::new(tried, *prediction, tried.observed.map(docked)));
+            .map(|(tried, prediction)| PredictedTrial::new(tried, *prediction, tried.observed.map(docked)));
         counts[summary(predicting, judged.collect(), &settings).verdict as usize] += 1;
     }
     counts
@@ -125,7 +125,7 @@ fn otherwise(runs: u64) {
     }
     let motions = [0.0, 0.3].map(|mu| descent::DescentSettings::with_friction(mu).unwrap());
     let docking = motions.map(|motions| {
-        let mut judge = plan::Judge::new(&problem, &motions);
+        let mut judge = plan::DockingOracle::new(&problem, &motions);
         poses.iter().map(|pose| judge.docks(pose)).collect::<Vec<bool>>()
     });
     assert_eq!(docking[0], docking[1]);

@@ -56,7 +56,7 @@ pub enum ClaimCheck {
 type Rows = Vec<Vec<f64>>;
 
 /// A question to the numbers of some tables.
-struct Asked {
+struct ClaimQuestion {
     section: &'static str,
     says: &'static str,
     counted: &'static str,
@@ -67,8 +67,8 @@ struct Asked {
 }
 
 /// Of chapter 5: aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
-const ASKED: &[Asked] = &[
-    Asked {
+const ASKED: &[ClaimQuestion] = &[
+    ClaimQuestion {
         section: "3.1.3",
         says: "the X-Face accepts more than the V-Face in almost every case, but near r_p = 0 and H/D = 1",
         counted: "entries of 3.2 above those of 3.3",
@@ -76,7 +76,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |v, x| x > v),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "3.1.3",
         says: "and more than the S-Face",
         counted: "entries of 3.2 above those of 3.4",
@@ -84,7 +84,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |s, x| x > s),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.2",
         says: "most areas are larger for the X-Face than for the V-Face, four are not",
         counted: "entries of 5.3 above those of 5.2",
@@ -92,7 +92,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |v, x| x > v),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.2",
         says: "by a factor of up to two",
         counted: "entries of 5.3 at most twice those of 5.2",
@@ -100,7 +100,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |v, x| x <= 2.0 * v),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "with few exceptions the discrete results are within 80 % of those of partitioning",
         counted: "entries of 5.4, 5.5 that differ from 5.2, 5.3 by at most 80 %",
@@ -108,7 +108,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.8),
         of_docking: false,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "more than half are within 20 %",
         counted: "entries that differ by at most 20 %",
@@ -116,7 +116,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.2),
         of_docking: false,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "and typically larger",
         counted: "entries of 5.4, 5.5 above those of 5.2, 5.3",
@@ -124,7 +124,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |slices, discrete| discrete > slices),
         of_docking: false,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "the ONAA is smaller than the Sum",
         counted: "entries of 5.6, 5.7 below those of 5.4, 5.5",
@@ -132,7 +132,7 @@ const ASKED: &[Asked] = &[
         ask: |t| each(t, |sum, onaa| onaa < sum),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "the ONAA reaches its maximum in the right-hand column",
         counted: "rows of 5.6, 5.7 whose largest entry is the last",
@@ -140,7 +140,7 @@ const ASKED: &[Asked] = &[
         ask: |t| count(t.iter().flatten().map(|row| row.iter().all(|value| value <= &row[row.len() - 1]))),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "a more positive COR generally means a higher AA",
         counted: "neighbours along the rows of 5.8 to 5.11 that rise",
@@ -148,7 +148,7 @@ const ASKED: &[Asked] = &[
         ask: |t| count(t.iter().flatten().flat_map(|row| rises(row))),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "higher AR often increases AA for high COR",
         counted: "neighbours down the last columns of 5.8 to 5.11 that rise",
@@ -156,7 +156,7 @@ const ASKED: &[Asked] = &[
         ask: |t| count(t.iter().flat_map(|rows| rises(&column(rows, 4)))),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "but decreases AA for negative COR",
         counted: "neighbours down the columns COR −1 and −½ of 5.8 to 5.11 that fall",
@@ -168,7 +168,7 @@ const ASKED: &[Asked] = &[
         },
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "lower AR values yield AA that vary less with COR",
         counted: "rows of 5.8 to 5.11 whose largest entry is fewer times the least than in the next row",
@@ -182,7 +182,7 @@ const ASKED: &[Asked] = &[
         },
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "in (x, y, pitch) the minimum occurs at low AR rather than high AR",
         counted: "tables of 5.8 whose least entry is in the first row",
@@ -190,7 +190,7 @@ const ASKED: &[Asked] = &[
         ask: |t| count(t.iter().map(|rows| lowest_row(rows) == 0)),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "in the other cases at high AR",
         counted: "tables 5.9 to 5.11 whose least entry is in the last row",
@@ -198,7 +198,7 @@ const ASKED: &[Asked] = &[
         ask: |t| count(t.iter().map(|rows| lowest_row(rows) + 1 == rows.len())),
         of_docking: true,
     },
-    Asked {
+    ClaimQuestion {
         section: "5.3.2",
         says: "the largest value of (x, y, pitch) is 42 points above the one at the highest COR and AR",
         counted: "their difference, in cells of 16π/31³",

@@ -18,16 +18,16 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
 /// HTML with the policy that it is served under.
 #[derive(Debug, Clone)]
-pub(super) struct Served {
+pub(super) struct ServedPage {
     pub(super) html: Arc<str>,
     pub(super) policy: Arc<str>,
 }
 
 /// Computes a page over so many cells, or the design's own; what is wrong, in words.
-type Compute = Box<dyn Fn(Option<Resolution>, &Exec) -> Result<Served, String> + Send + Sync>;
+type Compute = Box<dyn Fn(Option<Resolution>, &Exec) -> Result<ServedPage, String> + Send + Sync>;
 
 /// What is served, and what is computed.
-pub(super) struct Desk {
+pub(super) struct LivePage {
     compute: Compute,
     threads: usize,
     state: Mutex<State>,
@@ -41,7 +41,7 @@ struct Request {
 
 #[derive(Default)]
 struct State {
-    page: Option<Served>,
+    page: Option<ServedPage>,
     /// Asked for and not begun.
     next: Option<Request>,
     /// Cancels the computation that runs.
@@ -62,19 +62,19 @@ const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
     setTimeout(ask,300)}};ask();";
 
 /// What a browser shows until there is a page: it asks for the progress, and loads the page when it is there.
-static WAITING: LazyLock<Served> = LazyLock::new(|| {
+static WAITING: LazyLock<ServedPage> = LazyLock::new(|| {
     let html = format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>catchment</title><style>{WAITING_STYLE}</style>\
          <p id=\"said\" role=\"status\">computing …</p><script>{WAITING_SCRIPT}</script></html>"
     );
-    Served { html: html.into(), policy: policy(&[WAITING_SCRIPT], &[WAITING_STYLE], true).into() }
+    ServedPage { html: html.into(), policy: policy(&[WAITING_SCRIPT], &[WAITING_STYLE], true).into() }
 });
 
-impl Desk {
+impl LivePage {
     /// Nothing is computed before it is asked for; each computation gets so many threads, 0 meaning one per core.
     pub(super) fn new(
         threads: usize,
-        compute: impl Fn(Option<Resolution>, &Exec) -> Result<Served, String> + Send + Sync + 'static,
+        compute: impl Fn(Option<Resolution>, &Exec) -> Result<ServedPage, String> + Send + Sync + 'static,
     ) -> Self {
         Self { compute: Box::new(compute), threads, state: Mutex::default() }
     }
@@ -84,7 +84,7 @@ impl Desk {
     }
 
     /// The newest page. Where there is none because the last computation failed, loading it computes again.
-    pub(super) fn page(self: &Arc<Self>) -> Served {
+    pub(super) fn page(self: &Arc<Self>) -> ServedPage {
         let state = self.locked();
         if let Some(page) = &state.page {
             return page.clone();
@@ -167,7 +167,7 @@ impl Desk {
         }
     }
 
-    fn compute(self: &Arc<Self>, resolution: Option<Resolution>, exec: Exec) -> Result<Served, String> {
+    fn compute(self: &Arc<Self>, resolution: Option<Resolution>, exec: Exec) -> Result<ServedPage, String> {
         let desk = Arc::downgrade(self);
         let progress = move |share: f64, stage: &str| {
             let Some(desk) = desk.upgrade() else { return };
@@ -200,8 +200,8 @@ mod tests {
     use super::*;
     use std::sync::mpsc;
 
-    fn served(text: &str) -> Served {
-        Served { html: text.into(), policy: "".into() }
+    fn served(text: &str) -> ServedPage {
+        ServedPage { html: text.into(), policy: "".into() }
     }
 
     fn cells(resolution: Option<Resolution>) -> String {
@@ -209,7 +209,7 @@ mod tests {
     }
 
     /// Waits for a state; how long it takes decides nothing.
-    fn until(desk: &Desk, state: &str) {
+    fn until(desk: &LivePage, state: &str) {
         while !desk.progress().contains(&format!("\"state\":\"{state}\"")) {
             std::thread::yield_now();
         }
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn a_newer_request_cancels_the_older_one_and_takes_its_place() {
         let (begun, begins) = mpsc::channel();
-        let desk = Arc::new(Desk::new(1, move |resolution, exec: &Exec| {
+        let desk = Arc::new(LivePage::new(1, move |resolution, exec: &Exec| {
             let name = cells(resolution);
             begun.send(name.clone()).unwrap();
             while name == "own" && !exec.is_cancelled() {
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn what_fails_is_told_and_the_page_before_stays() {
-        let desk = Arc::new(Desk::new(1, |resolution, _: &Exec| match cells(resolution).as_str() {
+        let desk = Arc::new(LivePage::new(1, |resolution, _: &Exec| match cells(resolution).as_str() {
             "own" => Err("no design".to_owned()),
             "13" => panic!("a bug"),
             name => Ok(served(name)),

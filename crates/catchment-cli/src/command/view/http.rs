@@ -8,7 +8,7 @@
 //!
 //! A page elsewhere cannot ask: its requests come with its own Origin, and a name that leads here (DNS rebinding) with its own Host.
 
-use super::desk::Served;
+use super::desk::ServedPage;
 use std::sync::Arc;
 
 /// Most bytes of the head of a request.
@@ -145,7 +145,7 @@ impl Response {
         Self::of(200, "application/json", json)
     }
 
-    pub(super) fn page(Served { html, policy }: Served) -> Self {
+    pub(super) fn page(ServedPage { html, policy }: ServedPage) -> Self {
         Self { status: 200, kind: "text/html; charset=utf-8", policy, body: html }
     }
 

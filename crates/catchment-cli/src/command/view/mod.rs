@@ -15,7 +15,7 @@ use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::terminal::printable;
 use clap::Args;
-use desk::{Desk, Served};
+use desk::{LivePage, ServedPage};
 use http::{Request, Response};
 use std::hash::{BuildHasher, RandomState};
 use std::net::{Ipv4Addr, TcpListener};
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     let compute = move |resolution: Option<Resolution>, exec: &Exec| {
         page(&design, &made.over(resolution), exec).map_err(|failure| told(&failure))
     };
-    let desk = Arc::new(Desk::new(args.exec.threads(), compute));
+    let desk = Arc::new(LivePage::new(args.exec.threads(), compute));
     desk.start(None);
     to_stdout(&format!("http://127.0.0.1:{port}/{token}/\n"))?;
     let gate = http::Gate { port, token };
@@ -78,11 +78,11 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// The page of the design as the file has it now.
-fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<Served, Failure> {
+fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<ServedPage, Failure> {
     let parts = made.parts(&design.problem()?, exec)?;
     let mut page = parts.page();
     page.is_served = true;
-    Ok(Served { policy: page.policy().into(), html: page.html(exec)?.into() })
+    Ok(ServedPage { policy: page.policy().into(), html: page.html(exec)?.into() })
 }
 
 /// What a page shows of a failure.
@@ -96,7 +96,7 @@ fn token() -> String {
     format!("{:016x}{:016x}", bits(), bits())
 }
 
-fn respond(request: &Request, desk: &Arc<Desk>) -> Response {
+fn respond(request: &Request, desk: &Arc<LivePage>) -> Response {
     match (request.method.as_str(), request.path.as_str()) {
         ("GET", "") => Response::page(desk.page()),
         ("GET", "progress") => Response::json(&desk.progress()),

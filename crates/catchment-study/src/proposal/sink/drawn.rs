@@ -14,7 +14,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// What comes of an approach, lengths in the unit of the parts.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::proposal) enum Drawn {
+pub(in crate::proposal) enum ApproachResult {
     /// It sinks into a seat.
     Holds(Sunk),
     /// It meets nothing.
@@ -45,7 +45,7 @@ pub(in crate::proposal) fn drawn(
     way: AxisDirection,
     any: bool,
     grain: Grain,
-) -> Drawn {
+) -> ApproachResult {
     let lie = PartLayout::as_drawn(way);
     let (mut flat, mut off, mut passes) = (None, None, false);
     // What is as wide as its hole fits by one cell that is worn away.
@@ -59,13 +59,17 @@ pub(in crate::proposal) fn drawn(
             let Some(start) = window.lowest(DVec2::ZERO, reach * grain.small) else { continue };
             let height = f64::from(window.z[start]);
             if !any && height.abs() > ALONG * grain.small {
-                let far = if height > 0.0 { Drawn::Blocked(height) } else { Drawn::Apart(-height) };
+                let far = if height > 0.0 {
+                    ApproachResult::Blocked(height)
+                } else {
+                    ApproachResult::Apart(-height)
+                };
                 off = off.or(Some(far));
                 continue;
             }
             let mut climb = window.climb(start);
             if climb < grain.least_climb() {
-                flat = flat.or(Some(Drawn::Flat { climb }));
+                flat = flat.or(Some(ApproachResult::Flat { climb }));
                 continue;
             }
             let floor = window.floor(start, climb, grain);
@@ -80,7 +84,7 @@ pub(in crate::proposal) fn drawn(
                 climb = climb.max(wide.climb(start));
             }
             let steep = climb / (grain.small + play);
-            return Drawn::Holds(Sunk {
+            return ApproachResult::Holds(Sunk {
                 lie,
                 offset,
                 height,
@@ -92,7 +96,7 @@ pub(in crate::proposal) fn drawn(
             });
         }
     }
-    if passes { Drawn::Passes } else { flat.or(off).unwrap_or(Drawn::Passes) }
+    if passes { ApproachResult::Passes } else { flat.or(off).unwrap_or(ApproachResult::Passes) }
 }
 
 /// How two parts lie in one frame.

@@ -26,7 +26,7 @@ mod interlock;
 mod refine;
 
 pub(super) use classes::classes;
-pub(super) use drawn::{Drawn, drawn, together};
+pub(super) use drawn::{ApproachResult, drawn, together};
 pub(super) use interlock::{lead, undercut};
 
 use super::way::{AxisDirection, PartLayout};

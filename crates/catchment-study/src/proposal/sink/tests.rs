@@ -50,35 +50,35 @@ pub(super) fn down() -> AxisDirection {
 fn a_pin_in_its_hole_holds_as_drawn() {
     let plate = plate(5.3, 12.0, [3.0, -2.0]);
     let looked = |pin: &Triangles| drawn([&plate, pin], down(), false, GRAIN);
-    let Drawn::Holds(sunk) = looked(&pin([3.0, -2.0, -12.0])) else { panic!() };
+    let ApproachResult::Holds(sunk) = looked(&pin([3.0, -2.0, -12.0])) else { panic!() };
     // Its climb is the depth of the hole, its play what is between, up to a cell of 0.1 mm to each side.
     assert!((sunk.climb - 12.0).abs() < 1e-3 && sunk.height.abs() < 1e-3, "{sunk:?}");
     assert!((sunk.play - 0.3).abs() < 0.11 && sunk.offset.length() < 0.06, "{sunk:?}");
     // Drawn 4 mm above its floor it slides down; 9 mm above is apart, unless any distance is.
-    let Drawn::Holds(slid) = looked(&pin([3.0, -2.0, -8.0])) else { panic!() };
+    let ApproachResult::Holds(slid) = looked(&pin([3.0, -2.0, -8.0])) else { panic!() };
     assert!((slid.height + 4.0).abs() < 1e-3, "{slid:?}");
     let far = pin([3.0, -2.0, -3.0]);
-    assert!(matches!(looked(&far), Drawn::Apart(by) if (by - 9.0).abs() < 1e-3));
-    assert!(matches!(drawn([&plate, &far], down(), true, GRAIN), Drawn::Holds(_)));
+    assert!(matches!(looked(&far), ApproachResult::Apart(by) if (by - 9.0).abs() < 1e-3));
+    assert!(matches!(drawn([&plate, &far], down(), true, GRAIN), ApproachResult::Holds(_)));
     // From the side its own hole is in the way.
     let sideways = drawn([&plate, &pin([3.0, -2.0, -12.0])], "+x".parse().unwrap(), false, GRAIN);
-    assert!(matches!(sideways, Drawn::Blocked(_)), "{sideways:?}");
+    assert!(matches!(sideways, ApproachResult::Blocked(_)), "{sideways:?}");
 }
 
 #[test]
 fn a_pin_as_wide_as_its_hole_still_sinks() {
     let (plate, pin) = (plate(5.0, 12.0, [0.0; 2]), pin([0.0, 0.0, -12.0]));
     let found = drawn([&plate, &pin], down(), false, GRAIN);
-    assert!(matches!(found, Drawn::Holds(sunk) if sunk.play < 0.16), "{found:?}");
+    assert!(matches!(found, ApproachResult::Holds(sunk) if sunk.play < 0.16), "{found:?}");
 }
 
 #[test]
 fn a_plate_is_flat_and_a_hole_without_a_floor_lets_pass() {
     let top = block([-8.0, -8.0, 0.0], [8.0, 8.0, 5.0]);
     let flat = drawn([&block([-20.0, -20.0, -5.0], [20.0, 20.0, 0.0]), &top], down(), false, GRAIN);
-    assert!(matches!(flat, Drawn::Flat { climb } if climb < 1e-6), "{flat:?}");
+    assert!(matches!(flat, ApproachResult::Flat { climb } if climb < 1e-6), "{flat:?}");
     let through = drawn([&plate(5.4, 20.0, [0.0; 2]), &pin([0.0, 0.0, -18.0])], down(), false, GRAIN);
-    assert!(matches!(through, Drawn::Passes), "{through:?}");
+    assert!(matches!(through, ApproachResult::Passes), "{through:?}");
 }
 
 #[test]
