@@ -34,8 +34,7 @@ def said(program: str, *args: str) -> str:
 
 def cli(program: str) -> str:
     whole = said(program, "--help")
-    listed = whole.split("Commands:\n", 1)[1].split("\n\n", 1)[0]
-    names = re.findall(r"^  ([a-z]\w*)", listed, re.M)
+    names = re.findall(r"^  ([a-z]\w*)  ", whole, re.M)
     text = f"# Command line\n\n{MADE}```text\n{whole}```\n"
     for name in names:
         if name != "help":

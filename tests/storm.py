@@ -355,7 +355,7 @@ KINDS = {
 def subcommands(program):
     """Those that the program lists in its help."""
     listed = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    return set(re.findall(r"^  ([a-z]+)(?:  |$)", listed.split("Commands:\n")[1].split("\n\n")[0], re.MULTILINE))
+    return set(re.findall(r"^  ([a-z]+)  ", listed, re.MULTILINE))
 
 
 class Storm:

@@ -2,6 +2,7 @@
 
 use crate::command::Command;
 use crate::failure::Failure;
+use crate::groups::grouped;
 use crate::setting::number;
 use catchment::design::{DesignDefect, Quantity, parse_dofs};
 use catchment::exec::Exec;
@@ -9,68 +10,48 @@ use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
 use catchment::report::page::PageParts;
 use catchment::terminal::{escaped, shown};
-use clap::{Args, Parser};
+use clap::{Args, CommandFactory, FromArgMatches, Parser};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// How much misalignment does a docking connector forgive?
 ///
-/// Takes the geometry of the two halves of a connector and computes which pose errors (x, y, roll, pitch, yaw)
-/// their contact corrects: its area of acceptance.
+/// catchment reads the two halves of a connector and computes which pose errors (x, y, roll, pitch, yaw) their contact corrects: its
+/// area of acceptance.
 #[derive(Debug, Parser)]
 #[command(
     name = "catchment",
     version,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated.",
-    after_long_help = "Examples:\n  \
-        catchment new pyramid -o design.toml    a commented starting point\n  \
-        catchment place base.stl tool.stl --unit mm -o design.toml\n                                          or one for two parts of your own\n  \
-        catchment check design.toml             everything that is wrong with it\n  \
-        catchment run design.toml -o out        its area of acceptance, with pictures\n  \
-        catchment report design.toml -o page.html
-                                          the same as one page to click, to mail
-  \
-        catchment view design.toml              that page in your browser, computed again on demand
-  \
-        catchment window design.toml --fix 'x=2 mm,y=2 mm'
-                                          the largest box of errors that all dock
-  \
-        catchment success design.toml --error-sigma 'x=1 mm,yaw=2 deg'\n                                          how likely a robot docks
-  \
-        catchment jams design.toml -o jams.png  where it jams instead, and on which features
-  \
-        catchment friction design.toml          what friction takes of it, and what sticks first
-  \
-        catchment rests design.toml -o rests.png
-                                          every place where it rests, and what it takes to leave
-  \
-        catchment hold design.toml --friction 0.2
-                                          how hard it may be pushed and twisted once docked
-  \
-        catchment chance design.toml --draw 'speed=50 ± 10 mm/s' --times 0.1,1,10
-                                          how likely it docks that comes with speed
-  \
-        catchment plan design.toml --pattern bracket --trials 60 --accuracy 'x=1 mm' -o plan.csv\n                                          at which poses a robot should try it
-  \
-        catchment validate plan.csv design.toml --accuracy 'x=1 mm'\n                                          what its trials say of the prediction
-  \
-        catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
-        catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
-        catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \
-        catchment outcome design.toml --poses poses.csv\n                                          what becomes of listed errors\n  \
-        catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" -o trace.png\n                                          the way of one of them\n  \
-        catchment zraa design.toml              offsets corrected by sliding alone\n  \
-        catchment classify design.toml          where it stands among published connectors\n  \
-        catchment export design.toml --pose x=0.2 -o trial\n                                          a drop test for MuJoCo and Gazebo\n  \
-        catchment export out -o set.vti         a stored result for ParaView\n  \
-        catchment solids design.toml --free x,y -o shape.vtp\n                                          where its halves overlap, for ParaView\n  \
-        catchment reproduce 5.7                 a published table beside ours\n\n\
-        Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
-        Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated."
+    after_help = "Common options: catchment COMMAND -h. All options, with examples: --help.",
+    after_long_help = "\
+Common options: catchment COMMAND -h. All options, with examples: --help.
+Version: catchment --version.
+
+Results go to stdout, everything else to stderr. NO_COLOR is respected.
+Exit codes: 0 done, 1 requirement not met, 2 could not compute,
+130 interrupted, 143 terminated."
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// The command line, before it is read.
+pub(crate) fn command() -> clap::Command {
+    grouped(Cli::command())
+}
+
+/// Reads a command line; its first word is the name of the program.
+///
+/// # Errors
+/// What cannot be read, or help that is asked for.
+pub(crate) fn parse(
+    words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> Result<Cli, clap::Error> {
+    let mut command = command();
+    let mut matches = command.try_get_matches_from_mut(words)?;
+    Cli::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
 }
 
 /// A design file, and what to change in it for this run.
@@ -193,12 +174,11 @@ mod mutate;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
     use std::path::Path;
 
     #[test]
     fn the_command_line_is_well_formed() {
-        Cli::command().debug_assert();
+        command().debug_assert();
     }
 
     fn corpus(name: &str) -> Vec<Vec<u8>> {

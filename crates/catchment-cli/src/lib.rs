@@ -12,6 +12,7 @@ mod error_args;
 mod exec_args;
 mod exit;
 mod failure;
+mod groups;
 mod method_args;
 mod output;
 mod result_args;
@@ -22,8 +23,6 @@ mod usage;
 
 pub use exit::ExitStatus;
 
-use args::Cli;
-use clap::Parser;
 use std::ffi::OsString;
 
 /// Does what the command line of this process says.
@@ -37,7 +36,7 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
     let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
     // Whoever reads JSON types nothing.
     let is_read = words.iter().any(|word| word == "--json");
-    bug::caught(|| match Cli::try_parse_from(words) {
+    bug::caught(|| match args::parse(words) {
         Ok(cli) => {
             let next = cli.command.next().filter(|_| !is_read);
             let status = cli.command.run().unwrap_or_else(failure::Failure::show);
@@ -52,7 +51,7 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
 /// What is said of a command line that cannot be read, as it reaches a terminal; nothing of one that can, or that asks for help.
 /// The first word is the name of the program.
 pub fn usage_error(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
-    let mut usage = Cli::try_parse_from(words).err().filter(clap::Error::use_stderr)?;
+    let mut usage = args::parse(words).err().filter(clap::Error::use_stderr)?;
     usage::advise(&mut usage);
     usage::silence(&mut usage);
     Some(usage::still_steering(&usage).unwrap_or_else(|| usage.to_string()))

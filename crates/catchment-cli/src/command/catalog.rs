@@ -16,7 +16,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// Published docking systems: their attributes and zero-rotation areas of acceptance
+/// List published connectors and their areas of acceptance
 ///
 /// 27 systems with eleven attributes each, eleven published areas, and the 3-D X-Face. What the source prints is shown as
 /// printed; a value that it does not define has its normal form beside it. --csv, --json and --markdown have every

@@ -17,7 +17,7 @@ use catchment_systems::chain::{figure, report};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Where the last face of a chain of modules ends up, and whether it docks
+/// Compute where a chain of modules ends and whether it docks
 ///
 /// The file names the modules, their joint errors, the connector at their faces and what the joints are told. Errors are added up
 /// to first order and by random chains, which are followed exactly until they dock or jam. A sequence is folded step by step with

@@ -20,7 +20,7 @@ use catchment::study::chance::{Chance, ChanceSettings, Question, run as fall};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Dynamics as a probability: how likely it docks that comes with some speed, drift, spin, mass, friction, bounce, height
+/// Compute the docking probability with speed, mass and bounce
 ///
 /// Trials in a rigid-body engine, each with circumstances of its own, drawn from declared laws. Prints how likely single poses dock, or the errors that
 /// are expected (the whole error box, where nothing is said), the same with all speeds multiplied, and beside it what exact quasi-static motions say: the

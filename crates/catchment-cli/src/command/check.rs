@@ -9,7 +9,7 @@ use catchment::problem::ProblemError;
 use catchment::report::{CheckBody, CheckReport, ReportBody, figure};
 use clap::Args;
 
-/// Check a design file: all problems at once, with their places
+/// Check a design file and report every problem with its place
 ///
 /// Where nothing is wrong it says how the design was understood: of halves from files also where the face centre and the centre of rotation
 /// are in the coordinates of each file. With -o it draws the two halves, apart and mated.

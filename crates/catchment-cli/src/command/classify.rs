@@ -10,7 +10,7 @@ use catchment_systems::catalog::report::ClassifyBody;
 use catchment_systems::catalog::{Catalog, classify as classified};
 use clap::Args;
 
-/// Where a design stands among published systems: degree, gendering, ratios of areas
+/// Classify a design among published connectors
 ///
 /// Its self-aligning degree by the published rule, from its own zero-rotation area of acceptance; whether its halves
 /// are alike; its area and the largest square inside beside those that were published.

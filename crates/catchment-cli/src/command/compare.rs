@@ -23,7 +23,7 @@ use catchment::run::Run;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Compare two areas of acceptance: two methods, two designs, or two results of `run -o`
+/// Compare two methods, two designs or two results
 ///
 /// Overlap (Jaccard), Sum and ONAA side by side, which outcomes are confused, and how far from the border of the
 /// first the two differ. Both are over the same error box and the same cells, or one is finer by an odd factor.

@@ -1,13 +1,13 @@
 //! `catchment completions`: what the Tab key knows.
 
-use crate::args::Cli;
+use crate::args;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-/// Write a completion script for a shell
+/// Write a shell completion script
 #[derive(Debug, Args)]
 #[command(
     after_long_help = "Example:\n  catchment completions bash > ~/.local/share/bash-completion/completions/catchment"
@@ -19,7 +19,7 @@ pub(crate) struct CompletionsArgs {
 
 pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitStatus, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "catchment", &mut script);
+    clap_complete::generate(args.shell, &mut args::command(), "catchment", &mut script);
     to_stdout(&String::from_utf8_lossy(&script))?;
     Ok(ExitStatus::Done)
 }

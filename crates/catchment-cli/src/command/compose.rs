@@ -18,7 +18,7 @@ use catchment_systems::compose::{
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Where two halves meet that both move: the Minkowski sum of what they sweep
+/// Combine the reach of two halves that both move
 ///
 /// A and B are the regions that the two halves reach by their own motion, in the plane in which the robots move (lateral
 /// offset and gap). The answer is every place of B's robot, seen from A's, from which the two regions meet.

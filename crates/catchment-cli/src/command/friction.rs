@@ -10,7 +10,7 @@ use catchment::report::figure;
 use catchment::study::friction::{FrictionError, FrictionSettings, run as follow};
 use clap::Args;
 
-/// What friction takes: what docks at each, from which on poses no longer do, and what sticks first
+/// Compute the share that docks at every friction coefficient
 ///
 /// Follows the same random poses of the error box by exact motion with Coulomb friction at every coefficient of a ladder, and finds by
 /// bisection where each is lost. Prints the share that docks, what is lost and gained against none, how many might have stuck on the way by

@@ -13,7 +13,7 @@ use catchment::report::figure;
 use catchment::study::hold::{HoldError, HoldSettings, HoldingForces, run as find};
 use clap::Args;
 
-/// How hard a docked half may be pushed and twisted until it leaves
+/// Compute the force and torque that a docked half withstands
 ///
 /// Pressed on by a preload along -z through the centre of rotation, the half rests in its mated pose. Finds the smallest force sideways, in
 /// every direction, and the smallest torque about every free axis that no forces of the contacts withstand: as shares of the preload, or in N. Each where

@@ -21,7 +21,7 @@ use clap::Args;
 use glam::DMat3;
 use std::path::{Path, PathBuf};
 
-/// The moving half that a fixed half and wanted heights ask for
+/// Derive the moving half from wanted contact heights
 ///
 /// The Minkowski sum undone. Keeps the fixed half of DESIGN. Wanted are heights of first contact over lateral offsets: those of DESIGN itself, of
 /// another design, or a table. The result is the lowest moving half that nowhere stops higher than wanted; where it

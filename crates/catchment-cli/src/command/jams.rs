@@ -14,7 +14,7 @@ use catchment::report::{JamsReport, figure};
 use catchment::run::jams::{JamsSettings, run as find, run_for as find_for};
 use clap::Args;
 
-/// Why it jams: where motions come to rest that do not dock, and the features that hold them there
+/// Find the jams, their contacts and their escape paths
 ///
 /// Follows random poses of the error box by exact motion. Places of rest on the same features are one jam, up to the symmetries of the
 /// halves; the jams are ranked by how many poses end there. Of each: what touches, where on either half as it was drawn, how firmly it

@@ -15,7 +15,7 @@ use catchment_systems::latch::{LatchBody, LatchDesign, TableBody, connector, dra
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// A latching X-Face: outline, forces to latch and to break, drawings for a laser cutter
+/// Design a latching X-Face: forces and laser-cutter drawings
 ///
 /// Two halves of one shape align, press their arms aside and hook into each other. The outline follows from the
 /// dissertation's design principles (chapter 6); every rule is checked and printed with its reason. Forces are fits to nine

@@ -1,12 +1,12 @@
 //! `catchment man`: the manual pages.
 
-use crate::args::Cli;
+use crate::args;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
-use clap::{Args, CommandFactory};
+use clap::Args;
 
-/// Write a manual page (roff)
+/// Write a manual page
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment man > catchment.1\n  \
@@ -17,7 +17,7 @@ pub(crate) struct ManArgs {
 }
 
 pub(crate) fn run(args: &ManArgs) -> Result<ExitStatus, Failure> {
-    let mut command = Cli::command();
+    let mut command = args::command();
     command.build();
     if let Some(name) = &args.subcommand {
         let Some(subcommand) = command.find_subcommand(name) else {

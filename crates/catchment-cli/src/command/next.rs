@@ -49,8 +49,7 @@ fn quoted(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::quoted;
-    use crate::args::Cli;
-    use clap::Parser;
+    use crate::args;
     use std::path::Path;
 
     /// Until nothing follows: `place` leads to a window, a page and what holds.
@@ -65,7 +64,7 @@ mod tests {
         ] {
             let mut words = format!("catchment {first}");
             for _ in 0..10 {
-                let parsed = Cli::try_parse_from(words.split(' '));
+                let parsed = args::parse(words.split(' ').map(ToOwned::to_owned).collect::<Vec<String>>());
                 let Ok(cli) = parsed else { panic!("{words}") };
                 let Some(next) = cli.command.next() else { break };
                 assert_ne!(next, words);

@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
-/// Decide what becomes of listed pose errors
+/// Compute the outcome of every pose error in a table
 ///
 /// Reads a CSV table with a header and prints it again with the outcome (aligned, jammed, missed, undecided)
 /// and the last pose error of every row, with friction also whether it may have stuck on its way, each row as soon as it and all before it are decided. How many met which outcome goes to

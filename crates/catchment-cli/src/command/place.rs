@@ -17,7 +17,7 @@ use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::{Component, Path, PathBuf};
 
-/// Propose how two parts dock, and write the design file
+/// Propose how two CAD parts dock, and write the design file
 ///
 /// Reads two parts (STL, OBJ, PLY, 3MF, STEP) wherever and however they are drawn, each in a file of its own or both docked as an assembly has them.
 /// Tries all directions along their axes, and proposes the one in which a half that is off has to climb most: approach, seat, width D, what is

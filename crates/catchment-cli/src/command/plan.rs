@@ -19,7 +19,7 @@ use catchment::study::plan::{Pattern, TrialPlan, TrialPlanError, TrialPlanSettin
 use clap::{Args, ValueEnum};
 use std::time::Instant;
 
-/// Plan a bench test: at which poses a robot should try the connector, so that the trials decide something
+/// Choose the poses of a robot trial
 ///
 /// Follows every pose of a pattern by exact motion and looks for the border about it. Poses nearer to the border than the robot's accuracy are
 /// marked `either`: they may go either way, and never count against the prediction. Writes a table with an empty column `outcome`; fill it with

@@ -19,7 +19,7 @@ use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use serde_json::Value;
 
-/// A result as one page to click: a file to mail, which needs no network and no program
+/// Write a result as one interactive HTML page
 ///
 /// In it: the two halves in space, with a section and a slider for every error; the accepted set in linked slices and as a surface; jams, window,
 /// figures of merit. A pose that is clicked is followed by exact motion in the page itself.

@@ -17,7 +17,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Compute published tables and set them beside the printed ones
+/// Recompute published tables beside the printed values
 ///
 /// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.11) are computed with conventions
 /// that were fitted to these very tables: that they agree shows that the conventions are understood, not that

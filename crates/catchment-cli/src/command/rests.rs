@@ -12,7 +12,7 @@ use catchment::report::{RestsReport, figure};
 use catchment::run::rests::{RestsSettings, run as find};
 use clap::Args;
 
-/// Where a half rests under its load: every equilibrium, how it is held, and what it takes to leave
+/// Find every equilibrium and how firmly it holds
 ///
 /// The two halves may be any pair: a hand and what it grasps, a fixture and its part, the ground and what stands on it. Follows random poses of
 /// the error box by exact motion to where they rest; the load acts along -z through the centre of rotation. Of each rest: its basin, what touches, whether it is

@@ -6,7 +6,7 @@ use crate::output::OutputArgs;
 use catchment::design::json_schema;
 use clap::Args;
 
-/// Write the JSON schema of design files, for completion and checks in editors
+/// Write the JSON schema of design files
 ///
 /// Editors with taplo (such as VS Code with "Even Better TOML") use the file that the first line of a design
 /// names: `#:schema schema.json`.

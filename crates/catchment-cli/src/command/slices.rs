@@ -18,7 +18,7 @@ use clap::Args;
 use std::path::Path;
 use std::time::Instant;
 
-/// Slices: two errors vary finely, all free ones move
+/// Compute fine sections through the area, two errors at a time
 ///
 /// Every cell of a plane through zero is followed exactly, or dropped in a rigid-body engine. The errors that do not vary begin at zero and are as free
 /// to move as the design says; `run --free` locks them instead, which is another question.

@@ -10,7 +10,7 @@ use catchment::report::{ReportBody, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 
-/// The shapes behind the contact space as files: VTK, OBJ, pictures
+/// Write the solids of the contact space for ParaView
 ///
 /// The halves as unions of convex pieces (P-collections), what the moving half sweeps over its angle (C-full), and the places at
 /// which the halves overlap (the surface collision shape, or configuration space obstacle): its upper side is the height of first

@@ -16,7 +16,7 @@ use catchment::study::success::{SuccessSettings, run as follow};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Will it dock? How likely a robot's errors are corrected, and which of them to improve first
+/// Compute the probability that a robot docks
 ///
 /// Random errors as they are expected, or measured ones, some of them followed exactly: most where a grid over them leaves doubt. Prints the
 /// probability with its interval, what fails and what fails first, what it gains to halve each standard deviation, and how large they may be

@@ -24,7 +24,7 @@ use clap::Args;
 use std::path::Path;
 use std::time::Instant;
 
-/// Sweep design parameters: every combination of values, computed and compared
+/// Compute every combination of design parameters
 ///
 /// Each --over names a key of the design file and its values; every combination is a design of its own, computed as `run`
 /// computes one. A combination whose halves do not build or do not meet is told with its reason and stops nothing.

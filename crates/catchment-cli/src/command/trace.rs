@@ -15,7 +15,7 @@ use catchment::problem::Problem;
 use catchment::report::{FirstContact, LeverReport, ReportBody, TraceBody, TraceReport, figure, gltf, vtk};
 use clap::{Args, ValueEnum};
 
-/// Follow one pose from first contact to its end
+/// Follow one pose error to its outcome: contacts, path, picture
 ///
 /// The motion is exact and quasi-static: no inertia, contact kept, Coulomb friction where it is given; by the drop method it is one trial
 /// in a rigid-body engine, with speed, mass and bounce, from where the half is let go. Prints waypoints spread over the

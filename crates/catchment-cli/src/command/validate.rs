@@ -22,7 +22,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Judge a prediction by a robot's trials: consistent, inconsistent or undecided
+/// Compare a prediction with the outcomes of robot trials
 ///
 /// Reads the table of `catchment plan` with its column `outcome` filled in (aligned, jammed, missed, aligned-elsewhere, or nothing where a trial was
 /// not made), follows every pose again, and counts. Disagreements nearer to the border than a few accuracies do not count against the

@@ -14,7 +14,7 @@ use catchment::problem::Problem;
 use catchment::run::window::{WindowError, WindowSettings, run as find, seconds as expected};
 use clap::Args;
 
-/// The window one may ship: the largest box of errors that all dock
+/// Find the largest box of pose errors that all dock
 ///
 /// Exact motions, no grid: every direction of the box, then moves about the worst pose found, each failing pose making the box
 /// smaller; then random poses all over it, none of which may fail. Prints half-widths around zero, how far every error may go

@@ -24,7 +24,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// The zero-rotation area of acceptance: offsets corrected by sliding alone, exactly
+/// Compute the offsets corrected without rotation, exactly
 ///
 /// Rotations are locked whatever the design says; of x and y those that are free count. Both: the accepted
 /// offsets are an area. One: they are an interval, which for the planar families has a closed form

@@ -23,7 +23,7 @@ use catchment::report::{ExportBody, ExportReport, write};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Write what other programs read: a stored result for ParaView and tables, a drop test for MuJoCo and Gazebo
+/// Write files for ParaView, pandas, MuJoCo and Gazebo
 ///
 /// Of a result of `run -o`: the accepted set over up to three of its axes as VTK image data or as its border, or all cells as a table.
 /// Of a design: a drop test, with the same solids, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method

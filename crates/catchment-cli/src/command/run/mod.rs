@@ -25,7 +25,7 @@ use catchment::run::{Over, Run, RunError, RunPlan, Sample, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
 
-/// Compute the area of acceptance: which pose errors contact corrects
+/// Compute the area of acceptance: which pose errors still dock
 ///
 /// Every cell of a grid over the error box is decided by the method. Random poses, most of them where the grid is in
 /// doubt, are then followed exactly: they make the Sum unbiased, whatever the grid, and give it a 95 % interval.

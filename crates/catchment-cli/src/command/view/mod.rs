@@ -21,7 +21,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;
 
-/// The page of a design in your browser, computed again whenever you ask for it
+/// Serve the interactive page and recompute on demand
 ///
 /// Serves the page of `catchment report` to this machine alone, under an address that holds a random token, until Ctrl-C. "compute again" in the
 /// page reads the design file again, so that it can be changed beside it; a computation that is still running is given up for the newer one.

@@ -1,0 +1,104 @@
+//! The subcommands in the order and in the groups of the help.
+//!
+//! ```text
+//!   catchment -h      question, groups, first commands       one screen
+//!   catchment --help  the same, and what scripts rely on
+//! ```
+//!
+//! Summaries come from the subcommands themselves; a test holds that every subcommand stands in exactly one group.
+
+use clap::Command;
+use std::fmt::Write;
+
+/// Subcommands under one heading.
+pub(crate) struct Group {
+    /// The heading.
+    pub(crate) heading: &'static str,
+    /// The names of the subcommands, in their order.
+    pub(crate) names: &'static [&'static str],
+}
+
+/// Every subcommand that the help lists.
+pub(crate) const GROUPS: [Group; 6] = [
+    Group {
+        heading: "Every day",
+        names: &[
+            "new", "place", "check", "run", "window", "success", "trace", "outcome", "rests", "jams",
+            "compare", "sweep", "report", "export", "view",
+        ],
+    },
+    Group { heading: "Forces", names: &["friction", "hold", "chance"] },
+    Group { heading: "Bench tests", names: &["plan", "validate"] },
+    Group {
+        heading: "Sections, planar and published connectors",
+        names: &["slices", "zraa", "catalog", "classify", "reproduce"],
+    },
+    Group { heading: "Systems", names: &["compose", "latch", "chain", "invert"] },
+    Group { heading: "Tools", names: &["schema", "completions", "man", "solids", "help"] },
+];
+
+/// Which commands come first.
+const FIRST: &str = "  catchment place socket.stl plug.stl --unit mm -o design.toml
+  catchment check design.toml
+  catchment run design.toml -o out
+  (no parts at hand: catchment new pyramid -o design.toml)";
+
+/// The summary of the subcommand that clap adds itself.
+const HELP: &str = "Print the help of a command";
+
+/// The command line whose help lists the groups.
+pub(crate) fn grouped(command: Command) -> Command {
+    let listed = listed(&command);
+    command.help_template(listed)
+}
+
+/// The help, but for what follows the options.
+fn listed(command: &Command) -> String {
+    let (header, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
+    let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
+    let names = || GROUPS.iter().flat_map(|group| group.names);
+    let width = names().map(|name| name.len()).max().unwrap_or(0);
+    for (number, Group { heading, names }) in GROUPS.iter().enumerate() {
+        // The daily ones stand apart; the rest shall fit on the screen, too.
+        let gap = if number < 2 { "\n" } else { "" };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{gap}{header}{heading}:{header:#}");
+        for name in *names {
+            let about = command.find_subcommand(name).and_then(Command::get_about);
+            let about = about.map_or_else(|| HELP.to_owned(), ToString::to_string);
+            let _ = writeln!(text, "  {literal}{name:width$}{literal:#}  {about}");
+        }
+    }
+    let _ = write!(text, "\n{header}First commands:{header:#}\n{FIRST}{{after-help}}");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args;
+
+    #[test]
+    fn every_subcommand_stands_in_one_group() {
+        let mut command = args::command();
+        command.build();
+        let visible = command.get_subcommands().filter(|one| !one.is_hide_set());
+        let mut all: Vec<&str> = visible.map(Command::get_name).collect();
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|group| group.names).copied().collect();
+        all.sort_unstable();
+        grouped.sort_unstable();
+        assert_eq!(all, grouped);
+    }
+
+    /// Plain lines of 80 columns, about as many as a screen has.
+    #[test]
+    fn the_help_fits_on_a_screen() {
+        let help = args::command().render_help().to_string();
+        assert!(help.starts_with("How much misalignment does a docking connector forgive?\n"), "{help}");
+        let longest = help.lines().max_by_key(|line| line.chars().count()).unwrap_or_default();
+        assert!(longest.chars().count() <= 80, "{longest}");
+        assert!(help.lines().count() <= 55, "{} lines:\n{help}", help.lines().count());
+        let daily = help.find(" new ").zip(help.find(" friction "));
+        assert!(daily.is_some_and(|(daily, forces)| daily < forces), "{help}");
+    }
+}
