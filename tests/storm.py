@@ -164,7 +164,7 @@ def run(dice):
 
 
 def outcome(dice):
-    args = ["outcome", "d.toml", "--poses", "p.csv"] + design_options(dice) + exec_options(dice)
+    args = [dice.choice(["trace", "outcome"]), "d.toml", "--poses", "p.csv"] + design_options(dice) + exec_options(dice)
     if dice.random() < 0.1:
         args += ["--method", "drop"] + drop_options(dice)
     if dice.random() < 0.2:
@@ -203,7 +203,9 @@ def written(dice, *endings):
 def study(dice):
     """What rests on exact motions, few of them."""
     command = dice.choice("window success jams friction rests hold".split())
-    args = [command, "d.toml"] + design_options(dice) + exec_options(dice)
+    # `rests --jams` has an old name.
+    named = ["rests", "--jams"] if command == "jams" and dice.random() < 0.5 else [command]
+    args = named + ["d.toml"] + design_options(dice) + exec_options(dice)
     if command == "hold":
         args += ["--directions", value(dice, 1, 7, 72)]
         args += dice.choice([[], ["--pose", pose(dice)], ["--play", length(dice)], ["--lever", length(dice)], ["--preload", number(dice)]])
@@ -228,7 +230,7 @@ def study(dice):
 
 
 def chance(dice):
-    args = ["chance", "d.toml"] + design_options(dice) + exec_options(dice)
+    args = [dice.choice(["dynamics", "chance"]), "d.toml"] + design_options(dice) + exec_options(dice)
     args += ["--trials", value(dice, 1, 2), "--overall", value(dice, 100), "--timeout", value(dice, 0.1, 0.3)]
     args += dice.choice([[], ["--dynamics", "dynamics.toml"], ["--draw", f"friction={number(dice)}..{number(dice)}", "--push", number(dice)],
                          ["--draw", f"speed={length(dice)} ± {number(dice)}"]])
@@ -240,10 +242,10 @@ def chance(dice):
 def bench(dice):
     """A test on the bench, planned or judged."""
     if dice.random() < 0.5:
-        args = ["validate", "tried.csv", "d.toml", "--accuracy", pose(dice)]
+        args = ["validate", "tried.csv", "d.toml", "--repeatability", pose(dice)]
         args += dice.choice([[], [], ["--estimate-friction"], ["--limit", value(dice, 1, 3)]])
     else:
-        args = ["plan", "d.toml", "--accuracy", pose(dice)]
+        args = ["plan", "d.toml", "--repeatability", pose(dice)]
         args += dice.choice([["--pattern", "grid", "--steps", f"x={value(dice, 2, 3)},pitch={value(dice, 2)}"],
                              ["--pattern", "lattice", "--step", length(dice), "--max", pose(dice)],
                              ["--pattern", "arc", "--lever", length(dice), "--pitch", "0..10:5 deg"],
@@ -336,14 +338,14 @@ def words(dice):
 # Who makes command lines of which subcommands, and how often.
 KINDS = {
     run: (6, ["run"]),
-    outcome: (4, ["outcome"]),
+    outcome: (4, ["trace"]),
     slices: (2, ["slices"]),
     compare: (5, ["compare"]),
     single: (4, ["trace", "zraa", "export", "check"]),
     small: (1, ["new", "schema", "completions", "man", "--help"]),
     words: (3, []),
-    study: (5, ["window", "success", "jams", "friction", "rests", "hold"]),
-    chance: (2, ["chance"]),
+    study: (5, ["window", "success", "friction", "rests", "hold"]),
+    chance: (2, ["dynamics"]),
     bench: (3, ["plan", "validate"]),
     place: (2, ["place"]),
     page: (1, ["report"]),

@@ -23,11 +23,11 @@ pub(crate) const GROUPS: [Group; 6] = [
     Group {
         heading: "Every day",
         names: &[
-            "new", "place", "check", "run", "window", "success", "trace", "outcome", "rests", "jams",
-            "compare", "sweep", "report", "export", "view",
+            "new", "place", "check", "run", "window", "success", "trace", "rests", "compare", "sweep",
+            "report", "export", "view",
         ],
     },
-    Group { heading: "Forces", names: &["friction", "hold", "chance"] },
+    Group { heading: "Forces", names: &["friction", "hold", "dynamics"] },
     Group { heading: "Bench tests", names: &["plan", "validate"] },
     Group {
         heading: "Sections, planar and published connectors",

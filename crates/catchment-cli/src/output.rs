@@ -23,6 +23,11 @@ pub(crate) struct OutputArgs {
 }
 
 impl OutputArgs {
+    /// Into this file, or to stdout.
+    pub(crate) const fn new(output: Option<PathBuf>, force: bool) -> Self {
+        Self { output, force }
+    }
+
     /// Refuses what cannot be written in the end, before anything is computed.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         self.output.as_deref().map_or(Ok(()), |path| check_place(path, self.force))

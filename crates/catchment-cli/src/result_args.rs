@@ -12,7 +12,9 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_apart, check_place, image, style, to_stderr, to_stdout, write_file, written};
+use crate::output::{
+    OutputArgs, check_apart, check_place, image, style, to_stderr, to_stdout, write_file, written,
+};
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::problem::Problem;
@@ -138,6 +140,34 @@ pub(crate) struct Output<'a> {
 pub(crate) type Pictures = Vec<(&'static str, Picture)>;
 
 impl ResultArgs {
+    /// The same of a command that writes one table, into the file of -o in place of stdout: whether it is JSON, and where it goes. `own` are
+    /// endings of files that hold something else.
+    pub(crate) fn as_table(&self, own: &[&'static str]) -> Result<(bool, OutputArgs), Failure> {
+        let refused =
+            |message: &str, help: &str| Err(Failure::with_help(message.to_owned(), Some(help.to_owned())));
+        if self.figure.is_some() {
+            return refused(
+                "a table of poses has no picture",
+                "leave --figure out, or follow one pose: --pose",
+            );
+        }
+        if !self.print.require.is_empty() {
+            return refused(
+                "--require is about one result, not a table",
+                "leave it out, or follow one pose: --pose",
+            );
+        }
+        if self.force && self.output.is_none() {
+            return refused(NOTHING_TO_REPLACE, "leave it out, or give -o");
+        }
+        let kind = self.output.as_deref().and_then(|path| Kind::of(path, true, own).ok());
+        if kind.is_some_and(|kind| kind.is_picture() || matches!(kind, Kind::Own(_))) {
+            return refused("a table of poses has no picture", "let the name of -o end in .csv or .json");
+        }
+        let is_json = self.print.json || kind == Some(Kind::Json);
+        Ok((is_json, OutputArgs::new(self.output.clone(), self.force)))
+    }
+
     /// Whether JSON is printed.
     pub(crate) const fn is_json(&self) -> bool {
         self.print.json
@@ -208,8 +238,7 @@ impl ResultArgs {
         }
         if self.force && file.is_none() && figure.is_none() {
             let help = "leave it out, or give -o".to_owned();
-            let message = "--force replaces files, and none is to be written".to_owned();
-            return Err(Failure::with_help(message, Some(help)));
+            return Err(Failure::with_help(NOTHING_TO_REPLACE.to_owned(), Some(help)));
         }
         Ok(Output { print: &self.print, force: self.force, file, figure, name, drawable })
     }
@@ -462,6 +491,8 @@ pub(crate) fn warnings(problem: &Problem) -> Vec<WarningReport> {
 pub(crate) fn objections(problem: &Problem) -> Vec<String> {
     problem.objections().iter().map(|objection| format!("warning: {objection}")).collect()
 }
+
+const NOTHING_TO_REPLACE: &str = "--force replaces files, and none is to be written";
 
 const NO_PICTURE: &str = "there is no picture of this result";
 

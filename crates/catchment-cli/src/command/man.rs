@@ -21,7 +21,8 @@ pub(crate) fn run(args: &ManArgs) -> Result<ExitStatus, Failure> {
     command.build();
     if let Some(name) = &args.subcommand {
         let Some(subcommand) = command.find_subcommand(name) else {
-            let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+            let visible = command.get_subcommands().filter(|one| !one.is_hide_set());
+            let names: Vec<&str> = visible.map(clap::Command::get_name).collect();
             let help = format!("one of {}", names.join(", "));
             return Err(Failure::with_help(format!("there is no subcommand `{name}`"), Some(help)));
         };

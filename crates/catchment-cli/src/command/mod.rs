@@ -2,12 +2,12 @@
 
 mod catalog;
 mod chain;
-mod chance;
 mod check;
 mod classify;
 mod compare;
 mod completions;
 mod compose;
+mod dynamics;
 mod export;
 mod friction;
 mod hold;
@@ -51,9 +51,7 @@ pub(crate) enum Command {
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Trace(Box<trace::TraceArgs>),
-    Outcome(Box<outcome::OutcomeArgs>),
     Rests(Box<rests::RestsArgs>),
-    Jams(Box<jams::JamsArgs>),
     Compare(compare::CompareArgs),
     Sweep(Box<sweep::SweepArgs>),
     Report(Box<report::ReportArgs>),
@@ -61,7 +59,8 @@ pub(crate) enum Command {
     View(Box<view::ViewArgs>),
     Friction(friction::FrictionArgs),
     Hold(Box<hold::HoldArgs>),
-    Chance(Box<chance::ChanceArgs>),
+    #[command(alias = "chance")]
+    Dynamics(Box<dynamics::DynamicsArgs>),
     Plan(Box<plan::PlanArgs>),
     Validate(Box<validate::ValidateArgs>),
     Slices(Box<slices::SlicesArgs>),
@@ -77,6 +76,10 @@ pub(crate) enum Command {
     Completions(completions::CompletionsArgs),
     Man(man::ManArgs),
     Solids(solids::SolidsArgs),
+    #[command(hide = true)]
+    Outcome(Box<outcome::OutcomeArgs>),
+    #[command(hide = true)]
+    Jams(Box<jams::JamsArgs>),
 }
 
 impl Command {
@@ -100,7 +103,7 @@ impl Command {
             Self::View(args) => view::run(&args),
             Self::Friction(args) => friction::run(&args),
             Self::Hold(args) => hold::run(&args),
-            Self::Chance(args) => chance::run(&args),
+            Self::Dynamics(args) => dynamics::run(&args),
             Self::Plan(args) => plan::run(&args),
             Self::Validate(args) => validate::run(&args),
             Self::Slices(args) => slices::run(&args),

@@ -1,9 +1,9 @@
-//! The command that comes next: from two files to a window, jams, friction.
+//! The command that comes next: from two files to a window, jams and friction.
 //!
 //! ```text
 //!   place ─▶ check ─▶ run ─▶ report ─▶ view
 //!                      │
-//!                      └─▶ window ─▶ jams ─▶ friction ─▶ hold
+//!                      └─▶ window ─▶ rests --jams ─▶ friction ─▶ hold
 //! ```
 //!
 //! After `hold` comes `plan`, which needs numbers that only the reader has.
@@ -13,7 +13,7 @@ use catchment::terminal::shown;
 use std::path::Path;
 
 impl Command {
-    /// What one types next, most of the time; `None` where nothing follows.
+    /// The usual next command, if there is one.
     pub(crate) fn next(&self) -> Option<String> {
         let of = |command: &str, path: &Path, more: &str| {
             Some(format!("catchment {command} {}{more}", quoted(path)))
@@ -27,13 +27,14 @@ impl Command {
             },
             Self::Report(args) => of("view", &args.design.path, ""),
             Self::Slices(args) => of("run", &args.design.path, " -o out"),
-            Self::Window(args) => of("jams", &args.design.path, ""),
-            Self::Trace(args) => of("jams", &args.design.path, ""),
-            Self::Jams(args) => of("friction", &args.design.path, ""),
+            Self::Window(args) => of("rests", &args.design.path, " --jams"),
+            Self::Trace(args) if args.poses.is_none() => of("rests", &args.design.path, " --jams"),
+            Self::Jams(args) => of("friction", &args.search.design.path, ""),
             Self::Friction(args) => of("hold", &args.design.path, ""),
-            Self::Rests(args) => of("hold", &args.design.path, ""),
+            Self::Rests(args) if args.jams => of("friction", &args.search.design.path, ""),
+            Self::Rests(args) => of("hold", &args.search.design.path, ""),
             Self::Success(args) => of("window", &args.design.path, ""),
-            Self::Chance(args) => of("friction", &args.design.path, ""),
+            Self::Dynamics(args) => of("friction", &args.design.path, ""),
             _ => None,
         }
     }
@@ -59,6 +60,7 @@ mod tests {
             "place a.stl b.stl -o d.toml",
             "slices d.toml",
             "success d.toml --error-sigma x=0.1",
+            "dynamics d.toml",
             "chance d.toml",
             "run d.toml",
         ] {

@@ -1,4 +1,4 @@
-//! `catchment outcome`: what becomes of listed pose errors.
+//! `catchment trace --poses`: the outcome of every pose error in a table. Its old name is `catchment outcome`.
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -19,35 +19,25 @@ use catchment::report::{OutcomeRows, OutcomesReport};
 use catchment::study::friction::MayStick;
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
-/// Compute the outcome of every pose error in a table
+/// Compute the outcome of every pose error in a table: old name of `trace --poses`
 ///
-/// Reads a CSV table with a header and prints it again with the outcome (aligned, jammed, missed, undecided)
-/// and the last pose error of every row, with friction also whether it may have stuck on its way, each row as soon as it and all before it are decided. How many met which outcome goes to
-/// stderr. Where it is interrupted (Ctrl-C) the rows that are finished are printed; instead of the file of -o they go into
-/// FILE.partial. Exit code 130 then.
+/// Prints the table with the outcome (aligned, jammed, missed, undecided) and the final pose error of every row. `catchment help trace`
+/// describes the table.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment outcome design.toml --poses poses.csv -o outcomes.csv\n  \
-    printf 'x_mm,pitch_deg\\n5,10\\n20,-30\\n' | catchment outcome design.toml --poses -\n  \
-    catchment outcome design.toml --poses poses.csv --json | jq .counts\n  \
-    catchment outcome design.toml --poses poses.csv --method drop --friction 0.2\n  \
-    catchment outcome design.toml --poses robot.csv --offsets-at cor\n\n\
-    Columns: x, y, roll, pitch, yaw in any order, in D and radians; missing ones are 0. A unit \
-    changes that: x_mm, y_in, x_D, pitch_deg, yaw [rad], x (mm). Other columns are carried through, and named on stderr; a \
-    name that is nearly an error (dx, X_mm) is refused. Final errors come in the units of their columns. At most 64 MiB and 1000000 poses.")]
+#[command(after_long_help = "Example:\n  catchment trace design.toml --poses poses.csv -o outcomes.csv")]
 pub(crate) struct OutcomeArgs {
     #[command(flatten)]
-    pub(super) design: DesignArgs,
-    /// The table of pose errors (CSV); - reads stdin
+    design: DesignArgs,
+    /// Table of pose errors (CSV); - reads stdin
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     poses: PathBuf,
     #[command(flatten)]
     method: PoseMethodArgs,
-    /// The point of the moving half where x and y are measured, of given poses and of final ones
+    /// Point of the moving half at which x and y are measured
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Print JSON, in D and radians
@@ -59,7 +49,19 @@ pub(crate) struct OutcomeArgs {
     exec: ExecArgs,
 }
 
-/// Where offsets are measured.
+/// A table of pose errors, and where its outcomes go.
+#[derive(Debug)]
+pub(super) struct Batch<'a> {
+    pub(super) design: &'a DesignArgs,
+    pub(super) poses: &'a Path,
+    pub(super) method: Method,
+    pub(super) offsets_at: Point,
+    pub(super) json: bool,
+    pub(super) output: &'a OutputArgs,
+    pub(super) exec: &'a ExecArgs,
+}
+
+/// The point at which offsets are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Point {
     /// The face centre
@@ -78,49 +80,62 @@ impl From<Point> for OffsetsAt {
 }
 
 pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
-    args.output.check()?;
-    args.output.check_partial()?;
-    let method = args.method.of()?;
-    let problem = args.design.problem()?;
-    let source = read_table(&args.poses)?;
-    let table = PoseTable::parse(&source.text, problem.design(), args.offsets_at.into())
-        .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
-    let running = args.exec.start()?;
-    let needed = OutcomesReport::bytes(&table, args.json);
-    running
-        .exec
-        .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
-    let doubts = MayStick::of(&problem, &method, table.errors());
-    let printed = Printed::new(&problem, &table, &method, doubts.as_ref());
-    let streams = args.output.is_printed() && !args.json;
-    let stop = running.exec.cancel_flag();
-    let tell = |number, end| {
-        // Here, where each is decided: on all threads.
-        let _may_stick = doubts.as_ref().map(|doubts| doubts.may_stick(number));
-        if streams && !running.beside_bar(|| printed.push(number, end)) {
-            stop.store(true, Ordering::Relaxed);
-        }
-    };
-    let followed = problem.follow_telling(&method, table.errors(), &running.exec, &tell)?;
-    drop(running);
-    let report = OutcomesReport::new(&problem, &table, &method, &followed, doubts.as_ref());
-    let text = match (streams, args.json) {
-        (true, _) => printed.rest()?,
-        (false, true) => report.to_json()?,
-        (false, false) => report.to_csv()?,
-    };
-    if report.partial().is_some() {
-        let place = args.output.write_partial(&text)?;
-        let beside = place.map(|path| format!("they are in {}", shown(&path)));
-        let lines = report.warnings.iter().map(WarningReport::line).chain(report.summary()).chain(beside);
-        to_stderr(&std::iter::once("interrupted".to_owned()).chain(lines).collect::<Vec<_>>());
-        return Ok(signals::received().unwrap_or(ExitStatus::Failed));
+    let OutcomeArgs { design, poses, method, offsets_at, json, output, exec } = args;
+    let method = method.of()?;
+    Batch { design, poses, method, offsets_at: *offsets_at, json: *json, output, exec }.run()
+}
+
+impl Batch<'_> {
+    /// Follows every pose; prints each row as soon as it and all rows before it are decided.
+    pub(super) fn run(&self) -> Result<ExitStatus, Failure> {
+        self.output.check()?;
+        self.output.check_partial()?;
+        let problem = self.design.problem()?;
+        let source = read_table(self.poses)?;
+        let table = PoseTable::parse(&source.text, problem.design(), self.offsets_at.into())
+            .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
+        let running = self.exec.start()?;
+        let needed = OutcomesReport::bytes(&table, self.json);
+        running.exec.ensure_fits("the answer for every pose", needed, |_| {
+            vec![Advice::FewerPoses, Advice::MoreMemory]
+        })?;
+        let doubts = MayStick::of(&problem, &self.method, table.errors());
+        let printed = Printed::new(&problem, &table, &self.method, doubts.as_ref());
+        let streams = self.output.is_printed() && !self.json;
+        let stop = running.exec.cancel_flag();
+        let tell = |number, end| {
+            // Here, where each is decided: on all threads.
+            let _may_stick = doubts.as_ref().map(|doubts| doubts.may_stick(number));
+            if streams && !running.beside_bar(|| printed.push(number, end)) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        };
+        let followed = problem.follow_telling(&self.method, table.errors(), &running.exec, &tell)?;
+        drop(running);
+        let report = OutcomesReport::new(&problem, &table, &self.method, &followed, doubts.as_ref());
+        let text = match (streams, self.json) {
+            (true, _) => printed.rest()?,
+            (false, true) => report.to_json()?,
+            (false, false) => report.to_csv()?,
+        };
+        self.write(&report, &text)
     }
-    args.output.write(&text)?;
-    let mut said = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
-    said.extend(report.summary());
-    to_stderr(&said);
-    Ok(ExitStatus::Done)
+
+    /// Writes the table, or those rows that were finished before an interruption.
+    fn write(&self, report: &OutcomesReport<'_>, text: &str) -> Result<ExitStatus, Failure> {
+        let notes = report.warnings.iter().map(WarningReport::line).chain(report.summary());
+        if report.partial().is_none() {
+            let notes: Vec<String> = notes.collect();
+            self.output.write(text)?;
+            to_stderr(&notes);
+            return Ok(ExitStatus::Done);
+        }
+        let place = self.output.write_partial(text)?;
+        let beside = place.map(|path| format!("they are in {}", shown(&path)));
+        let lines = std::iter::once("interrupted".to_owned()).chain(notes).chain(beside);
+        to_stderr(&lines.collect::<Vec<_>>());
+        Ok(signals::received().unwrap_or(ExitStatus::Failed))
+    }
 }
 
 /// Rows on stdout as they are decided. The names of the columns come with the first row: where nothing is decided nothing is printed.

@@ -26,12 +26,12 @@ use std::time::Instant;
 /// aligned, jammed, missed or aligned-elsewhere, and hand it to `catchment validate`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
-    catchment plan design.toml --pattern bracket --trials 60 --accuracy 'x=1 mm,y=1 mm,yaw=1 deg' -o plan.csv\n                                                  both sides of the border, along lines from zero\n  \
-    catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric --accuracy 'x=0.1 mm,y=0.1 mm'\n  \
-    catchment plan design.toml --pattern lattice --step '5 mm' --along-border --symmetric --accuracy 'x=1 mm,y=1 mm' --figure plan.png\n  \
-    catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --accuracy 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
-    catchment plan design.toml --pattern bracket --trials 40 --accuracy x=0.01 --require 'plan.deciding>=30'\n  \
-    catchment plan out --pattern bracket --trials 60 --accuracy x=0.01\n                                                  of a result of `run -o`, with its friction\n\n\
+    catchment plan design.toml --pattern bracket --trials 60 --repeatability 'x=1 mm,y=1 mm,yaw=1 deg' -o plan.csv\n                                                  both sides of the border, along lines from zero\n  \
+    catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric --repeatability 'x=0.1 mm,y=0.1 mm'\n  \
+    catchment plan design.toml --pattern lattice --step '5 mm' --along-border --symmetric --repeatability 'x=1 mm,y=1 mm' --figure plan.png\n  \
+    catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --repeatability 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
+    catchment plan design.toml --pattern bracket --trials 40 --repeatability x=0.01 --require 'plan.deciding>=30'\n  \
+    catchment plan out --pattern bracket --trials 60 --repeatability x=0.01\n                                                  of a result of `run -o`, with its friction\n\n\
     --csv prints the table for the robot, and -o writes it into a .csv file. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
     mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
         .help("The design file, or a folder written by `run -o`")
@@ -41,9 +41,9 @@ pub(crate) struct PlanArgs {
     pub(super) design: DesignArgs,
     #[command(flatten)]
     pattern: PatternArgs,
-    /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact
-    #[arg(long, value_name = "AXIS=SIZE,…")]
-    accuracy: String,
+    /// Repeatability of the robot: standard deviation of each error, such as "x=0.1 mm,yaw=0.2 deg"; errors that are not named are exact
+    #[arg(long, alias = "accuracy", value_name = "AXIS=SIZE,…")]
+    repeatability: String,
     /// How often each pose is tried
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeats: u32,
@@ -104,7 +104,7 @@ struct PatternArgs {
     /// bracket: lines from zero [default: as many as there can be]
     #[arg(long, value_name = "N", help_heading = "Poses")]
     lines: Option<u32>,
-    /// bracket: no nearer to the border than this, such as "x=2 mm,y=2 mm" [default: twice the accuracy]
+    /// bracket: no nearer to the border than this, such as "x=2 mm,y=2 mm" [default: twice the repeatability]
     #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Poses")]
     resolution: Option<String>,
     /// grid, lattice, bracket: positive errors alone, of symmetric halves
@@ -152,9 +152,9 @@ pub(super) fn sizes(option: &str, text: &str, problem: &Problem) -> Result<[Opti
     parse_sizes(text, problem.design()).map_err(|refusal| Failure::of_option(option, text, refusal))
 }
 
-/// An accuracy: what is not named is exact.
-pub(super) fn accuracy(text: &str, problem: &Problem) -> Result<PoseError, Failure> {
-    Ok(PoseError::from_array(sizes("--accuracy", text, problem)?.map(Option::unwrap_or_default)))
+/// A repeatability (ISO 9283: accuracy is a bias); errors that are not named are exact.
+pub(super) fn repeatability(text: &str, problem: &Problem) -> Result<PoseError, Failure> {
+    Ok(PoseError::from_array(sizes("--repeatability", text, problem)?.map(Option::unwrap_or_default)))
 }
 
 impl PlanArgs {
@@ -168,7 +168,7 @@ impl PlanArgs {
             stop_at_first_failure: self.stop_at_first_failure,
             seed: self.seed,
             friction: self.friction.unwrap_or(decided_with),
-            ..TrialPlanSettings::new(pattern, accuracy(&self.accuracy, problem)?)
+            ..Settings::new(pattern, repeatability(&self.repeatability, problem)?)
         })
     }
 }

@@ -1,63 +1,122 @@
-//! `catchment rests`: where a half rests under its load.
+//! `catchment rests`: the equilibria of a half under its load, and with `--jams` those that are not docked.
 
+use super::jams;
 use super::run::resolution;
 use crate::args::DesignArgs;
+use crate::error_args::SpreadArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{ResultArgs, study};
+use crate::setting::number;
 use catchment::landscape::Resolution;
 use catchment::problem::Problem;
 use catchment::report::{RestsReport, figure};
 use catchment::run::rests::{RestsSettings, run as find};
 use clap::Args;
 
-/// Find every equilibrium and how firmly it holds
+/// Find every equilibrium; with --jams, the jams and their causes
 ///
-/// The two halves may be any pair: a hand and what it grasps, a fixture and its part, the ground and what stands on it. Follows random poses of
-/// the error box by exact motion to where they rest; the load acts along -z through the centre of rotation. Of each rest: its basin, what touches, whether it is
-/// immobile to first order or to second (Rimon and Burdick), how far it must be lifted at most to leave, and where that leads.
+/// Follows sampled poses of the error box by exact motion until they rest; the load acts along -z through the centre of rotation. The
+/// halves may be any pair: a connector, a hand and an object, a fixture and its part, the ground and a body. Of every rest: the share of
+/// sampled poses that end in it, its contacts, its stability (first- or second-order immobile, Rimon and Burdick), its escape height and
+/// the end of the escape path.
+///
+/// --jams prints the rests that do not dock. Rests on the same features are one jam, up to the symmetries of the halves; jams are ranked by
+/// their share. The position of every contact is given on both halves as drawn.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
+#[command(
+    after_long_help = "Examples:\n  \
     catchment rests design.toml\n  \
     catchment rests design.toml -o rests.png        each rest cut through its contacts, and in space\n  \
     catchment rests design.toml --require 'rests.0.depth_at_most_d>=0.1'\n  \
-    catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'\n\n\
-    CSV has a line per rest. Another direction of the load is another approach of the design.")]
+    catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'\n  \
+    catchment rests design.toml --jams\n  \
+    catchment rests design.toml --jams -o jams.png  each jam cut through its contacts, and in space\n  \
+    catchment rests design.toml --jams --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  also the shares under the errors of a robot\n  \
+    catchment rests design.toml --jams --error-measured errors.csv\n  \
+    catchment rests design.toml --jams --require 'outcomes.jammed.share<=0.01'\n  \
+    catchment rests design.toml --jams --json | jq '.features[0]'\n\n\
+    CSV has a line per rest; with --jams a line per contact of every jam. For another direction of the load, change the approach of the \
+    design.",
+    mut_arg("friction", |arg| arg.requires("jams")),
+    mut_arg("error_sigma", |arg| arg.requires("jams")),
+    mut_arg("error_uniform", |arg| arg.requires("jams")),
+    mut_arg("error_measured", |arg| arg.requires("jams")),
+    mut_arg("robots", |arg| arg.requires("jams")),
+)]
 pub(crate) struct RestsArgs {
     #[command(flatten)]
+    pub(super) search: SearchArgs,
+    /// Print the jams: rests that do not dock, their contacts and their share of the failures
+    #[arg(long)]
+    pub(super) jams: bool,
+    #[command(flatten)]
+    cause: CauseArgs,
+}
+
+/// How rests are searched, printed and stored.
+#[derive(Debug, Args)]
+pub(super) struct SearchArgs {
+    #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Random poses of the error box [default: 4000, fewer for round halves]
+    /// Sampled poses of the error box [default: 4000, fewer for round halves]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     motions: Option<u32>,
-    /// Seed of the random poses and of all searches
+    /// Seed of the sampled poses and of all searches
     #[arg(long, value_name = "SEED", default_value_t = 1)]
-    seed: u64,
-    /// How many rests are examined: by which order they are held, and the way out
+    pub(super) seed: u64,
+    /// Number of rests whose stability and escape path are computed
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
     examine: u32,
-    /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
+    /// Also compute depths from a grid over the error box with so many cells per axis, such as 200 or x=100,pitch=50
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
-    resolution: Option<Resolution>,
-    /// How far it must be lifted at least, too, for certain: of simple halves with one or two free errors, in seconds
+    pub(super) resolution: Option<Resolution>,
+    /// Also compute a certain lower bound on the escape height: simple halves with one or two free errors, in seconds
     #[arg(long)]
-    certified: bool,
+    pub(super) certified: bool,
     #[command(flatten)]
-    result: ResultArgs,
+    pub(super) result: ResultArgs,
     #[command(flatten)]
-    exec: ExecArgs,
+    pub(super) exec: ExecArgs,
+}
+
+impl SearchArgs {
+    /// The number of sampled poses.
+    pub(super) fn motions(&self) -> Option<usize> {
+        self.motions.map(|motions| motions as usize)
+    }
+
+    /// The number of rests that are examined.
+    pub(super) const fn examined(&self) -> usize {
+        self.examine as usize
+    }
+}
+
+/// What jams depend on beside the halves.
+#[derive(Debug, Args)]
+pub(super) struct CauseArgs {
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(super) friction: f64,
+    #[command(flatten)]
+    pub(super) errors: SpreadArgs,
 }
 
 pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
-    let settings = RestsSettings {
-        motions: args.motions.map(|motions| motions as usize),
-        seed: args.seed,
-        examined: args.examine as usize,
-        resolution: args.resolution,
-        certified: args.certified,
+    let RestsArgs { search, jams, cause } = args;
+    if *jams {
+        return jams::of(search, cause);
+    }
+    let settings = Settings {
+        motions: search.motions(),
+        seed: search.seed,
+        examined: search.examined(),
+        resolution: search.resolution,
+        certified: search.certified,
     };
     let draw = |report: &RestsReport, problem: &Problem| Ok(figure::rests(report, problem.connector())?);
-    study(&args.design, &args.result, &args.exec, Some(draw), |problem, exec| {
+    study(&search.design, &search.result, &search.exec, Some(draw), |problem, exec| {
         Ok(find(problem, &settings, exec)?)
     })
 }

@@ -1,7 +1,9 @@
-//! `catchment trace`: the way of one pose from first contact to its end.
+//! `catchment trace`: one pose from first contact to its end, or the outcome of every pose in a table.
 
+use super::outcome::{Batch, Point};
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
+use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::{Output, ResultArgs, warnings};
@@ -12,38 +14,57 @@ use catchment::method::drop::Bench;
 use catchment::method::kinematic::LeverPose;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
-use catchment::report::{FirstContact, LeverReport, ReportBody, TraceBody, TraceReport, figure, gltf, vtk};
-use clap::{Args, ValueEnum};
+use catchment::report::{Body, FirstContact, LeverReport, TraceBody, TraceReport, figure, gltf, vtk};
+use clap::{ArgGroup, Args, ValueEnum};
+use std::path::{Path, PathBuf};
 
-/// Follow one pose error to its outcome: contacts, path, picture
+/// Follow one pose error, or every pose of a table, to its outcome
 ///
-/// The motion is exact and quasi-static: no inertia, contact kept, Coulomb friction where it is given; by the drop method it is one trial
-/// in a rigid-body engine, with speed, mass and bounce, from where the half is let go. Prints waypoints spread over the
-/// path; -o writes all of them, or a picture. By the kinematic method it is the first contact alone: rotation points, lever
-/// arms and angles of the dissertation's planar analysis.
+/// --pose follows one pose error from first contact to its end and prints waypoints along the path. The motion is exact and quasi-static:
+/// no inertia, permanent contact, Coulomb friction if given. --method drop simulates one trial in a rigid-body engine instead, with speed,
+/// mass and bounce. --method kinematic prints the first contact only: rotation points, lever arms and angles of the planar analysis.
+///
+/// --poses reads a table (CSV) and prints it again with the outcome of every pose (aligned, jammed, missed, undecided) and its final pose
+/// error, row by row. An interrupted run prints the rows that it finished, or writes them into FILE.partial.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
+#[command(
+    group = ArgGroup::new("start").args(["pose", "poses"]).required(true),
+    after_long_help = "Examples:\n  \
     catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"\n  \
     catchment trace design.toml --pose \"x=5 mm\" -o trace.png\n  \
     catchment trace design.toml --pose \"x=5 mm\" -o trace.glb       an animation, for browsers, Blender and slides\n  \
     catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n  \
     catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n  \
-    catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" --method drop --damping 10 --speed 2\n\n\
-    Lengths are in D and angles in radians unless they have a unit. CSV has a line per contact \
-    point. -o also writes .vtp (path, contacts and halves for ParaView) and .glb (glTF animation, in metres).")]
+    catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" --method drop --damping 10 --speed 2\n  \
+    catchment trace design.toml --poses poses.csv -o outcomes.csv\n  \
+    printf 'x_mm,pitch_deg\\n5,10\\n20,-30\\n' | catchment trace design.toml --poses -\n  \
+    catchment trace design.toml --poses poses.csv --json | jq .counts\n\n\
+    Lengths are in D and angles in radians unless they have a unit. CSV of one pose has a line per contact point. -o also writes .vtp \
+    (path, contacts and halves for ParaView) and .glb (glTF animation, in metres).\n\n\
+    Columns of a table: x, y, roll, pitch, yaw in any order; missing ones are 0. The name states the unit: x_mm, y_in, x_D, pitch_deg, \
+    yaw [rad], x (mm). Other columns are copied. A name that resembles an error (dx, X_mm) is refused. Final errors have the units of their \
+    columns. A table has at most 64 MiB and 1000000 poses.")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// The pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
+    /// Pose error to start from, such as "x=0.2,pitch=10 deg"; errors that are not named are 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
-    pose: String,
-    /// What follows the pose
+    pose: Option<String>,
+    /// Table of pose errors to start from (CSV); - reads stdin. The outcomes go to stdout, or into the file of -o
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(super) poses: Option<PathBuf>,
+    /// Table: point of the moving half at which x and y are measured [default: face]
+    #[arg(long, value_enum, requires = "poses", conflicts_with = "pose")]
+    offsets_at: Option<Point>,
+    /// Method that follows the pose
     #[arg(long, value_enum, default_value_t = By::Descent)]
     method: By,
     #[command(flatten)]
     drop: DropArgs,
     #[command(flatten)]
     result: ResultArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
 }
 
 /// What can be shown of one pose.
@@ -61,6 +82,28 @@ enum By {
 const MOTIONS: [&str; 2] = ["vtp", "glb"];
 
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
+    match &args.poses {
+        Some(poses) => table(args, poses),
+        // One of the two is required.
+        None => one(args, args.pose.as_deref().unwrap_or_default()),
+    }
+}
+
+/// The outcomes of a table of poses.
+fn table(args: &TraceArgs, poses: &Path) -> Result<ExitStatus, Failure> {
+    if args.method == By::Kinematic {
+        let help = "--method descent follows every pose of a table, --method drop simulates it".to_owned();
+        let message = "--method kinematic shows the first contact of one pose".to_owned();
+        return Err(Failure::with_help(message, Some(help)));
+    }
+    let (json, output) = args.result.as_table(&MOTIONS)?;
+    let method = args.drop.of(if args.method == By::Drop { "drop" } else { "descent" })?;
+    let offsets_at = args.offsets_at.unwrap_or(Point::Face);
+    Batch { design: &args.design, poses, method, offsets_at, json, output: &output, exec: &args.exec }.run()
+}
+
+/// The path of one pose.
+fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
     let (kind, own): (_, &[&'static str]) = match args.method {
         // A first contact is no motion.
         By::Kinematic => (FirstContact::KIND, &[]),
@@ -69,8 +112,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let output = args.result.check_with(kind, true, own)?;
     let problem = args.design.problem()?;
     let design = problem.design();
-    let error = parse_pose(&args.pose, design)
-        .map_err(|diagnostics| Failure::of_option("--pose", &args.pose, diagnostics))?;
+    let error = parse_pose(pose, design).map_err(|diagnostics| Failure::of_option("--pose", pose, diagnostics))?;
     match args.method {
         By::Kinematic => {
             if let Some(change) = args.drop.changes().first() {

@@ -1,7 +1,7 @@
 //! `catchment validate`: a prediction beside the trials of a robot.
 
 use super::outcome::Point;
-use super::plan::accuracy;
+use super::plan::repeatability;
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
@@ -29,12 +29,12 @@ use std::time::Instant;
 /// prediction, nor more of them than the robot's own errors explain.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm,y=1 mm,yaw=1 deg'\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --figure trials.png\n                                                  what was seen over what was predicted\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --estimate-friction\n                                                  which friction explains the failures\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --json | jq '.disagreements[0]'\n  \
-    catchment validate plan.csv out --accuracy 'x=1 mm'           a result of `run -o`, with its friction\n\n\
+    catchment validate plan.csv design.toml --repeatability 'x=1 mm,y=1 mm,yaw=1 deg'\n  \
+    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --figure trials.png\n                                                  what was seen over what was predicted\n  \
+    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --estimate-friction\n                                                  which friction explains the failures\n  \
+    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'\n  \
+    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --json | jq '.disagreements[0]'\n  \
+    catchment validate plan.csv out --repeatability 'x=1 mm'           a result of `run -o`, with its friction\n\n\
     Columns: every error that the design leaves free, as x_mm or yaw_deg, and outcome; trial and line as the plan has them, each trial once. Others are \
     left alone. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
     mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
@@ -46,10 +46,10 @@ pub(crate) struct ValidateArgs {
     plan: PathBuf,
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact
-    #[arg(long, value_name = "AXIS=SIZE,…")]
-    accuracy: String,
-    /// k: disagreements nearer to the border than so many accuracies do not count
+    /// Repeatability of the robot: standard deviation of each error, such as "x=0.1 mm,yaw=0.2 deg"; errors that are not named are exact
+    #[arg(long, alias = "accuracy", value_name = "AXIS=SIZE,…")]
+    repeatability: String,
+    /// k: ignore disagreements nearer to the border than k times the repeatability
     #[arg(long, value_name = "K", value_parser = number, default_value_t = catchment::study::validate::LIMIT)]
     limit: f64,
     /// The point of the moving half where the table gives x and y
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     running.may_be_left();
     let (problem, decided_with) = args.design.decided(&running.exec)?;
     let settings = ValidationSettings {
-        accuracy: accuracy(&args.accuracy, &problem)?,
+        accuracy: repeatability(&args.repeatability, &problem)?,
         limit: args.limit,
         friction: args.friction.unwrap_or(decided_with),
         estimate_friction: args.estimate_friction,

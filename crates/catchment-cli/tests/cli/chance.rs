@@ -111,7 +111,7 @@ fn the_way_of_a_trial_is_told_and_drawn() {
     assert!(
         told.contains("time [s]")
             && told.contains("  outcome        aligned\n")
-            && told.ends_with("--- stderr\nnext: catchment jams v.toml\n"),
+            && told.ends_with("--- stderr\nnext: catchment rests v.toml --jams\n"),
         "{told}"
     );
     assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("aligned"));

@@ -30,6 +30,7 @@ mod plumbing;
 mod poses;
 mod prisms;
 mod raw_parts;
+mod renamed;
 mod rests;
 mod run_regressions;
 mod seat;

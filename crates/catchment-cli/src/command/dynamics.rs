@@ -1,4 +1,4 @@
-//! `catchment chance`: dynamics as a probability.
+//! `catchment dynamics`: the probability of docking with speed, mass and bounce. Its old name is `chance`, which its reports keep.
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
@@ -32,14 +32,14 @@ use std::path::PathBuf;
     mut_arg("damping", |arg| arg.help("Friction with the surroundings, 1/s: the force -mass·damping·v [default: 10]")),
     mut_arg("push", |arg| arg.help("Force along the approach, in kg·D/s² [default: what damping balances at the approach speed]")),
     after_long_help = "Examples:\n  \
-    catchment chance design.toml --draw 'speed=50 ± 10 mm/s' --draw 'drift_x=0 ± 20 mm/s'\n  \
-    catchment chance design.toml --dynamics dynamics.toml --error-sigma 'x=1 mm,yaw=2 deg'\n  \
-    catchment chance design.toml --dynamics dynamics.toml --pose x=0.4 --pose 'x=0.4,pitch=5 deg' --trials 1000\n  \
-    catchment chance design.toml --dynamics dynamics.toml --map x,pitch -o map.png\n  \
-    catchment chance design.toml --draw speed=1 --times 0.01,0.1,1,10 -o speeds.svg\n                                                  \
+    catchment dynamics design.toml --draw 'speed=50 ± 10 mm/s' --draw 'drift_x=0 ± 20 mm/s'\n  \
+    catchment dynamics design.toml --dynamics dynamics.toml --error-sigma 'x=1 mm,yaw=2 deg'\n  \
+    catchment dynamics design.toml --dynamics dynamics.toml --pose x=0.4 --pose 'x=0.4,pitch=5 deg' --trials 1000\n  \
+    catchment dynamics design.toml --dynamics dynamics.toml --map x,pitch -o map.png\n  \
+    catchment dynamics design.toml --draw speed=1 --times 0.01,0.1,1,10 -o speeds.svg\n                                                  \
     against speed, down to quasi-static\n  \
-    catchment chance design.toml --dynamics dynamics.toml --require 'overall.probability>=0.95'\n  \
-    catchment chance design.toml --preset gazebo-2014 --pose x=0.3 --trials 999\n\n\
+    catchment dynamics design.toml --dynamics dynamics.toml --require 'overall.probability>=0.95'\n  \
+    catchment dynamics design.toml --preset gazebo-2014 --pose x=0.3 --trials 999\n\n\
     A file of laws:\n\n  \
     [dynamics]\n  \
     speed = { mean = \"50 mm/s\", sigma = \"10 mm/s\" }    # or \"50 ± 10 mm/s\"\n  \
@@ -49,7 +49,7 @@ use std::path::PathBuf;
     and drift_x, drift_y, spin_roll, spin_pitch, spin_yaw, height. Lengths are in D, angles in radians, times in s unless \
     they have a unit; in JSON always."
 )]
-pub(crate) struct ChanceArgs {
+pub(crate) struct DynamicsArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     /// A file of laws (TOML), under [dynamics]
@@ -89,10 +89,10 @@ pub(crate) struct ChanceArgs {
 const DRAWN: &str = "What is drawn for every trial";
 const ASKED: &str = "What is asked";
 
-pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
+pub(crate) fn run(args: &DynamicsArgs) -> Result<ExitStatus, Failure> {
     if args.drop.changes().iter().any(|change| change.option == "--slope-threshold") {
         return Err(Failure::with_help(
-            "--slope-threshold ends exact motions, and chance is of drop tests".to_owned(),
+            "--slope-threshold ends exact motions, and dynamics follows drop tests".to_owned(),
             Some("they have friction itself: --friction, or --draw 'friction=0.2 ± 0.05'".to_owned()),
         ));
     }
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
     })
 }
 
-impl ChanceArgs {
+impl DynamicsArgs {
     fn settings(&self, design: &Design) -> Result<ChanceSettings, Failure> {
         let default = ChanceSettings::default();
         Ok(ChanceSettings {

@@ -1,0 +1,128 @@
+//! Old names of commands and options give what the new ones give.
+
+use super::{V_FACE, catchment, entries, run};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// A folder with two planar designs, the second in millimetres, and a table of poses.
+fn home() -> tempfile::TempDir {
+    let home = super::home();
+    let scaled = V_FACE.replace("aspect_ratio", "width = 50.0\nunit = \"mm\"\naspect_ratio");
+    fs::write(home.path().join("mm.toml"), scaled).unwrap();
+    fs::write(home.path().join("p.csv"), "x,pitch_deg,part\n0.1,5,a\n0.4,-80,b\n2,0,c\n").unwrap();
+    home
+}
+
+/// What a command prints, as JSON without the time that it took where it is JSON.
+fn printed(home: &Path, line: &str) -> (Option<i32>, String, String) {
+    let words = line.split(' ').map(|word| word.replace('_', " "));
+    let output = catchment(home).args(words).output().unwrap();
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    let stdout = match serde_json::from_str::<Value>(&stdout) {
+        Ok(mut report) => {
+            report.as_object_mut().unwrap().remove("timing");
+            report.to_string()
+        }
+        Err(_) => stdout,
+    };
+    (output.status.code(), stdout, String::from_utf8(output.stderr).unwrap())
+}
+
+/// In a word, `_` stands for a space.
+fn same(old: &str, new: &str) {
+    let home = home();
+    let (code, stdout, stderr) = printed(home.path(), old);
+    assert_eq!(code, Some(0), "{old}: {stderr}");
+    assert!(!stdout.is_empty(), "{old}");
+    assert_eq!((code, stdout, stderr), printed(home.path(), new), "{old}\n{new}");
+}
+
+#[test]
+fn outcome_is_trace_of_a_table() {
+    for more in
+        ["", " --json", " --offsets-at cor", " --method drop --trials 1 --timeout 1", " --friction 0.2"]
+    {
+        let [old, new] = ["outcome", "trace"].map(|verb| format!("{verb} v.toml --poses p.csv{more}"));
+        same(&old, &new);
+    }
+    // Both write the table into the file of -o, and print nothing then.
+    let home = home();
+    for (verb, file) in [("outcome", "a.csv"), ("trace", "b.csv")] {
+        let told = run(home.path(), &[verb, "v.toml", "--poses", "p.csv", "-o", file]);
+        assert!(told.starts_with("exit 0\n--- stdout\n--- stderr\n3 poses: "), "{told}");
+    }
+    let read = |file: &str| fs::read_to_string(home.path().join(file)).unwrap();
+    assert_eq!(read("a.csv"), read("b.csv"));
+    assert!(run(home.path(), &["trace", "v.toml", "--poses", "p.csv", "-o", "c.json"]).starts_with("exit 0"));
+    assert!(read("c.json").contains("\"kind\": \"outcome\""));
+}
+
+#[test]
+fn what_a_table_of_poses_does_not_have_is_refused() {
+    let home = home();
+    let table = ["trace", "v.toml", "--poses", "p.csv"];
+    for (more, why) in [
+        (&["--pose", "x=0.1"][..], "cannot be used with"),
+        (&["-o", "t.png"], "no picture"),
+        (&["-o", "t.glb"], "no picture"),
+        (&["--figure", "t.svg"], "no picture"),
+        (&["--require", "x>0"], "--require is about one result"),
+        (&["--method", "kinematic"], "of one pose"),
+        (&["--force"], "none is to be written"),
+    ] {
+        let told = run(home.path(), &[&table[..], more].concat());
+        assert!(!told.starts_with("exit 0") && told.contains(why), "{more:?}: {told}");
+    }
+    let told = run(home.path(), &["trace", "v.toml"]);
+    assert!(told.contains("<--pose <ERRORS>|--poses <FILE>>"), "{told}");
+    assert_eq!(entries(home.path()), ["mm.toml", "p.csv", "v.toml"]);
+}
+
+#[test]
+fn jams_is_rests_with_jams() {
+    for more in ["", " --json", " --csv", " --friction 0.1", " --error-sigma x=0.2"] {
+        let [old, new] = ["jams", "rests --jams"].map(|verb| format!("{verb} v.toml --motions 200{more}"));
+        same(&old, &new);
+    }
+    let home = home();
+    let told = run(home.path(), &["rests", "v.toml", "--friction", "0.1"]);
+    assert!(told.contains("--jams"), "{told}");
+}
+
+#[test]
+fn chance_is_dynamics() {
+    let base = "v.toml --draw speed=1 --trials 2";
+    for more in ["", " --json", " --pose x=0.1"] {
+        same(&format!("chance {base}{more} --overall 100"), &format!("dynamics {base}{more} --overall 100"));
+    }
+}
+
+#[test]
+fn accuracy_is_repeatability() {
+    let plan = "plan mm.toml --pattern bracket --trials 12";
+    same(&format!("{plan} --accuracy x=0.5_mm"), &format!("{plan} --repeatability x=0.5_mm"));
+    let home = home();
+    let table = printed(home.path(), &format!("{plan} --csv --repeatability x=0.5_mm")).1;
+    // The last columns are outcome and notes.
+    let tried = table.replace(",,\n", ",aligned,\n");
+    fs::write(home.path().join("tried.csv"), tried).unwrap();
+    let judged =
+        |option: &str| printed(home.path(), &format!("validate tried.csv mm.toml --{option} x=0.5_mm"));
+    assert_eq!(judged("accuracy"), judged("repeatability"));
+    assert_eq!(judged("accuracy").0, Some(0), "{}", judged("accuracy").2);
+    assert!(judged("sharpness").2.contains("--sharpness"));
+}
+
+#[test]
+fn old_names_have_help_and_pages() {
+    let home = home();
+    for (old, new) in [("outcome", "trace --poses"), ("jams", "rests --jams"), ("chance", "dynamics")] {
+        let help = run(home.path(), &["help", old]);
+        assert!(help.starts_with("exit 0") && help.contains(new), "{help}");
+        let page = run(home.path(), &["man", old]).replace("\\-", "-");
+        assert!(page.starts_with("exit 0") && page.contains(new), "{page}");
+        // Nobody is led to them.
+        assert!(!run(home.path(), &["--help"]).contains(&format!("\n  {old} ")), "{old}");
+    }
+}
