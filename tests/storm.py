@@ -108,7 +108,7 @@ def design_options(dice):
     if dice.random() < 0.2:
         args += ["--cor", length(dice)]
     if dice.random() < 0.2:
-        args += ["--rotation-length", length(dice)]
+        args += [dice.choice(["--rho", "--rotation-length"]), length(dice)]
     if dice.random() < 0.1:
         args += ["--aspect-ratio", number(dice)]
     return args
@@ -210,14 +210,14 @@ def study(dice):
         args += ["--directions", value(dice, 1, 7, 72)]
         args += dice.choice([[], ["--pose", pose(dice)], ["--play", length(dice)], ["--lever", length(dice)], ["--preload", number(dice)]])
     else:
-        args += ["--motions", value(dice, 100, 120) if command == "success" else value(dice, 0, 5, 20)]
+        args += ["--samples", value(dice, 100, 120) if command == "success" else value(dice, 0, 5, 20)]
     if command in ("jams", "rests"):
         args += ["--examine", value(dice, 0, 1)]
         args += dice.choice([[], [], ["--resolution", resolution(dice)], ["--certified"]])
     if command == "window":
         args += dice.choice([[], ["--fix", pose(dice)], ["--proportions", pose(dice)]])
     if command == "success":
-        args += ["--cells", value(dice, 0, 3)]
+        args += ["--resolution", value(dice, 0, 3)]
         args += dice.choice([["--robots", "robots.toml"], ["--error-sigma", pose(dice)], ["--error-uniform", pose(dice)],
                              ["--error-measured", "p.csv"]])
     if command == "friction":
@@ -231,11 +231,11 @@ def study(dice):
 
 def chance(dice):
     args = [dice.choice(["dynamics", "chance"]), "d.toml"] + design_options(dice) + exec_options(dice)
-    args += ["--trials", value(dice, 1, 2), "--overall", value(dice, 100), "--timeout", value(dice, 0.1, 0.3)]
+    args += ["--trials", value(dice, 1, 2), "--samples", value(dice, 100), "--timeout", value(dice, 0.1, 0.3)]
     args += dice.choice([[], ["--dynamics", "dynamics.toml"], ["--draw", f"friction={number(dice)}..{number(dice)}", "--push", number(dice)],
                          ["--draw", f"speed={length(dice)} ± {number(dice)}"]])
     args += dice.choice([[], ["--pose", pose(dice)], ["--poses", "p.csv"], ["--times", "1," + value(dice, 2, 3)],
-                         ["--map", ",".join(dice.choices(AXES, k=2)), "--cells", value(dice, 1, 2)], ["--error-sigma", pose(dice)]])
+                         ["--map", ",".join(dice.choices(AXES, k=2)), "--resolution", value(dice, 1, 2)], ["--error-sigma", pose(dice)]])
     return args + written(dice, "svg", "png", "csv", "json")
 
 
@@ -294,7 +294,7 @@ def systems(dice):
         return args + dice.choice([[], ["--outline"]]) + written(dice, "svg", "png", "csv")
     if command == "latch":
         return dice.choice([["latch", "latch.toml"], ["latch", "latch.toml", "-o", "out"], ["latch", "--table", "-o", "out.csv"]])
-    args = ["chain", "chain.toml", "--chains", value(dice, 1, 5)] + exec_options(dice)
+    args = ["chain", "chain.toml", "--samples", value(dice, 1, 5)] + exec_options(dice)
     args += dice.choice([[], ["--modules", value(dice, 2, 3)], ["--modules", "2..4"], ["--joint-sigma", "1 deg," + length(dice)]])
     return args + written(dice, "svg", "png", "csv", "json")
 

@@ -54,31 +54,30 @@ pub(crate) fn parse(
     Cli::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
 }
 
+/// Heading of the options that override keys of the design.
+const DESIGN: &str = "Design overrides";
+
 /// A design file, and what to change in it for this run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct DesignArgs {
-    /// The design file
+    /// Design file (TOML)
     #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
     pub(crate) path: PathBuf,
-    /// Degrees of freedom that are free, such as x,y,yaw; the others are locked
-    #[arg(long, value_name = "DOFS", value_parser = dofs, help_heading = "Instead of what the design says")]
+    /// Free pose errors, such as x,y,yaw; the others are locked
+    #[arg(long, value_name = "ERRORS", value_parser = dofs, help_heading = DESIGN)]
     free: Option<DofSet>,
-    /// Centre of rotation in front of the face centre: in D, or with a unit, such as "5 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true,
-          help_heading = "Instead of what the design says")]
+    /// Centre of rotation (COR): distance in front of the face centre, in D or with a unit, such as "5 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true, hide_short_help = true,
+          help_heading = DESIGN)]
     cor: Option<Quantity>,
-    /// H/D, height of the mating profile over the width
-    #[arg(
-        long,
-        value_name = "RATIO", value_parser = number,
-        allow_hyphen_values = true,
-        help_heading = "Instead of what the design says"
-    )]
+    /// Aspect ratio H/D: height of the mating profile over the width
+    #[arg(long, value_name = "RATIO", value_parser = number, allow_hyphen_values = true, hide_short_help = true,
+          help_heading = DESIGN)]
     aspect_ratio: Option<f64>,
-    /// rho, how far one radian counts as when motion is damped: in D, or with a unit
-    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true,
-          help_heading = "Instead of what the design says")]
-    rotation_length: Option<Quantity>,
+    /// Characteristic length ρ: weighs turns against shifts, in D or with a unit
+    #[arg(long, alias = "rotation-length", value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true,
+          hide_short_help = true, help_heading = DESIGN)]
+    rho: Option<Quantity>,
 }
 
 impl DesignArgs {
@@ -98,7 +97,7 @@ impl DesignArgs {
             ("--free", "alignment.free", self.free.is_some()),
             ("--cor", "alignment.center_of_rotation", self.cor.is_some()),
             ("--aspect-ratio", "connector.aspect_ratio", self.aspect_ratio.is_some()),
-            ("--rotation-length", "alignment.rotation_length", self.rotation_length.is_some()),
+            ("--rho", "alignment.rotation_length", self.rho.is_some()),
         ]
         .into_iter()
         .filter_map(|(option, key, given)| given.then_some((option, key)))
@@ -115,8 +114,8 @@ impl DesignArgs {
         if let Some(ratio) = self.aspect_ratio {
             draft = draft.change("--aspect-ratio", |design| design.with_aspect_ratio(ratio))?;
         }
-        if let Some(rho) = self.rotation_length {
-            draft = draft.change("--rotation-length", |design| design.with_rotation_length(rho))?;
+        if let Some(rho) = self.rho {
+            draft = draft.change("--rho", |design| design.with_rotation_length(rho))?;
         }
         Ok(draft)
     }

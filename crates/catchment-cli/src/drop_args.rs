@@ -13,78 +13,78 @@ use serde_json::{Value, json};
 /// What may be said of drop tests.
 #[derive(Debug, Args)]
 pub(crate) struct DropArgs {
-    /// Settings under a name; options beside it go before it
-    #[arg(long, value_name = "PRESET", value_parser = preset_parser(), help_heading = DROP)]
+    /// Named settings; options given beside it take precedence
+    #[arg(long, value_name = "PRESET", value_parser = preset_parser(), help_heading = DROP, hide_short_help = true)]
     preset: Option<DropSettings>,
     /// Force along the approach, through the centre of rotation, in kg·D/s² [default: 5000]
-    #[arg(long, value_name = "FORCE", value_parser = number, help_heading = DROP)]
+    #[arg(long, value_name = "FORCE", value_parser = number, help_heading = DROP, hide_short_help = true)]
     push: Option<f64>,
-    /// Gravity along the approach, through the centre of mass, in D/s²; instead of --push
-    #[arg(long, value_name = "ACCELERATION", value_parser = number, help_heading = DROP, conflicts_with = "push")]
+    /// Gravity along the approach, through the centre of mass, in D/s²; replaces --push
+    #[arg(long, value_name = "ACCELERATION", value_parser = number, help_heading = DROP, hide_short_help = true, conflicts_with = "push")]
     gravity: Option<f64>,
     /// Mass of the moving half in kg, at the centre of rotation [default: 1]
-    #[arg(long, value_name = "MASS", value_parser = number, help_heading = DROP)]
+    #[arg(long, value_name = "MASS", value_parser = number, help_heading = DROP, hide_short_help = true)]
     mass: Option<f64>,
-    /// Radius of gyration about it in D: inertia = mass·gyration² [default: rho]
-    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
+    /// Radius of gyration about the centre of rotation, in D: inertia = mass·gyration² [default: ρ]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP, hide_short_help = true)]
     gyration: Option<f64>,
-    /// Centre of mass from the moving face centre, along the axes of the fixed half when docked, in D [default: the centre of rotation]
-    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
+    /// Centre of mass relative to the moving face centre, in the axes of the fixed half when docked, in D [default: the centre of rotation]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, help_heading = DROP, hide_short_help = true)]
     mass_center: Option<[f64; 3]>,
-    /// Density in kg/D³: mass, centre of mass and inertia are those of the solid; instead of --mass
-    #[arg(long, value_name = "DENSITY", value_parser = number, help_heading = DROP, conflicts_with_all = ["mass", "gyration", "mass_center"])]
+    /// Density in kg/D³: the solid gives mass, centre of mass and inertia; replaces --mass
+    #[arg(long, value_name = "DENSITY", value_parser = number, help_heading = DROP, hide_short_help = true, conflicts_with_all = ["mass", "gyration", "mass_center"])]
     density: Option<f64>,
-    /// Friction with the surroundings, 1/s: the force -mass·damping·v [default: 1000, heavy]
-    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP)]
+    /// Viscous damping rate in 1/s: force -mass·damping·v [default: 1000, overdamped]
+    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP, hide_short_help = true)]
     damping: Option<f64>,
-    /// The same for turning, 1/s: the torque -mass·rate·rho²·omega [default: as --damping]
-    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP)]
+    /// Viscous damping rate of rotation in 1/s: torque -mass·rate·ρ²·ω [default: that of --damping]
+    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP, hide_short_help = true)]
     angular_damping: Option<f64>,
-    /// Coefficient of friction between the halves, in exact motions and in drop tests [default: 0]
+    /// Coefficient of friction between the halves, in exact motions and in drop simulations [default: 0]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
-    /// Exact motions end where the height falls by no more than this per length (rho-metric), a rule of thumb for friction [default: 0]
-    #[arg(long, value_name = "SLOPE", value_parser = number)]
+    /// End exact motions on slopes up to this height per length (ρ-metric), a simple model of friction [default: 0]
+    #[arg(long, hide_short_help = true, value_name = "SLOPE", value_parser = number)]
     slope_threshold: Option<f64>,
-    /// Share of the approach speed that a bounce gives back [default: 0]
-    #[arg(long, value_name = "SHARE", value_parser = number, help_heading = DROP)]
+    /// Coefficient of restitution: share of the approach speed after a bounce [default: 0]
+    #[arg(long, value_name = "SHARE", value_parser = number, help_heading = DROP, hide_short_help = true)]
     restitution: Option<f64>,
-    /// A ground to come to rest on, so far below the lowest point of the fixed half, in D [default: none]
-    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
+    /// Ground plane at this distance below the lowest point of the fixed half, in D [default: no ground]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP, hide_short_help = true)]
     ground: Option<f64>,
-    /// Height above first contact from which the half is let go, in D [default: 0.01]
-    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
+    /// Release height above first contact, in D [default: 0.01]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP, hide_short_help = true)]
     drop_height: Option<f64>,
-    /// Speed along the approach with which it is let go, in D/s [default: 0]
-    #[arg(long, value_name = "SPEED", value_parser = number, help_heading = DROP)]
+    /// Approach speed at release, in D/s [default: 0]
+    #[arg(long, value_name = "SPEED", value_parser = number, help_heading = DROP, hide_short_help = true)]
     speed: Option<f64>,
-    /// Velocity of the centre of rotation along x and y then, in D/s [default: 0,0]
-    #[arg(long, value_name = "X,Y", value_parser = pair, allow_hyphen_values = true, help_heading = DROP)]
+    /// Lateral velocity of the centre of rotation at release, in D/s [default: 0,0]
+    #[arg(long, value_name = "X,Y", value_parser = pair, allow_hyphen_values = true, help_heading = DROP, hide_short_help = true)]
     drift: Option<[f64; 2]>,
-    /// Rates of roll, pitch and yaw then, in rad/s [default: 0,0,0]
-    #[arg(long, value_name = "ROLL,PITCH,YAW", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
+    /// Rates of roll, pitch and yaw at release, in rad/s [default: 0,0,0]
+    #[arg(long, value_name = "ROLL,PITCH,YAW", value_parser = triple, allow_hyphen_values = true, help_heading = DROP, hide_short_help = true)]
     spin: Option<[f64; 3]>,
-    /// Inertia, and friction against turning, times this: 1e5 all but locks rotations [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = number, help_heading = DROP)]
+    /// Factor on inertia and on the damping of rotation; 1e5 nearly locks rotations [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = number, help_heading = DROP, hide_short_help = true)]
     inertia_factor: Option<f64>,
     /// Time step of the engine, in s [default: 0.001]
-    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP)]
+    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP, hide_short_help = true)]
     timestep: Option<f64>,
     /// Simulated time after which a trial ends, in s [default: 20]
-    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP)]
+    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP, hide_short_help = true)]
     timeout: Option<f64>,
-    /// Trials per pose, odd: more than half must align [default: 3]
-    #[arg(long, value_name = "N", help_heading = DROP)]
+    /// Trials per pose, an odd number; a pose docks if most of them do [default: 3]
+    #[arg(long, value_name = "N", help_heading = DROP, hide_short_help = true)]
     trials: Option<u32>,
-    /// Largest random change of the start of a trial, in D and radians times rho [default: 0.001]
-    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
+    /// Largest random perturbation of the start of a trial, in D; rotations in radians times ρ [default: 0.001]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP, hide_short_help = true)]
     perturbation: Option<f64>,
-    /// Seed of these changes [default: 1]
-    #[arg(long, value_name = "SEED", help_heading = DROP)]
+    /// Seed of the perturbations [default: 1]
+    #[arg(long, value_name = "SEED", help_heading = DROP, hide_short_help = true)]
     trial_seed: Option<u64>,
 }
 
-const DROP: &str = "Drop tests (--method drop); lengths in D, times in s, masses in kg";
+const DROP: &str = "Drop simulation (--method drop): lengths in D, times in s, masses in kg";
 
 fn preset_parser() -> ValueParser {
     let names = PRESETS.map(|preset| PossibleValue::new(preset.name).help(preset.summary));

@@ -9,15 +9,18 @@ use clap::Args;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+/// Heading of the options for expected errors.
+pub(crate) const EXPECTED: &str = "Expected pose errors";
+
 /// Which errors to expect.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub(crate) struct ErrorArgs {
-    /// Add the success probability for normal errors of these standard deviations, such as "x=1 mm,yaw=2 deg"
-    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    /// Also compute the success probability of normal errors with these standard deviations, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = EXPECTED)]
     error_sigma: Option<String>,
-    /// Add the success probability for errors uniform within ± these, such as "x=1 mm,yaw=2 deg"
-    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    /// Also compute the success probability of uniform errors within ± these bounds, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, hide_short_help = true, value_name = "AXIS=SIZE,…", help_heading = EXPECTED)]
     error_uniform: Option<String>,
 }
 
@@ -43,12 +46,12 @@ impl ErrorArgs {
 pub(crate) struct SpreadArgs {
     #[command(flatten)]
     errors: ErrorArgs,
-    /// Errors as they were measured: a table of poses (CSV); - reads stdin
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
+    /// Read measured pose errors from a table (CSV); - reads stdin
+    #[arg(long, hide_short_help = true, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = EXPECTED,
           conflicts_with_all = ["error_sigma", "error_uniform"])]
     error_measured: Option<PathBuf>,
-    /// A file with one robot (TOML) and its errors: covariance, sigma, uniform or measured
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
+    /// Read the pose errors of a single robot from a file (TOML): covariance, sigma, uniform or measured
+    #[arg(long, hide_short_help = true, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = EXPECTED,
           conflicts_with_all = ["error_sigma", "error_uniform", "error_measured"])]
     robots: Option<PathBuf>,
 }

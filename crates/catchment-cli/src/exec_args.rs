@@ -10,18 +10,21 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+/// Heading of these options.
+const EXECUTION: &str = "Execution (never changes a result)";
+
 /// Options of every command that computes.
 #[derive(Debug, Args)]
 pub(crate) struct ExecArgs {
-    /// Worker threads; 0 means one per core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024),
-          help_heading = "How to run (never changes a result)")]
+    /// Worker threads; 0 uses every core
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024),
+          help_heading = EXECUTION)]
     threads: u16,
-    /// Refuse results larger than this, such as "4 GiB" [default: three quarters of the free memory]
-    #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = "How to run (never changes a result)")]
+    /// Memory budget, such as "4 GiB"; larger results are refused [default: three quarters of the free memory]
+    #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, help_heading = EXECUTION)]
     memory: Option<u64>,
-    /// No progress
-    #[arg(short, long, help_heading = "How to run (never changes a result)")]
+    /// Print no progress
+    #[arg(short, long, hide_short_help = true, help_heading = EXECUTION)]
     quiet: bool,
 }
 

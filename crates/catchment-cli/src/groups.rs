@@ -90,6 +90,18 @@ mod tests {
         assert_eq!(all, grouped);
     }
 
+    /// Numbers of sampled poses are `--samples`, cells per axis `--resolution`: other names are aliases that no help shows.
+    #[test]
+    fn one_meaning_has_one_name() {
+        const OLD: [&str; 7] =
+            ["motions", "cells", "overall", "chains", "rotation-length", "accuracy", "required"];
+        for command in args::command().get_subcommands() {
+            let shown = command.get_arguments().filter_map(|option| option.get_long());
+            let old: Vec<&str> = shown.filter(|name| OLD.contains(name)).collect();
+            assert!(old.is_empty(), "{}: {old:?}", command.get_name());
+        }
+    }
+
     /// Plain lines of 80 columns, about as many as a screen has.
     #[test]
     fn the_help_fits_on_a_screen() {

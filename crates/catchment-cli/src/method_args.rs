@@ -12,34 +12,37 @@ use serde_json::Value;
 /// A method that decides grids, and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct MethodArgs {
-    /// How outcomes are decided
+    /// Method that decides the outcomes
     #[arg(long, value_name = "METHOD", default_value = REGISTRY[0].info.name, value_parser = choice_parser())]
     pub(crate) method: Choice,
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
 }
 
+/// Heading of the settings that a single method has.
+const SETTINGS: &str = "Method settings";
+
 /// Settings of methods.
 #[derive(Debug, Args)]
 pub(crate) struct SettingArgs {
-    /// Flooding: basins shallower than this are merged, in D [default: in the widest gap between the depths of the basins]
-    #[arg(long, value_name = "DEPTH", value_parser = depth)]
+    /// Flooding: merge basins shallower than this depth, in D [default: in the widest gap between basin depths]
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, value_name = "DEPTH", value_parser = depth)]
     pub(crate) depth_tolerance: Option<f64>,
-    /// Partition: rotation slices across the error box of every free angle [default: 24 for one angle, 4 for two]
-    #[arg(long, value_name = "COUNT")]
+    /// Partition: rotation slices across the error box per free angle [default: 24 for a single angle, 4 for two]
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, value_name = "COUNT")]
     slices: Option<usize>,
-    /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 12, or 1 for two angles]
-    #[arg(long, value_name = "COUNT")]
+    /// Partition: strips per D of the moving half; 1 is the method of the dissertation [default: 12, or 1 for two angles]
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, value_name = "COUNT")]
     strips: Option<usize>,
-    /// Certified: undecided share of the error box at which it is enough [default: 0.02]
-    #[arg(long, value_name = "SHARE", value_parser = number)]
+    /// Certified: undecided share of the error box at which the search ends [default: 0.02]
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, value_name = "SHARE", value_parser = number)]
     gap: Option<f64>,
-    /// Certified: boxes of poses that are looked at at most
-    #[arg(long, value_name = "COUNT")]
+    /// Certified: largest number of boxes of poses
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, value_name = "COUNT")]
     boxes: Option<usize>,
-    /// Confluence: motions that are followed, lowest first, before the cells that are left stay undecided [default: as many as it takes]
-    #[arg(long, value_name = "COUNT")]
-    motions: Option<usize>,
+    /// Confluence: largest number of motions, lowest start first; the cells left over stay undecided [default: no limit]
+    #[arg(long, hide_short_help = true, help_heading = SETTINGS, alias = "motions", value_name = "N")]
+    max_motions: Option<usize>,
     #[command(flatten)]
     drop: DropArgs,
 }
@@ -47,7 +50,7 @@ pub(crate) struct SettingArgs {
 /// A method that decides each pose by itself, and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct PoseMethodArgs {
-    /// What decides
+    /// Method that follows the poses
     #[arg(long, value_name = "METHOD", default_value = "descent", value_parser = pose_method_parser())]
     method: Method,
     #[command(flatten)]
@@ -65,7 +68,7 @@ impl SettingArgs {
         add("--strips", "strips", self.strips.map(Value::from));
         add("--gap", "gap", self.gap.map(Value::from));
         add("--boxes", "boxes", self.boxes.map(Value::from));
-        add("--motions", "motions", self.motions.map(Value::from));
+        add("--max-motions", "motions", self.max_motions.map(Value::from));
         changes.extend(self.drop.changes());
         changes
     }

@@ -74,7 +74,7 @@ impl OutputArgs {
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new(FILES).multiple(true))]
 pub(crate) struct FileArgs {
-    /// Also write this file; the end of its name (such as .svg) says what is in it
+    /// Also draw a figure into this file (.svg, .png)
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, group = FILES)]
     output: Option<PathBuf>,
     /// Replace the file if it exists

@@ -38,14 +38,14 @@ pub(crate) struct PrintArgs {
     /// Print JSON, in D and radians
     #[arg(long, conflicts_with = "csv", help_heading = "Output")]
     pub(crate) json: bool,
-    /// Print the table for programs, in D and radians
-    #[arg(long, help_heading = "Output")]
+    /// Print the table as CSV, in D and radians
+    #[arg(long, hide_short_help = true, help_heading = "Output")]
     csv: bool,
     /// Print details as well: the grid, its re-checks, further figures of merit
     #[arg(short, long, help_heading = "Output")]
     verbose: bool,
-    /// End with exit code 1 unless this holds of the JSON report; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement, help_heading = "Output")]
+    /// Exit with code 1 unless the JSON report meets this, such as "onaa.edge>=0.2"; may be repeated
+    #[arg(long, value_name = "CONDITION", value_parser = requirement, hide_short_help = true, help_heading = "Output")]
     pub(crate) require: Vec<Requirement>,
 }
 
@@ -54,11 +54,11 @@ pub(crate) struct PrintArgs {
 pub(crate) struct ResultArgs {
     #[command(flatten)]
     print: PrintArgs,
-    /// Also write this: the ending of a file says what (.json, .csv, .md, .html, .txt, .png, .svg), a folder gets all of it
+    /// Also write this file (.json, .csv, .md, .html, .txt, .png, .svg), or a folder with all of them
     #[arg(short, long, value_name = "PATH", value_hint = clap::ValueHint::AnyPath, help_heading = "Output")]
     output: Option<PathBuf>,
-    /// Also draw it, as .png or .svg
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Output")]
+    /// Also draw the result into this .png or .svg file
+    #[arg(long, hide_short_help = true, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Output")]
     figure: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long, help_heading = "Output")]

@@ -60,9 +60,9 @@ pub(crate) struct CatalogArgs {
     /// Print a table of the source as CSV, byte for byte
     #[arg(long, value_name = "TABLE", value_enum, conflicts_with_all = ["conditions", "sort", "append"])]
     as_printed: Option<Printed>,
-    /// Which figure -o draws
-    #[arg(long, value_name = "FIGURE", value_enum, requires = "output")]
-    figure: Option<Figure>,
+    /// Figure that -o draws
+    #[arg(long, alias = "figure", value_name = "NUMBER", value_enum, requires = "output")]
+    plot: Option<Figure>,
     #[command(flatten)]
     file: FileArgs,
     #[command(flatten)]
@@ -153,7 +153,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
         }
         if let Some(kind) = kind {
             figures::ensure_fits(0, &running.exec)?;
-            let picture = match args.figure.unwrap_or(Figure::Comparison) {
+            let picture = match args.plot.unwrap_or(Figure::Comparison) {
                 Figure::Comparison => figure::comparison(&catalog, &running.exec)?,
                 Figure::Cone => figure::cone_over_x_face(),
             };

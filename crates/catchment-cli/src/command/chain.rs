@@ -42,8 +42,8 @@ pub(crate) struct ChainArgs {
     #[arg(long, value_name = "ANGLES", value_parser = angles)]
     joint_sigma: Option<Angles>,
     /// Random chains
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    chains: u64,
+    #[arg(long, alias = "chains", value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    samples: u64,
     /// Seed of the random chains
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     let output = args.result.check(ChainBody::KIND, true)?;
     let file = ChainFile::read(SourceText::new(&args.path, load(&args.path)?))?;
     let settings = ChainSettings {
-        chains: args.chains,
+        chains: args.samples,
         seed: args.seed,
         modules: args.modules.clone().map(|list| list.0).unwrap_or_default(),
         joint_sigmas: args.joint_sigma.clone().map(|list| list.0).unwrap_or_default(),

@@ -11,13 +11,15 @@ use clap::Args;
 
 /// Check a design file and report every problem with its place
 ///
-/// Where nothing is wrong it says how the design was understood: of halves from files also where the face centre and the centre of rotation
-/// are in the coordinates of each file. With -o it draws the two halves, apart and mated.
+/// Prints how the design was read. For halves from files it also prints the face centre and the centre of rotation in the coordinates of
+/// each file. -o draws the two halves, apart and mated.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment check design.toml\n  \
-    catchment check design.toml -o pair.svg       with a picture of the halves (.svg, .png)\n  \
-    catchment check design.toml --json | jq .problems")]
+#[command(after_long_help = "\
+Examples:
+  catchment check design.toml
+  catchment check design.toml -o pair.svg
+      with a picture of the halves (.svg, .png)
+  catchment check design.toml --json | jq .problems")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,

@@ -68,14 +68,14 @@ pub(crate) struct DynamicsArgs {
     #[arg(long, value_name = "AXIS,AXIS", value_parser = two, help_heading = ASKED)]
     map: Option<[Dof; 2]>,
     /// Cells along each axis of the map
-    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(2..=500), help_heading = ASKED)]
-    cells: u16,
+    #[arg(long, alias = "cells", value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(2..=500), help_heading = ASKED)]
+    resolution: u16,
     /// The probability with every velocity multiplied by each of these, such as "0.01,0.1,1,10"
     #[arg(long, value_name = "FACTOR,…", value_parser = number, value_delimiter = ',', help_heading = ASKED)]
     times: Vec<f64>,
     /// Trials of the probability under expected errors, and of each speed
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]
-    overall: u32,
+    #[arg(long, alias = "overall", value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]
+    samples: u32,
     #[command(flatten)]
     errors: SpreadArgs,
     #[command(flatten)]
@@ -127,7 +127,7 @@ impl DynamicsArgs {
             dynamics: self.declared(design)?,
             held: !self.drop.pushes(),
             trials: self.drop.trials().unwrap_or(default.trials),
-            overall: self.overall as usize,
+            overall: self.samples as usize,
             seed: self.drop.seed().unwrap_or(default.seed),
         })
     }
@@ -172,7 +172,7 @@ impl DynamicsArgs {
         }
         asked.errors = self.errors.spread(design)?;
         if let Some(axes) = self.map {
-            asked = asked.with_map(problem, axes, usize::from(self.cells));
+            asked = asked.with_map(problem, axes, usize::from(self.resolution));
         }
         Ok(asked.or_box(problem))
     }

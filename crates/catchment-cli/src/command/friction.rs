@@ -18,7 +18,7 @@ use clap::Args;
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment friction design.toml\n  \
-    catchment friction design.toml --frictions 0.15,0.3 --motions 5000\n  \
+    catchment friction design.toml --frictions 0.15,0.3 --samples 5000\n  \
     catchment friction design.toml -o friction.png\n  \
     catchment friction design.toml --require 'kept.p95.friction>=0.2'\n  \
     catchment friction design.toml --json | jq '.curve[] | {friction, lost}'")]
@@ -28,9 +28,9 @@ pub(crate) struct FrictionArgs {
     /// Coefficients of friction, beside none [default: 0.05,0.1,0.15,0.2,0.25,0.3,0.4,0.5]
     #[arg(long, value_name = "MU,…", value_parser = number, value_delimiter = ',')]
     frictions: Vec<f64>,
-    /// Random poses of the error box [default: 1000, fewer for round halves]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    motions: Option<u32>,
+    /// Sampled poses of the error box [default: 1000, fewer for round halves]
+    #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    samples: Option<u32>,
     /// Their seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -54,7 +54,7 @@ impl FrictionArgs {
     fn settings(&self) -> FrictionSettings {
         let default = FrictionSettings::default();
         let frictions = if self.frictions.is_empty() { default.frictions } else { self.frictions.clone() };
-        FrictionSettings { frictions, motions: self.motions.map(|motions| motions as usize), seed: self.seed }
+        FrictionSettings { frictions, motions: self.samples.map(|samples| samples as usize), seed: self.seed }
     }
 }
 

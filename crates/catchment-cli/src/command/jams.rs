@@ -31,7 +31,7 @@ pub(super) fn of(search: &SearchArgs, cause: &CauseArgs) -> Result<ExitStatus, F
         Ok(figure::jams(&report.design, &report.result, problem.connector())?)
     };
     let settings = Settings {
-        motions: search.motions(),
+        motions: search.samples(),
         seed: search.seed,
         errors: None,
         examined: search.examined(),

@@ -9,11 +9,12 @@ use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 
 /// Write a commented design file to start from
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment new pyramid > design.toml\n  \
-    catchment new x-face-3d -o design.toml")]
+#[command(after_long_help = "\
+Examples:
+  catchment new pyramid > design.toml
+  catchment new x-face-3d -o design.toml")]
 pub(crate) struct NewArgs {
-    /// The built-in family
+    /// Built-in family of connectors
     #[arg(value_name = "FAMILY", value_parser = family_parser())]
     family: Family,
     #[command(flatten)]

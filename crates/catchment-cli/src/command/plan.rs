@@ -105,8 +105,8 @@ struct PatternArgs {
     #[arg(long, value_name = "N", help_heading = "Poses")]
     lines: Option<u32>,
     /// bracket: no nearer to the border than this, such as "x=2 mm,y=2 mm" [default: twice the repeatability]
-    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Poses")]
-    resolution: Option<String>,
+    #[arg(long, alias = "resolution", value_name = "AXIS=SIZE,…", help_heading = "Poses")]
+    margin: Option<String>,
     /// grid, lattice, bracket: positive errors alone, of symmetric halves
     #[arg(long, help_heading = "Poses")]
     symmetric: bool,
@@ -219,12 +219,11 @@ impl PatternArgs {
                     let why = "how many the robot has time for, such as 60".to_owned();
                     return Err(Failure::with_help("--pattern bracket needs --trials".to_owned(), Some(why)));
                 };
-                let resolution = self.resolution.as_deref();
+                let margin = self.margin.as_deref();
                 Ok(Pattern::Bracket {
                     trials: trials as usize,
                     lines: self.lines.map(|lines| lines as usize),
-                    resolution: resolution
-                        .map_or(Ok([None; 5]), |text| sizes("--resolution", text, problem))?,
+                    resolution: margin.map_or(Ok([None; 5]), |text| sizes("--margin", text, problem))?,
                 })
             }
         }
@@ -243,7 +242,7 @@ impl PatternArgs {
             ("--yaw", self.yaw.is_some(), &[Arc]),
             ("--trials", self.trials.is_some(), &[Bracket]),
             ("--lines", self.lines.is_some(), &[Bracket]),
-            ("--resolution", self.resolution.is_some(), &[Bracket]),
+            ("--margin", self.margin.is_some(), &[Bracket]),
         ];
         let symmetric = ("--symmetric", self.symmetric, &[Grid, Lattice, Bracket][..]);
         let other =

@@ -61,8 +61,8 @@ pub(super) struct SearchArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     /// Sampled poses of the error box [default: 4000, fewer for round halves]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    motions: Option<u32>,
+    #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    samples: Option<u32>,
     /// Seed of the sampled poses and of all searches
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub(super) seed: u64,
@@ -83,8 +83,8 @@ pub(super) struct SearchArgs {
 
 impl SearchArgs {
     /// The number of sampled poses.
-    pub(super) fn motions(&self) -> Option<usize> {
-        self.motions.map(|motions| motions as usize)
+    pub(super) fn samples(&self) -> Option<usize> {
+        self.samples.map(|samples| samples as usize)
     }
 
     /// The number of rests that are examined.
@@ -109,7 +109,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         return jams::of(search, cause);
     }
     let settings = Settings {
-        motions: search.motions(),
+        motions: search.samples(),
         seed: search.seed,
         examined: search.examined(),
         resolution: search.resolution,

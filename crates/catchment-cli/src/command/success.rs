@@ -1,7 +1,7 @@
 //! `catchment success`: whether a robot's errors are corrected.
 
 use crate::args::DesignArgs;
-use crate::error_args::robots_of;
+use crate::error_args::{EXPECTED, robots_of};
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -18,38 +18,47 @@ use std::path::PathBuf;
 
 /// Compute the probability that a robot docks
 ///
-/// Random errors as they are expected, or measured ones, some of them followed exactly: most where a grid over them leaves doubt. Prints the
-/// probability with its interval, what fails and what fails first, what it gains to halve each standard deviation, and how large they may be
-/// for a success that is required.
+/// Samples the expected or measured pose errors of a robot and follows them exactly, most of them near the border. Prints the probability
+/// with its confidence interval, the failures and the error that dominates them, the gain from halving each standard deviation, and the
+/// largest standard deviations that reach --target.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment success design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n  \
-    catchment success design.toml --error-measured errors.csv --required 0.999\n  \
-    catchment success design.toml --robots robots.toml -o success.png\n                                                  several robots, covariances\n  \
-    catchment success design.toml --robots robots.toml --require 'success.probability>=0.95'\n                                                  of the robot that docks most seldom\n  \
-    catchment success design.toml --robots robots.toml --require 'robots.arm A.tolerable.factor>=1'\n  \
-    catchment success design.toml --error-sigma x=0.1 --json | jq '.robots[0].improve'\n\n\
-    A file of robots has a table for each:\n\n  \
-    [[robot]]\n  \
-    name = \"arm A\"\n  \
-    sigma = { x = \"1 mm\", yaw = \"2 deg\" }      # or covariance, uniform, measured\n\n\
-    Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+#[command(after_long_help = "\
+Examples:
+  catchment success design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'
+  catchment success design.toml --error-measured errors.csv --target 0.999
+  catchment success design.toml --robots robots.toml -o success.png
+      several robots, with covariances
+  catchment success design.toml --robots robots.toml \\
+      --require 'success.probability>=0.95'
+      for the robot that docks least often
+  catchment success design.toml --robots robots.toml \\
+      --require 'robots.arm A.tolerable.factor>=1'
+  catchment success design.toml --error-sigma x=0.1 --json \\
+      | jq '.robots[0].improve'
+
+A file of robots has a table for each:
+
+  [[robot]]
+  name = \"arm A\"
+  sigma = { x = \"1 mm\", yaw = \"2 deg\" }      # or covariance, uniform, measured
+
+Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
 pub(crate) struct SuccessArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     #[command(flatten)]
     errors: ExpectedArgs,
-    /// The success for which the largest standard deviations are sought
-    #[arg(long, value_name = "SHARE", value_parser = number, default_value_t = 0.99)]
-    required: f64,
-    /// Exact motions of each robot's probability [default: 8000, fewer for round halves]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    motions: Option<u32>,
-    /// Cells per axis of the grid that says where to look; 0 for none [default: by the number of errors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
-    cells: Option<u32>,
-    /// Seed of the random errors
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    /// Success probability for which the largest standard deviations are computed
+    #[arg(long, alias = "required", value_name = "SHARE", value_parser = number, default_value_t = 0.99)]
+    target: f64,
+    /// Sampled poses per robot [default: 8000, fewer for round halves]
+    #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    samples: Option<u32>,
+    /// Cells per axis of the grid that directs the sampling; 0 uses no grid [default: by the number of errors]
+    #[arg(long, hide_short_help = true, alias = "cells", value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    resolution: Option<u32>,
+    /// Seed of the sampled poses
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -64,17 +73,17 @@ pub(crate) struct SuccessArgs {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct ExpectedArgs {
-    /// A file of robots (TOML), each with its errors
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect")]
+    /// File of robots (TOML) with their pose errors
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = EXPECTED)]
     robots: Option<PathBuf>,
-    /// Normal errors of these standard deviations, such as "x=1 mm,yaw=2 deg"
-    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    /// Normal errors with these standard deviations, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = EXPECTED)]
     error_sigma: Option<String>,
-    /// Errors uniform within ± these, such as "x=1 mm,yaw=2 deg"
-    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    /// Uniform errors within ± these bounds, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = EXPECTED)]
     error_uniform: Option<String>,
-    /// Errors as they were measured: a table of poses (CSV); - reads stdin
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect")]
+    /// Measured pose errors: a table (CSV); - reads stdin
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = EXPECTED)]
     error_measured: Option<PathBuf>,
 }
 
@@ -96,10 +105,10 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
 impl SuccessArgs {
     fn settings(&self) -> SuccessSettings {
         SuccessSettings {
-            motions: self.motions.map(|motions| motions as usize),
+            motions: self.samples.map(|samples| samples as usize),
             seed: self.seed,
-            required: self.required,
-            cells: self.cells.map(|cells| cells as usize),
+            required: self.target,
+            cells: self.resolution.map(|cells| cells as usize),
             friction: self.friction,
         }
     }

@@ -16,33 +16,37 @@ use clap::Args;
 
 /// Find the largest box of pose errors that all dock
 ///
-/// Exact motions, no grid: every direction of the box, then moves about the worst pose found, each failing pose making the box
-/// smaller; then random poses all over it, none of which may fail. Prints half-widths around zero, how far every error may go
-/// alone and with all others in the window, the worst pose, and how sure all this is.
+/// Searches for the tolerance window by exact motions, without a grid: every failing pose shrinks the box. Sampled poses over the whole box
+/// then certify it. Prints the half-widths around zero, the single-axis limits, the limit of every error with all others inside the window,
+/// the worst pose, and an upper bound on the failure rate.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment window design.toml                    in the proportions of the error box\n  \
-    catchment window design.toml --fix 'x=2 mm,y=2 mm'\n                                                  these are given: how much of the others?\n  \
-    catchment window design.toml --proportions 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  the others do not occur\n  \
-    catchment window design.toml --require 'window.yaw>=5 deg'\n  \
-    catchment window design.toml --json | jq .window\n\n\
-    Lengths are in D and angles in radians unless they have a unit; in JSON always. The window ends at the \
-    error box of the design.")]
+#[command(after_long_help = "\
+Examples:
+  catchment window design.toml
+      in the proportions of the error box
+  catchment window design.toml --fix 'x=2 mm,y=2 mm'
+      how large may the other errors be if x and y are given?
+  catchment window design.toml --proportions 'x=1 mm,y=1 mm,yaw=2 deg'
+      the other errors are zero
+  catchment window design.toml --require 'window.yaw>=5 deg'
+  catchment window design.toml --json | jq .window
+
+Lengths are in D and angles in radians unless they have a unit; in JSON always.
+The window is at most as large as the error box of the design.")]
 pub(crate) struct WindowArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Half-widths that are given, such as "x=2 mm,y=2 mm": the window holds them, and the others grow
+    /// Given half-widths, such as "x=2 mm,y=2 mm"; the window contains them, and the other errors grow
     #[arg(long, value_name = "AXIS=SIZE,…")]
     fix: Option<String>,
-    /// Proportions of the half-widths that are not given, such as "x=1 mm,yaw=2 deg"; what is not named does not occur [default: the error
-    /// box]
+    /// Proportions of the other half-widths, such as "x=1 mm,yaw=2 deg"; errors that are not named are zero [default: the error box]
     #[arg(long, value_name = "AXIS=SIZE,…")]
     proportions: Option<String>,
-    /// Random poses of the certificate; 0 for none [default: 300000, fewer for round halves]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
-    motions: Option<u32>,
-    /// Seed of the search and of the random poses
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    /// Sampled poses of the certificate; 0 skips it [default: 300000, fewer for round halves]
+    #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
+    samples: Option<u32>,
+    /// Seed of the search and of the sampled poses
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -61,7 +65,7 @@ pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
         let seconds = expected(problem, &settings) / exec.threads() as f64;
         if seconds > LONG {
             to_stderr(&[format!(
-                "{} errors on these halves: about {} (--motions N draws that many random poses)",
+                "{} errors on these halves: about {} (--samples N takes that many sampled poses)",
                 free.len(),
                 time(seconds)
             )]);
@@ -92,7 +96,7 @@ impl WindowArgs {
         Ok(WindowSettings {
             fixed: fixed.unwrap_or_default(),
             proportions: proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default))),
-            motions: self.motions.map(|motions| motions as usize),
+            motions: self.samples.map(|samples| samples as usize),
             seed: self.seed,
             friction: self.friction,
         })

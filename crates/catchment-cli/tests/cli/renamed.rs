@@ -115,6 +115,41 @@ fn accuracy_is_repeatability() {
 }
 
 #[test]
+fn old_options_are_the_new_ones() {
+    for (command, old, new) in [
+        ("friction v.toml --frictions 0.2", "--motions 50", "--samples 50"),
+        ("rests v.toml --examine 0", "--motions 50", "--samples 50"),
+        ("window v.toml", "--motions 50", "--samples 50"),
+        ("success v.toml --error-sigma x=0.2", "--motions 100 --cells 4", "--samples 100 --resolution 4"),
+        ("success v.toml --error-sigma x=0.2 --motions 100", "--required 0.9", "--target 0.9"),
+        ("run v.toml --resolution 6 --samples 0", "--motions 5", "--max-motions 5"),
+        ("run v.toml --resolution 6 --samples 0", "--rotation-length 0.5", "--rho 0.5"),
+        ("dynamics v.toml --draw speed=1 --trials 1", "--overall 100", "--samples 100"),
+        (
+            "dynamics v.toml --draw speed=1 --trials 1 --map x,pitch --timeout 1",
+            "--cells 2",
+            "--resolution 2",
+        ),
+        (
+            "plan v.toml --pattern bracket --trials 8 --repeatability x=0.01",
+            "--resolution x=0.05",
+            "--margin x=0.05",
+        ),
+    ] {
+        same(&format!("{command} {old} --json"), &format!("{command} {new} --json"));
+    }
+    let systems = super::designs().join("systems");
+    let chain = |option: &str| printed(&systems, &format!("chain chain.toml --{option} 20 --json"));
+    assert_eq!(chain("chains"), chain("samples"));
+    let home = home();
+    for (option, file) in [("figure", "a.svg"), ("plot", "b.svg")] {
+        assert_eq!(printed(home.path(), &format!("catalog --{option} 4.2 -o {file}")).0, Some(0));
+    }
+    let read = |file: &str| fs::read(home.path().join(file)).unwrap();
+    assert_eq!(read("a.svg"), read("b.svg"));
+}
+
+#[test]
 fn old_names_have_help_and_pages() {
     let home = home();
     for (old, new) in [("outcome", "trace --poses"), ("jams", "rests --jams"), ("chance", "dynamics")] {

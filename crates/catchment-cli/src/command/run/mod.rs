@@ -27,23 +27,34 @@ use clap::Args;
 
 /// Compute the area of acceptance: which pose errors still dock
 ///
-/// Every cell of a grid over the error box is decided by the method. Random poses, most of them where the grid is in
-/// doubt, are then followed exactly: they make the Sum unbiased, whatever the grid, and give it a 95 % interval.
+/// Decides every cell of a grid over the error box by --method. Then follows sampled poses exactly, most of them near the border, and
+/// corrects the Sum with them: it is unbiased on any grid and has a 95 % confidence interval. Prints the tolerance window, the single-axis
+/// limits, the Sum and the shares of the outcomes.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment run design.toml\n  \
-    catchment run design.toml -o out                    table, pictures, report.json and result.zarr\n  \
-    catchment run design.toml --free x,y,yaw --resolution 41,yaw=61\n  \
-    catchment run design.toml --tolerance 1%            until the Sum is known to ± 1 %\n  \
-    catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
-    catchment run design.toml --window --jams -o out    also the window one may ship, and where poses jam\n  \
-    catchment run design.toml --json | jq .onaa.edge\n  \
-    catchment run design.toml --method all              every method, and how they agree\n  \
-    catchment run design.toml --free x,yaw --method drop --friction 0.2\n  \
-    catchment run design.toml --converge -o out         finer grids until stable, with every method\n  \
-    catchment run design.toml --sensitivity             slopes against rho, COR and aspect ratio\n\n\
-    The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing` (and the seconds of\n\
-    --converge, which may end it earlier on a slower machine).")]
+#[command(after_long_help = "\
+Examples:
+  catchment run design.toml
+  catchment run design.toml -o out
+      table, pictures, report.json and result.zarr
+  catchment run design.toml --free x,y,yaw --resolution 41,yaw=61
+  catchment run design.toml --tolerance 1%
+      samples until the Sum is known to ± 1 %
+  catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' \\
+      --require 'success.probability>=0.99'
+      exits with code 1 if the robot docks less often
+  catchment run design.toml --window --jams -o out
+      also the tolerance window, and the jams
+  catchment run design.toml --json | jq .onaa.edge
+  catchment run design.toml --method all
+      every method, and how well they agree
+  catchment run design.toml --free x,yaw --method drop --friction 0.2
+  catchment run design.toml --converge -o out
+      finer grids until the Sum is stable, with every method
+  catchment run design.toml --sensitivity
+      slopes against ρ, COR and aspect ratio
+
+The JSON of equal runs is equal byte for byte on any number of threads, but for
+`timing`. --converge may end earlier on a slower machine.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -60,10 +71,10 @@ pub(crate) struct RunArgs {
     pub(super) place: place::PlaceArgs,
     #[command(flatten)]
     study: study::StudyArgs,
-    /// Also find the largest box of errors that all dock, in the proportions of the error box, as `catchment window` does
+    /// Also find the tolerance window, as `catchment window` does
     #[arg(long)]
     window: bool,
-    /// Also tell where poses jam and what touches there, the first few; `catchment jams` tells more
+    /// Also list the most frequent jams; `catchment rests --jams` lists all
     #[arg(long)]
     jams: bool,
     #[command(flatten)]

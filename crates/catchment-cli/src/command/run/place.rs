@@ -18,14 +18,16 @@ use std::path::{Path, PathBuf};
 /// Where the files of a run go.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
-    /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group; NAME.vti, .vtp or .csv: only the set, for
-    /// ParaView or as a table (see `export`); NAME.json, .md, .html or .txt: only the report
+    /// Write report.json, result.zarr and pictures into this folder, or a single file by its ending
+    ///
+    /// NAME.zarr: only the Zarr group. NAME.vti, .vtp or .csv: only the set, for ParaView or as a table, as `export` writes it. NAME.json,
+    /// .md, .html or .txt: only the report.
     #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
     pub(in crate::command) output: Option<PathBuf>,
     /// Write only the pictures into this folder
-    #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
+    #[arg(long, hide_short_help = true, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
     figures: Option<PathBuf>,
-    /// Replace a report that exists
+    /// Replace a file that exists
     #[arg(long, requires = "output", help_heading = "Output")]
     force: bool,
 }

@@ -8,23 +8,26 @@ use std::time::Duration;
 /// When the sampling stops, and what it starts from.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArgs {
-    /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000, fewer for round halves; 0 with flood]
+    /// Number of sampled poses, which correct the Sum; 0 leaves it uncorrected [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
     pub(super) samples: Option<u32>,
-    /// As many as can be followed in this time, such as "20s" or "2 min", less what the grid takes: half of it at most, what confluence has
-    /// not decided by then is undecided. The report says how many
+    /// Sample for this time instead, such as "20s" or "2 min"
+    ///
+    /// The grid takes up to half of it; cells that confluence does not decide in that time stay undecided. The report states the number of
+    /// samples.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["samples", "tolerance"], help_heading = SUM)]
     budget: Option<Duration>,
-    /// As many as it takes for a 95 % interval of ± this share of the Sum, such as 1% or 0.01; with --converge the largest
-    /// change that counts as stable
-    #[arg(long, value_name = "SHARE", value_parser = share, conflicts_with = "samples", help_heading = SUM)]
+    /// Sample until the 95 % interval is ± this share of the Sum, such as 1% or 0.01
+    ///
+    /// With --converge: the largest change that counts as stable.
+    #[arg(long, hide_short_help = true, value_name = "SHARE", value_parser = share, conflicts_with = "samples", help_heading = SUM)]
     pub(super) tolerance: Option<f64>,
-    /// Seed of the random poses
-    #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
+    /// Seed of the sampled poses
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
     pub(crate) seed: u64,
 }
 
-const SUM: &str = "How sure the Sum is";
+const SUM: &str = "Sampling";
 
 impl SampleArgs {
     /// What was asked for.

@@ -18,20 +18,20 @@ use std::time::{Duration, Instant};
 /// Studies in the place of a single run.
 #[derive(Debug, Args)]
 pub(super) struct StudyArgs {
-    /// Refine the grid until Sum and ONAA are stable to --tolerance (1%), with every method side by side
-    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["sensitivity", "budget", "figures", "require", "jams", "window"],
+    /// Refine the grid until Sum and ONAA change by less than --tolerance (1%), with every method
+    #[arg(long, hide_short_help = true, help_heading = STUDIES, conflicts_with_all = ["sensitivity", "budget", "figures", "require", "jams", "window"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]
     converge: bool,
-    /// --converge, --method all: how long each method may take, such as "20s" or "2 min" [default: 60s]
-    #[arg(long, help_heading = STUDIES, value_name = "TIME", value_parser = duration)]
+    /// Time limit of each method with --converge or --method all, such as "20s" or "2 min" [default: 60s]
+    #[arg(long, hide_short_help = true, help_heading = STUDIES, value_name = "TIME", value_parser = duration)]
     pub(super) time_limit: Option<Duration>,
-    /// How the Sum moves with rho, the centre of rotation and the aspect ratio, by the same random poses
-    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["figures", "require", "budget", "tolerance", "jams", "window"],
+    /// Compute the sensitivity of the Sum to ρ, centre of rotation and aspect ratio, with the same sampled poses
+    #[arg(long, hide_short_help = true, help_heading = STUDIES, conflicts_with_all = ["figures", "require", "budget", "tolerance", "jams", "window"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]
     sensitivity: bool,
 }
 
-const STUDIES: &str = "Studies in the place of a single run";
+const STUDIES: &str = "Studies of several runs";
 
 /// Does the study that was asked for, if one was.
 pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
