@@ -30,7 +30,7 @@ pub(super) fn of(search: &SearchArgs, cause: &CauseArgs) -> Result<ExitStatus, F
     let draw = |report: &JamsReport, problem: &Problem| {
         Ok(figure::jams(&report.design, &report.result, problem.connector())?)
     };
-    let settings = Settings {
+    let settings = JamsSettings {
         motions: search.samples(),
         seed: search.seed,
         errors: None,

@@ -168,7 +168,7 @@ impl PlanArgs {
             stop_at_first_failure: self.stop_at_first_failure,
             seed: self.seed,
             friction: self.friction.unwrap_or(decided_with),
-            ..Settings::new(pattern, repeatability(&self.repeatability, problem)?)
+            ..TrialPlanSettings::new(pattern, repeatability(&self.repeatability, problem)?)
         })
     }
 }

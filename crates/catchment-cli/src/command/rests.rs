@@ -108,7 +108,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
     if *jams {
         return jams::of(search, cause);
     }
-    let settings = Settings {
+    let settings = RestsSettings {
         motions: search.samples(),
         seed: search.seed,
         examined: search.examined(),

@@ -14,7 +14,7 @@ use catchment::method::drop::Bench;
 use catchment::method::kinematic::LeverPose;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
-use catchment::report::{Body, FirstContact, LeverReport, TraceBody, TraceReport, figure, gltf, vtk};
+use catchment::report::{FirstContact, LeverReport, ReportBody, TraceBody, TraceReport, figure, gltf, vtk};
 use clap::{ArgGroup, Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -112,7 +112,8 @@ fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
     let output = args.result.check_with(kind, true, own)?;
     let problem = args.design.problem()?;
     let design = problem.design();
-    let error = parse_pose(pose, design).map_err(|diagnostics| Failure::of_option("--pose", pose, diagnostics))?;
+    let error =
+        parse_pose(pose, design).map_err(|diagnostics| Failure::of_option("--pose", pose, diagnostics))?;
     match args.method {
         By::Kinematic => {
             if let Some(change) = args.drop.changes().first() {
