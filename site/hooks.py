@@ -1,8 +1,10 @@
-"""What mkdocs puts beside the pages: designs of the gallery with their meshes, and the JSON schemas, as files to take.
+"""Additions of mkdocs to the pages: files to take, and the glossary.
 
-In the repository pages link to them where they lie, one folder up; on the site they lie below its root.
+Designs of the gallery with their meshes, and the JSON schemas, lie one folder up in the repository and below the root on the site. Every page links to the glossary, and
+shows the meaning of its terms as tooltips: of terms of several words and of abbreviations, since "rest" or "play" may be plain English.
 """
 
+import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
@@ -19,8 +21,24 @@ def on_files(files, config):
     return files
 
 
+def terms():
+    """The terms of the glossary with their meanings as plain text."""
+    for line in (ROOT / "docs/glossary.md").read_text(encoding="utf-8").splitlines():
+        found = re.match(r"- \*\*(.+?)\*\*: (.+?)(?: \*Source:.*)?$", line)
+        if not found:
+            continue
+        meaning = re.sub(r" Formerly .*", "", found[2])
+        meaning = re.sub(r"\[([^]]*)\]\([^)]*\)|`([^`]*)`|[*]", lambda m: m[1] or m[2] or "", meaning)
+        for name in re.split(r", | \(|\)", found[1]):
+            if " " in name or (name.isupper() and len(name) > 1):
+                yield name, meaning
+
+
 def on_page_markdown(markdown, page, **_):
     up = "../" * page.file.src_uri.count("/")
     for folder in ("designs/", "crates/catchment-report/"):
         markdown = markdown.replace(f"]({up}../{folder}", f"]({up}{folder}")
-    return markdown
+    if page.file.src_uri == "glossary.md":
+        return markdown
+    tooltips = "\n".join(f"*[{name}]: {meaning}" for name, meaning in terms())
+    return f"{markdown}\n\n---\n\nTerms: [glossary]({up}glossary.md)\n\n{tooltips}\n"
