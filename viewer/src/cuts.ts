@@ -1,7 +1,7 @@
 // What a slice shows: the plane of exact motions through 0 where the result has one and the other errors are 0, else the cells of the grid that hold
 // the other errors. The pictures of `run -o` show the same.
 
-import type { Helper } from "./asking";
+import type { Helper } from "./request";
 import { tidy, type Units } from "./format";
 import type { Computing } from "./messages";
 import { AXES, isTurn, type Axis, type Page, type Pose } from "./page";

@@ -1,7 +1,7 @@
 // The page: what it shows, and what happens when a pose is chosen. It draws results; motions come from the library itself (worker), pictures in space
 // from a worker of their own (painter): whatever they take, a click is answered.
 
-import { Helper, latest } from "./asking";
+import { Helper, latest } from "./request";
 import { Friction, Sliders } from "./controls";
 import { Cuts } from "./cuts";
 import { make } from "./dom";
@@ -14,7 +14,7 @@ import { Player } from "./player";
 import { again } from "./served";
 import { Slice, type Marks } from "./slices";
 import { Stage, type Section } from "./stage";
-import { ending } from "./telling";
+import { ending } from "./outcome_text";
 import { theme } from "./theme";
 import { Volume } from "./volume";
 

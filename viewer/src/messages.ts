@@ -26,7 +26,7 @@ export interface Computing {
 }
 
 /** From where a picture is seen, and its size in pixels. */
-export interface Seen { width: number; height: number; position: number[]; quaternion: number[]; fov: number; near: number; far: number }
+export interface View { width: number; height: number; position: number[]; quaternion: number[]; fov: number; near: number; far: number }
 /** Colours of the style by name. */
 export type Colours = Record<string, string>;
 export type Corners = [Point, Point];
@@ -36,10 +36,10 @@ export interface Painting {
     /** Takes the halves, packed; their lowest and highest corners. */
     halves: [[string, string], [Corners, Corners]];
     /** The moving half by a matrix; a section through a point, along x or y. */
-    stage: [{ seen: Seen; colours: Colours; moving: number[]; touches: Touch[]; section: { normal: Point; through: Point } | null }, ImageBitmap];
+    stage: [{ seen: View; colours: Colours; moving: number[]; touches: Touch[]; section: { normal: Point; through: Point } | null }, ImageBitmap];
     /** Takes the surface of a set. */
     surface: [Mesh, null];
-    volume: [{ seen: Seen; colours: Colours; surface: string; point: Point; labels: Label[] }, ImageBitmap];
+    volume: [{ seen: View; colours: Colours; surface: string; point: Point; labels: Label[] }, ImageBitmap];
     /** Where on the surface a look from −1 to 1 across and up ends. */
-    hit: [{ seen: Seen; at: [number, number] }, Point | null];
+    hit: [{ seen: View; at: [number, number] }, Point | null];
 }

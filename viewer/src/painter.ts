@@ -1,10 +1,10 @@
 // Beside the page: draws the pictures in space, so that a slow graphics card (or none) holds up no click.
 
 import { PerspectiveCamera, WebGLRenderer, type Scene } from "three";
-import { answer } from "./answering";
+import { answer } from "./response";
 import { unpacked } from "./grid";
 import { Halves } from "./halves";
-import type { Painting, Seen } from "./messages";
+import type { Painting, View } from "./messages";
 import { Surface } from "./surface";
 
 let halves: Halves;
@@ -21,7 +21,7 @@ function painting(): WebGLRenderer {
     return renderer;
 }
 
-function from(seen: Seen) {
+function from(seen: View) {
     const { fov, near, far, width, height } = seen;
     Object.assign(camera, { fov, near, far, aspect: width / height });
     camera.position.fromArray(seen.position);
@@ -31,7 +31,7 @@ function from(seen: Seen) {
     return camera;
 }
 
-async function picture(scene: Scene, seen: Seen) {
+async function picture(scene: Scene, seen: View) {
     const { width, height } = seen;
     const renderer = painting();
     const canvas = renderer.domElement;

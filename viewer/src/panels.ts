@@ -3,7 +3,7 @@
 import { make } from "./dom";
 import { grouped, percent, tidy, type Units } from "./format";
 import { AXES, OUTCOMES, listed, type Jam, type Page, type Pose } from "./page";
-import { reason } from "./telling";
+import { reason } from "./outcome_text";
 
 const row = (name: string, value: string, more = "") =>
     make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value, ...(more ? [make("small", {}, more)] : [])));

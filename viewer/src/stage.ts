@@ -1,7 +1,7 @@
 // The two halves in space: where the moving one is, what touches, and a section through the contacts.
 
 import { Box3, Matrix4, Vector3 } from "three";
-import type { Helper } from "./asking";
+import type { Helper } from "./request";
 import { colours } from "./dom";
 import type { Painting } from "./messages";
 import type { Pose, Touch } from "./page";

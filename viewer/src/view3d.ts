@@ -2,8 +2,8 @@
 
 import { PerspectiveCamera, Vector3, type Box3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { latest } from "./asking";
-import type { Seen } from "./messages";
+import { latest } from "./request";
+import type { View } from "./messages";
 
 export class View3d {
     private readonly camera = new PerspectiveCamera(32, 1, 0.01, 200);
@@ -11,7 +11,7 @@ export class View3d {
     private readonly pen: CanvasRenderingContext2D;
     private isOpen = false;
 
-    constructor(readonly canvas: HTMLCanvasElement, from: Vector3, private readonly picture: (seen: Seen) => Promise<ImageBitmap>) {
+    constructor(readonly canvas: HTMLCanvasElement, from: Vector3, private readonly picture: (seen: View) => Promise<ImageBitmap>) {
         this.pen = canvas.getContext("2d")!;
         this.camera.up.set(0, 0, 1);
         this.camera.position.copy(from);
@@ -52,7 +52,7 @@ export class View3d {
     });
 
     /** Nothing where the canvas is not shown. */
-    seen(): Seen | null {
+    seen(): View | null {
         const ratio = Math.min(devicePixelRatio, 2);
         const [width, height] = [Math.floor(this.canvas.clientWidth * ratio), Math.floor(this.canvas.clientHeight * ratio)];
         const { position, quaternion, fov, near, far } = this.camera;

@@ -1,7 +1,7 @@
 // The set over any three errors as a surface in a box; the others stay where the sliders are.
 
 import { Box3, Vector3 } from "three";
-import type { Helper } from "./asking";
+import type { Helper } from "./request";
 import { values, type Fixed } from "./cuts";
 import { colour, colours, make } from "./dom";
 import { grouped, tidy } from "./format";

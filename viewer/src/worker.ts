@@ -1,6 +1,6 @@
 // Beside the page: unpacks outcomes, cuts them, follows motions. The page stays free meanwhile.
 
-import { answer } from "./answering";
+import { answer } from "./response";
 import { Grid, unpacked } from "./grid";
 import type { Computing, Start } from "./messages";
 import { Motions, read } from "./motions";

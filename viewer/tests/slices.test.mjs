@@ -146,7 +146,7 @@ async function module(name) {
 }
 
 test("the rule of the seat that a rest breaks is named", async () => {
-    const [{ reason, ending }, { Units }] = await Promise.all([module("telling"), module("format")]);
+    const [{ reason, ending }, { Units }] = await Promise.all([module("outcome_text"), module("format")]);
     const design = (limits = [null, null, null, null, null], symmetry = 1) => ({
         name: "", width: 50, unit: "mm",
         alignment: { free: ["x", "y", "yaw"], center_of_rotation: 0, rotation_length: 0.5, half_ranges: [1, 1, 0, 0, 1], symmetry, docked: { depth: 2e-3, limits } },

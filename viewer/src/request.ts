@@ -1,4 +1,4 @@
-// Asks a worker, and gives what it found.
+// Sends a request to a worker and gives its reply.
 
 import type { Protocol } from "./messages";
 import { text } from "./page";
