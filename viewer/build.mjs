@@ -9,7 +9,18 @@ import { fileURLToPath } from "node:url";
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
 const bundle = here("../crates/catchment-report/src/page/bundle/");
 const compare = process.argv.includes("--compare");
-const shared = { bundle: true, minify: true, write: false, target: "es2022", legalComments: "none", charset: "ascii", logLevel: "warning" };
+// Meanings of terms, for tooltips: the first sentence of each line of the glossary.
+const glossary = Object.fromEntries(
+    [...readFileSync(here("../docs/glossary.md"), "utf8").matchAll(/^- \*\*(.+?)\*\*: (.+)$/gm)].flatMap(([, names, text]) => {
+        const meaning = text.replace(/ (Formerly|\*Source:).*/, "").replace(/\[([^\]]*)\]\([^)]*\)/g, "$1").replace(/[`*]/g, "");
+        return names.split(/, | \(|\)/).filter((name) => name).map((name) => [name, meaning]);
+    }),
+);
+const used = ["Sum", "ONAA", "centred cube", "tolerance window", "single-axis limit"];
+const missing = used.filter((name) => !glossary[name]);
+if (missing.length) throw new Error(`docs/glossary.md does not explain ${missing.join(", ")}`);
+const define = { GLOSSARY: JSON.stringify(Object.fromEntries(used.map((name) => [name, glossary[name]]))) };
+const shared = { define, bundle: true, minify: true, write: false, target: "es2022", legalComments: "none", charset: "ascii", logLevel: "warning" };
 const banner = "/* catchment viewer; holds three.js, MIT, Copyright 2010-2026 three.js authors */";
 // The page orbits, and leaves drawing to the painter: of three.js it takes vectors and cameras, without shaders.
 const core = { name: "core", setup: (building) => building.onResolve({ filter: /^three$/ }, () => ({ path: here("node_modules/three/build/three.core.js") })) };

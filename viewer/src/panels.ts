@@ -1,15 +1,21 @@
-// What the reports say: figures of merit with their intervals, the window, the jams, doubts.
+// Cards of the report: figures of merit with their intervals, the window, the jams, warnings.
 
 import { make } from "./dom";
 import { grouped, percent, tidy, type Units } from "./format";
 import { AXES, OUTCOMES, listed, type Jam, type Page, type Pose } from "./page";
 import { reason } from "./outcome_text";
 
-const row = (name: string, value: string, more = "") =>
+/** Meanings of the glossary, by term; build.mjs reads them from docs/glossary.md. */
+declare const GLOSSARY: Record<string, string>;
+
+/** A term, with its meaning as a tooltip. */
+const term = (name: string, of = name) => (GLOSSARY[of] ? make("abbr", { title: GLOSSARY[of] }, name) : name);
+
+const row = (name: Node | string, value: string, more = "") =>
     make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value, ...(more ? [make("small", {}, more)] : [])));
 
 /** A table whose first column names the rows. */
-const table = (head: string[], rows: string[][], caption: string) =>
+const table = (head: (Node | string)[], rows: string[][], caption: string) =>
     make("table", { class: "grid" }, make("caption", {}, caption),
         make("thead", {}, make("tr", {}, ...head.map((name) => make("th", { scope: "col" }, name)))),
         make("tbody", {}, ...rows.map(([name, ...cells]) => make("tr", {}, make("th", { scope: "row" }, name), ...cells.map((text) => make("td", {}, text))))));
@@ -31,20 +37,20 @@ export function merits({ report }: Page, units: Units): HTMLElement {
     const legend = make("p", { class: "legend" }, ...OUTCOMES.filter((outcome) => acceptance.outcomes[outcome] > 0).map((outcome) =>
         make("span", {}, make("i", { style: `background:var(--${outcome})` }), `${outcome} ${percent(acceptance.outcomes[outcome] / total)}`)));
     const rows = [
-        row("Sum", `${tidy4(acceptance.sum)} ${acceptance.unit}`, acceptance.sum_ci95 ? `95 %: ${interval(acceptance.sum_ci95)}` : ""),
+        row(term("AA (Sum)", "Sum"), `${tidy4(acceptance.sum)} ${acceptance.unit}`, acceptance.sum_ci95 ? `95 % CI ${interval(acceptance.sum_ci95)}` : ""),
         row("share of the error box", percent(acceptance.fraction, 2)),
     ];
-    if (acceptance.sum_bracket) rows.push(row("of the cells", tidy4(acceptance.sum_grid), `one cell of doubt: ${acceptance.sum_bracket.map(tidy4).join(" … ")}`));
-    if (onaa) rows.push(row("ONAA edge", onaa.edge.toFixed(4), "largest box of equal shares that docks"));
-    if (centered) rows.push(row("centred edge", `${centered.reaches_border ? "≥ " : ""}${centered.edge.toFixed(4)}`, "the same, around zero"));
-    if (success) rows.push(row("success", percent(success.probability, 2), success.ci95 ? `95 %: ${success.ci95.map((share) => percent(share, 2)).join(" … ")}` : ""));
-    const alone = table(["each error alone", "below", "above", "±"],
+    if (acceptance.sum_bracket) rows.push(row("Sum by grid", tidy4(acceptance.sum_grid), `${acceptance.sum_bracket.map(tidy4).join(" … ")} if its border moves by one cell`));
+    if (onaa) rows.push(row(term("ONAA edge", "ONAA"), onaa.edge.toFixed(4), "of every range: the largest box that docks, anywhere"));
+    if (centered) rows.push(row(term("centred edge", "centred cube"), `${centered.reaches_border ? "≥ " : ""}${centered.edge.toFixed(4)}`, "the same, centred on zero"));
+    if (success) rows.push(row("success", percent(success.probability, 2), success.ci95 ? `95 % CI ${success.ci95.map((share) => percent(share, 2)).join(" … ")}` : ""));
+    const alone = table([term("single-axis limit"), "below", "above", "±"],
         tolerances.map((t) => [
             t.axis,
             `${t.minus_reaches_border ? "≥ " : ""}${units.error(t.axis, t.minus)}`,
             `${t.plus_reaches_border ? "≥ " : ""}${units.error(t.axis, t.plus)}`,
             units.error(t.axis, t.half_cell),
-        ]), "How far each error may go while the others are 0");
+        ]), "This error, all others zero");
     return card("merits", "Figures of merit", bar, legend, make("table", { class: "facts" }, make("tbody", {}, ...rows)), ...(tolerances.length ? [alone] : []));
 }
 
@@ -53,22 +59,22 @@ const tidy4 = (value: number) => (value === 0 ? "0" : Math.abs(value) < 1e-3 ? v
 export function windowCard({ window: found }: Page, units: Units, show: (pose: Pose) => void): HTMLElement | null {
     if (!found) return null;
     const rows = found.sides.map((side) => [
-        side.axis + (side.axis === found.tightest ? " (tightest)" : ""),
+        side.axis + (side.axis === found.tightest ? " (limits)" : ""),
         `± ${units.error(side.axis, side.half_width)}`,
         `± ${units.error(side.axis, side.alone)}${side.alone_reaches_border ? " *" : ""}`,
         `± ${units.error(side.axis, side.beside)}${side.beside_reaches_border ? " *" : ""}`,
     ]);
-    const children: Node[] = [table(["error", "all at once", "alone", "others in it"], rows, "All errors within the window dock")];
-    if (found.sides.some((side) => side.alone_reaches_border || side.beside_reaches_border)) children.push(make("p", { class: "hint" }, "* the error box ends there"));
+    const children: Node[] = [table(["error", term("tolerance window"), term("single-axis limit"), "others in window"], rows, "Tolerance window: all errors at once")];
+    if (found.sides.some((side) => side.alone_reaches_border || side.beside_reaches_border)) children.push(make("p", { class: "hint" }, "* the error box ends here: the limit may be larger"));
     const { motions, failing_at_most } = found.certificate;
     if (motions > 0)
-        children.push(make("p", {}, `None of ${grouped(motions)} random poses in it failed: at most ${percent(failing_at_most, 4)} of it does (95 % confidence).`));
+        children.push(make("p", {}, `0 failures in ${grouped(motions)} poses sampled in it: failure rate below ${percent(failing_at_most, 4)} (95 % confidence).`));
     if (found.worst) {
         const pose = listed(found.worst.error);
-        children.push(make("p", {}, `The nearest pose that does not dock: ${units.pose(pose)} (${found.worst.outcome}). `,
+        children.push(make("p", {}, `Nearest failure: ${units.pose(pose)}, ${found.worst.outcome}. `,
             make("button", { type: "button", onclick: () => show(pose) }, "play it")));
     }
-    return card("window", "Window", ...children);
+    return card("window", "Tolerance window", ...children);
 }
 
 const drawn = ({ kind, name }: { kind: string; name: string }) => (name.startsWith(kind) ? name : `${kind} ${name}`);
@@ -79,25 +85,25 @@ export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose
         const pose = listed(jam.pose);
         const contacts = [...new Set(jam.contacts.map((contact) => `${drawn(contact.moving)} on ${drawn(contact.fixed)}`))];
         const held = jam.examined?.way_out
-            ? `${jam.examined.firmness}; out by a lift of at most ${units.size(jam.examined.way_out.climb_at_most_d)} (then ${jam.examined.way_out.to})`
+            ? `${jam.examined.firmness}; escape height at most ${units.size(jam.examined.way_out.climb_at_most_d)} (then ${jam.examined.way_out.to})`
             : (jam.examined?.firmness ?? "");
         return make("li", {}, make("button", { type: "button", class: "jam", onclick: () => show(pose, jam) },
-            make("b", {}, `${percent(jam.of_box.share)} of the box`),
-            make("small", {}, `95 %: ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),
+            make("b", {}, `${percent(jam.of_box.share)} of the error box`),
+            make("small", {}, `95 % CI ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),
             make("span", {}, `rests ${units.height(jam.above_mated_d)} with ${units.pose(pose)}`),
             make("span", {}, contacts.slice(0, 3).join("; ") + (contacts.length > 3 ? `; and ${contacts.length - 3} more` : "")),
             ...[reason(pose, jam.above_mated_d, units, report.design), held].filter((said) => said).map((said) => make("span", {}, said))));
     });
-    const hint = make("p", { class: "hint" }, `Of ${grouped(jams.motions)} random poses, followed exactly. Click one to see it.`);
+    const hint = make("p", { class: "hint" }, `${grouped(jams.motions)} sampled poses, followed exactly. Click a jam to see it.`);
     const { outcomes, cells } = report.acceptance;
-    const labelled = outcomes.jammed > 0 ? ` Jammed cells (${percent(outcomes.jammed / (cells || 1), 2)}) are centres on a ridge, or jams thinner than these poses meet.` : "";
-    const none = make("p", {}, `None of ${grouped(jams.motions)} random poses jammed.${labelled}`);
-    return card("jams", "Where it jams", ...(items.length ? [hint, make("ol", { class: "jams" }, ...items)] : [none]));
+    const labelled = outcomes.jammed > 0 ? ` Jammed cells (${percent(outcomes.jammed / (cells || 1), 2)}) are centres on a ridge, or jams too thin for these poses.` : "";
+    const none = make("p", {}, `0 of ${grouped(jams.motions)} sampled poses jammed.${labelled}`);
+    return card("jams", "Jams", ...(items.length ? [hint, make("ol", { class: "jams" }, ...items)] : [none]));
 }
 
 export function doubts({ report, notes }: Page): HTMLElement | null {
     const said = [...report.warnings.map(({ message }) => message), ...notes];
-    return said.length ? card("doubts", "To keep in mind", make("ul", {}, ...said.map((text) => make("li", {}, text)))) : null;
+    return said.length ? card("doubts", "Warnings and notes", make("ul", {}, ...said.map((text) => make("li", {}, text)))) : null;
 }
 
 /** What it is a result of. */
