@@ -31,6 +31,8 @@ mod export;
 mod faces;
 #[cfg(feature = "figure")]
 pub mod figure;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+mod finished_designs;
 pub mod folder;
 pub mod gltf;
 mod html;
@@ -39,8 +41,6 @@ mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
 pub mod page;
-#[cfg(all(feature = "figure", feature = "zarr"))]
-mod parts;
 mod run;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
@@ -66,10 +66,10 @@ pub use document::{OfDesign, ReportOf};
 pub use envelope::{OLDEST, ReportBody, ReportEnvelope, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use finished_designs::FinishedDesigns;
 pub use lever::{CornerContact, FirstContact};
 pub use outcomes::{OutcomeRows, OutcomesReport};
-#[cfg(all(feature = "figure", feature = "zarr"))]
-pub use parts::FinishedDesigns;
 pub use run::first_look;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};

@@ -32,12 +32,12 @@ mod fields;
 mod header;
 mod lists;
 mod offsets;
+mod robot_trials;
 mod robots;
 mod rows;
 mod table;
 mod terms;
 mod text;
-mod tried;
 mod written;
 
 pub use covariance::Matrix;
@@ -45,12 +45,12 @@ pub use distribution::{Distribution, parse_sizes};
 pub use dynamics::{Circumstance, Dynamics, ScalarDistribution, parse_draw, read_dynamics};
 pub use lists::{MOST_ANGLES, parse_angles, parse_counts, parse_length};
 pub use offsets::OffsetsAt;
+pub use robot_trials::{ObservedOutcome, RobotTrial, RobotTrialTable};
 pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
 pub use rows::check_rows;
 pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};
-pub use tried::{ObservedOutcome, RobotTrial, RobotTrialTable};
 
 use crate::design::{Diagnostic, Diagnostics};
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! A design that was read but not built yet: it can still be changed, and it knows the places of its values
 //! in the file.
 
-use super::{Problem, ProblemError, measure, misfit, places};
+use super::{Problem, ProblemError, defect_keys, measure, remedies};
 use crate::connector::Connector;
 use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{self, MatedProblem};
@@ -122,7 +122,7 @@ impl Draft {
             }
             Err(defect) => {
                 let message = format!("{what}: {defect}");
-                Err(self.refused(places::of_change(&defect), message, defect.help()).into())
+                Err(self.refused(defect_keys::of_change(&defect), message, defect.help()).into())
             }
         }
     }
@@ -193,7 +193,7 @@ impl Draft {
 
     /// What is wrong with the geometry, in its places.
     pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Diagnostics {
-        let list = places::of_geometry(problems, DisplayUnit::of(&self.design))
+        let list = defect_keys::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
             .map(|(place, message, help)| self.diagnostic(&place, message, help))
             .collect();
@@ -223,7 +223,7 @@ impl Draft {
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         let refusal = apart.first().map(|first| {
             // Said once: all are about one pose.
-            let advice = misfit::advice(&connector, &pair, &self.design, first);
+            let advice = remedies::advice(&connector, &pair, &self.design, first);
             self.clone().unmated(&apart, advice)
         });
         (Problem::assembled(self, connector, pair, doubts), refusal)
@@ -235,7 +235,7 @@ impl Draft {
         let diagnostic = |problem: &MatedProblem| {
             let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.diagnostic(places::of_mated(problem), problem.told(told), help)
+            self.diagnostic(defect_keys::of_mated(problem), problem.told(told), help)
         };
         let list = problems.iter().map(diagnostic).collect();
         Diagnostics { list, source: self.source, omitted: 0 }

@@ -1,6 +1,6 @@
 //! A problem from values in memory: no file, no path.
 
-use super::{Draft, Problem, ProblemError, places};
+use super::{Draft, Problem, ProblemError, defect_keys};
 use crate::connector::{Connector, Half, HalfSource};
 use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
 use glam::DVec3;
@@ -13,7 +13,7 @@ impl Problem {
     pub fn new(fixed: HalfSource, moving: HalfSource, alignment: Alignment) -> Result<Self, ProblemError> {
         const FACE_HEIGHT: f64 = 0.0;
         let connector = Connector::from_sources(&fixed, &moving, FACE_HEIGHT, alignment.mount)
-            .map_err(|problems| places::diagnostics(&problems))?;
+            .map_err(|problems| defect_keys::diagnostics(&problems))?;
         let contents = connector.contents.clone();
         let own = OwnSpec::new(
             FACE_HEIGHT,

@@ -18,16 +18,16 @@
 //! Not promised: that the mated pose is stable against errors larger than the probes of
 //! [`crate::contact::mated`]. Lengths in D, angles in radians.
 
+mod defect_keys;
 mod draft;
 mod measure;
 mod memory;
-mod misfit;
-mod places;
+mod remedies;
 #[cfg(test)]
 mod tests;
 
+pub use defect_keys::diagnostics;
 pub use draft::Draft;
-pub use places::diagnostics;
 
 use crate::connector::{Connector, HalfRole};
 use crate::contact::mated::MatedProblem;
@@ -162,7 +162,7 @@ impl Problem {
 
     /// What helps against one of the doubts of its mated pose, beside what the doubt says itself.
     pub(crate) fn advice(&self, doubt: &MatedProblem) -> Option<String> {
-        misfit::advice(self.connector(), self.pair(), self.design(), doubt)
+        remedies::advice(self.connector(), self.pair(), self.design(), doubt)
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.

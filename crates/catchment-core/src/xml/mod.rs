@@ -11,7 +11,7 @@
 //! Not promised: namespaces are not resolved, and malformed text is rejected only if it would change the
 //! tags.
 
-mod look;
+mod element;
 mod style;
 pub mod svg;
 

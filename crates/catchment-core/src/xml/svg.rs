@@ -13,7 +13,7 @@
 //! Not promised: fills, strokes and fill rules are read only to detect hidden shapes, so that the line of a
 //! shape is its path.
 
-use super::look::{Entered, Open, Prefixes, entered};
+use super::element::{Entered, Open, Prefixes, entered};
 use super::style::Sheet;
 use super::{Piece, Tag, Walk, XmlAttribute, XmlError, XmlLimits};
 use crate::budget::{Limit, Overspent};

@@ -28,15 +28,14 @@
 //! count as failures and widen intervals upwards. The shares include the engine's own errors. Units: D, s,
 //! kg, radians. The study follows the outlook of the dissertation, section 7.2.
 
-mod ask;
-mod found;
+mod pose_trials;
 mod report;
+mod results;
 mod spread;
 #[cfg(test)]
 mod tests;
 mod trial;
 
-pub use ask::run;
 use catchment_core::exec::Cancelled;
 use catchment_core::landscape::GridAxis;
 use catchment_core::method::DecideError;
@@ -45,11 +44,12 @@ use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Circumstance, Dynamics, Spread};
 use catchment_core::problem::Problem;
-pub use found::{
+pub use pose_trials::run;
+pub use report::unit_of;
+pub use results::{
     AtSpeed, ByOutcome, Chance, ChanceMap, DeclaredCircumstance, Overall, PoseChance, PresetOpen,
     majority_of_three,
 };
-pub use report::unit_of;
 use serde::{Deserialize, Serialize};
 
 /// Settings that change the result.

@@ -1,6 +1,6 @@
 //! Text and table form of drop tests.
 
-use super::found::place;
+use super::results::place;
 use super::{Chance, ChanceMap, Overall, PoseChance};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;

@@ -9,8 +9,8 @@
 //! same at every speed.
 
 use super::ChanceError;
-use super::ask::{OF_ERRORS, Trials};
-use super::found::{AtSpeed, Overall};
+use super::pose_trials::{OF_ERRORS, Trials};
+use super::results::{AtSpeed, Overall};
 use super::trial::Draw;
 use crate::success::estimate::{Sample, sample_by};
 use crate::success::source::{SAME, Source};

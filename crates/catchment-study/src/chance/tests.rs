@@ -123,7 +123,7 @@ fn a_given_push_is_taken_as_it_is() {
     for at in [-0.9, -0.6, -0.3, 0.0, 0.3, 0.45] {
         let end = bench.fall(&x(at), &by_hand, &Exec::new()).unwrap();
         let found = of_poses(&problem, &[x(at)], &settings)[0];
-        assert_eq!(found.outcomes[found::place(end.outcome)], 1, "{at}");
+        assert_eq!(found.outcomes[results::place(end.outcome)], 1, "{at}");
         met.push(end.outcome);
     }
     assert!(met.contains(&Outcome::Aligned) && met.contains(&Outcome::Missed), "{met:?}");

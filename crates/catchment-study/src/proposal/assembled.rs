@@ -6,8 +6,8 @@
 //!                                                                       └─▶ drawn apart: let down to first contact
 //! ```
 
-use super::judge::{RejectedLayout, SeatCandidate, judge};
-use super::way::{AxisDirection, PartLayout};
+use super::layout::{AxisDirection, PartLayout};
+use super::seat_check::{RejectedLayout, SeatCandidate, judge};
 use super::{PartFrames, Parts, SeatSearch, is_seat, rank, sink, ways};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec2;

@@ -1,7 +1,7 @@
 //! A candidate: a relative orientation in which two parts may dock, in terms for the user.
 
-use super::judge::{Seat, SeatCandidate};
-use super::way::PartLayout;
+use super::layout::PartLayout;
+use super::seat_check::{Seat, SeatCandidate};
 use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
 use catchment_core::pose::PoseError;

@@ -7,7 +7,7 @@
 //!
 //! Not promised: that no pose beyond it docks in combination with other errors.
 
-use super::judge::{Seat, SeatCandidate};
+use super::seat_check::{Seat, SeatCandidate};
 use super::{PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::acceptance::Outcome;
 use catchment_core::contact::Pair;

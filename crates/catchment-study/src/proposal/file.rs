@@ -1,8 +1,8 @@
 //! The design file of a proposal: the meaning of every line, and the reason for its value.
 
 use super::halves::{design_unit, file_unit, says_its_unit};
-use super::judge::{Seat, SeatCandidate};
-use super::way::PartLayout;
+use super::layout::PartLayout;
+use super::seat_check::{Seat, SeatCandidate};
 use super::{PartDetail, PartFile, ProposalSettings};
 use catchment_core::design::{FileSpec, LengthUnit};
 use catchment_core::pose::{Dof, DofSet, Mount};

@@ -27,19 +27,19 @@
 
 mod assembled;
 mod candidate;
-mod cause;
-mod doubt;
+mod diagnosis;
 mod error_box;
 mod file;
 mod halves;
-mod judge;
+mod layout;
 mod remedy;
 mod search;
+mod seat_check;
 mod sink;
-mod way;
+mod warnings;
 
 pub use candidate::{Candidate, SeatCheck, shown_length};
-pub use way::{AxisDirection, PartLayout};
+pub use layout::{AxisDirection, PartLayout};
 
 use assembled::{docked, let_down};
 use candidate::{candidate, shown_unit};
@@ -54,7 +54,7 @@ use catchment_core::problem::{Problem, ProblemError};
 use catchment_core::terminal::shown;
 use glam::{DMat3, DVec2};
 use halves::design_unit;
-use judge::{RejectedLayout, SeatCandidate, judge};
+use seat_check::{RejectedLayout, SeatCandidate, judge};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -256,33 +256,33 @@ pub fn propose(
         known => known == frames,
     };
     let mut looked = SeatSearch::default();
-    let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
+    let (mut doubts, mut why, mut frame) = (Vec::new(), None, diagnosis::Frame::Own);
     // Of parts that lie flat on each other as drawn: said if no other way is found.
     let mut flat = None;
     let meet = settings.frames != PartFrames::Any || settings.approach.is_some() || are_near(both.halves);
     if may_be(PartFrames::Assembled) && meet {
         let looks = docked(&both, &mut looked, exec)?;
         if settings.frames == PartFrames::Any && settings.approach.is_none() {
-            frame = cause::frame(both.lattices(), both.grain);
+            frame = diagnosis::frame(both.lattices(), both.grain);
         }
-        let may_be_assembly = frame != cause::Frame::Own;
+        let may_be_assembly = frame != diagnosis::Frame::Own;
         if !looked.has_seat() {
             if may_be_assembly && let Some(doubt) = let_down(&both, &looks, &mut looked, exec)? {
                 doubts.push(doubt);
             }
             // Of frames of their own it says nothing.
             why = (may_be_assembly || !may_be(PartFrames::Facing))
-                .then(|| cause::of(both.lattices(), &looks, both.grain, told));
+                .then(|| diagnosis::of(both.lattices(), &looks, both.grain, told));
             let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::ApproachResult::Flat { .. }));
-            flat = are_flat.then(|| cause::of(both.lattices(), &looks, both.grain, told));
+            flat = are_flat.then(|| diagnosis::of(both.lattices(), &looks, both.grain, told));
         }
     }
-    let is_assembly = frame == cause::Frame::Assembly;
+    let is_assembly = frame == diagnosis::Frame::Assembly;
     let faces = may_be(PartFrames::Facing) && !is_assembly;
     if faces && !looked.has_seat() {
         anywhere(&both, &mut looked, exec)?;
-        if frame == cause::Frame::Perhaps {
-            doubts.push(cause::ELSEWHERE.to_owned());
+        if frame == diagnosis::Frame::Perhaps {
+            doubts.push(diagnosis::ELSEWHERE.to_owned());
         }
     }
     let SeatSearch { judged, mut refused } = looked;
@@ -311,14 +311,14 @@ pub fn propose(
         let advice = advice.flatten().into_iter().chain(taken).collect();
         let slack = candidates.iter().map(slack);
         let tried = tight.chain(why).chain(slack).chain(nowhere).chain(refused).collect();
-        let remedy = match cause::of_files(parts, both.halves, settings, unit) {
+        let remedy = match diagnosis::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
             None if faces => remedy::of(&both, exec)?,
             None => None,
         };
         return Err(ProposalError::NoSeat { tried, remedy, advice });
     };
-    doubts.extend(doubt::of(&candidates, settings));
+    doubts.extend(warnings::of(&candidates, settings));
     if best.score() < remedy::WEAK
         && faces
         && let Some((score, told)) = remedy::mirrored(&both, exec)?
@@ -331,9 +331,9 @@ pub fn propose(
             "in doubt: the file holds more than two separate bodies; the two largest were taken".to_owned(),
         );
     }
-    doubts.extend(cause::inches(both.halves, settings, unit));
+    doubts.extend(diagnosis::inches(both.halves, settings, unit));
     let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;
-    doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
+    doubts.extend(problem.design().unit.and_then(|unit| warnings::of_size(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
 }
 

@@ -9,7 +9,7 @@
 //! plan view. Lengths are in units of the smaller part's middle extent. Not promised: seats finer than a
 //! twentieth of that, and rotations other than quarter turns, are not found.
 
-use super::way::{AxisDirection, PartLayout};
+use super::layout::{AxisDirection, PartLayout};
 use catchment_core::connector::{Half, HalfRole};
 use catchment_core::contact::height_map::{self, HeightMap, HeightMaps, MOST_RISE, Obstruction};
 use catchment_core::exec::{Cancelled, Exec};

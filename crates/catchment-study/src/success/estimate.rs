@@ -17,7 +17,7 @@
 //! Slopes have normal intervals; in every stratum the share that docks is shifted towards a half by two poses
 //! of either outcome, so that a stratum without failures still has an uncertainty.
 
-use super::drawn::DrawnErrors;
+use super::samples::DrawnErrors;
 use super::source::{SAME, Source};
 use super::strata::{STRATA, Strata};
 use super::{ErrorStratum, Slope};

@@ -26,13 +26,13 @@
 //! Not promised: friction, speed, or that the errors follow their distribution. Undecided motions count as
 //! failures. Lengths in D, angles in radians.
 
-mod drawn;
 pub(crate) mod estimate;
 mod failure;
 mod fit;
-mod found;
 mod gain;
 mod report;
+mod results;
+mod samples;
 pub(crate) mod source;
 pub(crate) mod strata;
 #[cfg(test)]
@@ -45,12 +45,12 @@ use catchment_core::method::{DecideError, DecisionMethod};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Moments, Robot, Spread};
 use catchment_core::problem::Problem;
-pub(crate) use found::Slope;
-pub use found::{
+pub use report::in_percent;
+pub(crate) use results::Slope;
+pub use results::{
     AlongAxis, AtFactor, AxisFit, ErrorStratum, ExpectedErrors, Factor, Failures, GridCost, Headline,
     Improvement, NearestFailure, NormalFit, RobotDocking, SingleErrorFactor, Success, Tolerable,
 };
-pub use report::in_percent;
 use serde::{Deserialize, Serialize};
 use source::Source;
 pub(crate) use source::normals;

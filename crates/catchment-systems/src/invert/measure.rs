@@ -1,7 +1,7 @@
 //! Properties of a new half: its shortfall from the wanted heights, and its contacts.
 
+use super::cleaning::steepness;
 use super::heights::{Heights, apart, common, width};
-use super::tidy::steepness;
 use super::{NARROW, REACHED, SIDEWAYS};
 use catchment::connector::Half;
 use catchment::method::zraa::area;

@@ -43,6 +43,7 @@
 //! Source: the dissertation, section 7.2 (p. 108–109), which proposes this and gives no formula: the
 //! adjunction, and all that follows from it, is ours.
 
+mod cleaning;
 mod figure;
 mod file;
 mod heights;
@@ -51,7 +52,6 @@ mod report;
 mod table;
 #[cfg(test)]
 mod tests;
-mod tidy;
 mod turns;
 
 pub use figure::figure;

@@ -8,7 +8,7 @@
 //!
 //! A page elsewhere cannot ask: its requests come with its own Origin, and a name that leads here (DNS rebinding) with its own Host.
 
-use super::desk::ServedPage;
+use super::live_page::ServedPage;
 use std::sync::Arc;
 
 /// Most bytes of the head of a request.

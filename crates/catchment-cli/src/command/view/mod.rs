@@ -1,7 +1,7 @@
 //! `catchment view`: the page of a design, served to this machine, computed again on demand.
 
-mod desk;
 mod http;
+mod live_page;
 mod server;
 
 use super::report::MadeArgs;
@@ -15,8 +15,8 @@ use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::terminal::printable;
 use clap::Args;
-use desk::{LivePage, ServedPage};
 use http::{Request, Response};
+use live_page::{LivePage, ServedPage};
 use std::hash::{BuildHasher, RandomState};
 use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;

@@ -6,9 +6,9 @@
 //! whatever the random gaps between them; so do rests at more than [`MOST_PLACES`] positions. Rests at the
 //! same position belong to one jam even if their contacts are described differently.
 
-use super::firmness::{self, RestStability, Stability};
 use super::images::Images;
 use super::rests::RestEnd;
+use super::stability::{self, RestStability, Stability};
 use crate::disjoint::DisjointSets;
 use crate::exec::{Cancelled, Exec};
 use crate::pose::CorPose;
@@ -66,7 +66,7 @@ pub(in crate::run) fn gather(
         .iter()
         .map(|group| {
             exec.check()?;
-            let held = firmness::held(problem.pair(), leader(group), seed);
+            let held = stability::held(problem.pair(), leader(group), seed);
             if held.firmness != Stability::Ridge {
                 return Ok(held);
             }
@@ -198,7 +198,7 @@ fn level(
     members: impl Iterator<Item = usize>,
     seed: u64,
 ) -> Option<(usize, RestStability)> {
-    let mut held = members.take(LEVEL_TRIES).map(|k| (k, firmness::held(problem.pair(), &rests[k], seed)));
+    let mut held = members.take(LEVEL_TRIES).map(|k| (k, stability::held(problem.pair(), &rests[k], seed)));
     held.find(|(_, held)| held.firmness == Stability::Level)
 }
 

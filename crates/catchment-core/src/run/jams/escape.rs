@@ -12,8 +12,8 @@
 //! and again around its highest point. The climb belongs to an existing path, so it is an upper bound on the
 //! escape height.
 
-use super::firmness::{HeightAside, STEEPEST, Space, ground, moved};
 use super::rests::RestEnd;
+use super::stability::{HeightAside, STEEPEST, Space, ground, moved};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::{FLUSH, Nearby, Pair};
 use crate::method::affordable;

@@ -23,22 +23,22 @@
 
 pub(super) mod clusters;
 pub(super) mod depth;
-mod draw;
+pub(super) mod descriptions;
 pub(super) mod escape;
-mod firmness;
 pub(super) mod images;
 mod pairs;
 mod report;
 pub(super) mod rests;
+mod sampling;
+mod stability;
 #[cfg(test)]
 mod tests;
-pub(super) mod words;
 
 pub use depth::DepthError;
+pub use descriptions::{contact_in_words, contacts_in_words, lifted};
 pub use escape::EscapePath;
-pub use firmness::Stability;
 pub use pairs::{Sticks, TouchingPair, what_sticks};
-pub use words::{contact_in_words, contacts_in_words, lifted};
+pub use stability::Stability;
 
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::{FeatureKind, Features};
@@ -339,13 +339,13 @@ pub fn run_for(
 ) -> Result<Jams, JamsError> {
     let motions = motions_of(problem, settings);
     let samples = u32::try_from(motions).unwrap_or(u32::MAX);
-    let errors = draw::law(spread, samples, settings.seed ^ BRANCH);
+    let errors = sampling::law(spread, samples, settings.seed ^ BRANCH);
     let settings = JamsSettings { errors, ..settings.clone() };
     let followed_by = descent::DescentSettings::with_friction(settings.friction)?;
     let Spread::Measured { source, poses } = spread else {
         return by(problem, &settings, &followed_by, exec);
     };
-    let drawn = draw::measured(poses, problem.alignment(), motions, settings.seed ^ BRANCH)?;
+    let drawn = sampling::measured(poses, problem.alignment(), motions, settings.seed ^ BRANCH)?;
     let found = of(problem, &settings, &followed_by, Some(drawn), exec)?;
     Ok(Jams { measured: Some(source.clone()), ..found })
 }
@@ -362,7 +362,7 @@ pub(super) fn by(
     exec: &Exec,
 ) -> Result<Jams, JamsError> {
     let draw = |errors| {
-        draw::poses(errors, problem.alignment(), motions_of(problem, settings), settings.seed ^ BRANCH)
+        sampling::poses(errors, problem.alignment(), motions_of(problem, settings), settings.seed ^ BRANCH)
     };
     let drawn = settings.errors.as_ref().map(draw).transpose()?;
     of(problem, settings, followed_by, drawn, exec)

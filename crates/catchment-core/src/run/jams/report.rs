@@ -1,6 +1,6 @@
 //! Text form of jams.
 
-use super::words::{RestDescriptions, contact_in_words};
+use super::descriptions::{RestDescriptions, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;

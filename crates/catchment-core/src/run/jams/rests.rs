@@ -1,8 +1,8 @@
 //! Poses followed to their rests, with the features in contact there.
 
 use super::escape::EscapeCriterion;
-use super::firmness::{Space, Stability};
-use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, firmness};
+use super::stability::{Space, Stability};
+use super::{Cluster, Examined, FeatureContact, NamedFeature, PUSH, escape, stability};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::HalfRole;
 use crate::contact::{Contact, Features};
@@ -139,7 +139,7 @@ impl PoseFollower<'_> {
     ) -> (Examined, Option<PoseError>) {
         let pair = self.problem.pair();
         let space = Space::of(pair);
-        let held = cluster.held.unwrap_or_else(|| firmness::held(pair, rest, seed));
+        let held = cluster.held.unwrap_or_else(|| stability::held(pair, rest, seed));
         let mut follower = Follower::new(pair, self.motions);
         let stream = Stream::new(seed).branch(OFF.to_bits());
         let pushed = PUSHES * space.count();

@@ -174,7 +174,7 @@ fn what_cannot_be_asked_is_refused() {
 fn errors_are_drawn_as_they_are_distributed() {
     const COUNT: usize = 4000;
     let problem = problem("[connector]\nfamily = \"pyramid\"\n");
-    let drawn = |errors: &Distribution| draw::poses(errors, problem.alignment(), COUNT, 5).unwrap();
+    let drawn = |errors: &Distribution| sampling::poses(errors, problem.alignment(), COUNT, 5).unwrap();
     let sigma = PoseError { x: 0.2, yaw: 0.1, ..PoseError::default() };
     let mean = PoseError { x: 0.05, ..PoseError::default() };
     let poses = drawn(&Distribution::Normal { mean, sigma });

@@ -1,6 +1,6 @@
 //! Text form of rests.
 
-use super::super::jams::words::RestDescriptions;
+use super::super::jams::descriptions::RestDescriptions;
 use super::super::jams::{contacts_in_words, lifted};
 use super::{RestPlace, Rests};
 use crate::acceptance::{Outcome, Warning};

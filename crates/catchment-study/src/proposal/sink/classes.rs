@@ -8,7 +8,7 @@
 
 use super::height::PartHeights;
 use super::{Grain, Sunk, Triangles};
-use crate::proposal::way::PartLayout;
+use crate::proposal::layout::PartLayout;
 use glam::DMat3;
 
 /// The best place of those that differ by a turn about the approach.

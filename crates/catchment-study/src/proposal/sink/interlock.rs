@@ -14,11 +14,11 @@
 //! Not guaranteed: detection of threads whose axis is not the middle of the moving part, or whose lead is
 //! longer than four times [`RAISED`]; survival of walls that yield by w.
 
-use super::drawn::{columns, common};
+use super::as_drawn::{columns, common};
 use super::height::PartHeights;
 use super::refine::Window;
 use super::{Grain, Triangles};
-use crate::proposal::way::{AxisDirection, PartLayout};
+use crate::proposal::layout::{AxisDirection, PartLayout};
 use glam::{DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
 

@@ -18,18 +18,18 @@
 //! Not promised: seats narrower than the fine lattice, rotations other than quarter turns, and that a steep
 //! seat is the intended one.
 
+mod as_drawn;
 mod classes;
-mod drawn;
 mod flood;
 mod height;
 mod interlock;
 mod refine;
 
+pub(super) use as_drawn::{ApproachResult, drawn, together};
 pub(super) use classes::classes;
-pub(super) use drawn::{ApproachResult, drawn, together};
 pub(super) use interlock::{lead, undercut};
 
-use super::way::{AxisDirection, PartLayout};
+use super::layout::{AxisDirection, PartLayout};
 use catchment_core::connector::Half;
 use catchment_core::exec::{Cancelled, Exec};
 use flood::{Basin, basins};

@@ -9,7 +9,7 @@
 use super::height::{NOTHING, PartHeights};
 use super::refine::Window;
 use super::{Grain, Sunk, Triangles};
-use crate::proposal::way::{AxisDirection, PartLayout};
+use crate::proposal::layout::{AxisDirection, PartLayout};
 use glam::{DMat3, DVec2, DVec3};
 
 /// What comes of an approach, lengths in the unit of the parts.

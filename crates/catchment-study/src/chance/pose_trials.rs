@@ -1,6 +1,6 @@
 //! Poses and maps: a number of trials of each, and the share that docks.
 
-use super::found::{Chance, ChanceMap, DeclaredCircumstance, PoseChance, PresetOpen};
+use super::results::{Chance, ChanceMap, DeclaredCircumstance, PoseChance, PresetOpen};
 use super::spread;
 use super::trial::{Draw, check, nominal};
 use super::{ChanceError, ChanceSettings, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question};

@@ -1,7 +1,7 @@
 //! Poses sampled from the errors of a robot: pose k depends only on the seed and k.
 
 use super::JamsError;
-use super::firmness::normal;
+use super::stability::normal;
 use crate::acceptance::Stream;
 use crate::design::Alignment;
 use crate::pose::{Dof, PoseError};

@@ -11,8 +11,8 @@
 //! walls stop an error, but later than the play that a seat may have without a statement in the design
 //! ([`Docked::MOST_PLAY`]), the play becomes the docking tolerance.
 
+use super::layout::PartLayout;
 use super::sink::Sunk;
-use super::way::PartLayout;
 use catchment_core::connector::{Connector, Half};
 use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::height_map::{broadest, plan_box};
