@@ -7,7 +7,7 @@
 use super::{Surface, SurfaceError};
 use glam::DVec3;
 
-/// Most points of one piece: they fit a bit set, and the hull takes milliseconds.
+/// Largest number of points of a piece: they fit a bit set, and the hull takes milliseconds.
 pub const MAX_POINTS: usize = 64;
 /// Distance, relative to the size of the piece, within which a point lies on a plane: above the rounding of
 /// coordinates written with ten digits, far below any designed detail.
@@ -25,7 +25,7 @@ pub enum HullError {
         /// How many there are.
         count: usize,
     },
-    /// More points than one piece may have.
+    /// More points than a piece may have.
     #[error("{count} vertices, more than {MAX_POINTS}: split the piece, or give an STL mesh")]
     TooMany {
         /// How many there are.
@@ -37,7 +37,7 @@ pub enum HullError {
         /// Which, from 0.
         vertex: usize,
     },
-    /// All points in one plane.
+    /// All points lie in a plane.
     #[error("all vertices lie in one plane: the piece has no volume")]
     Flat,
     /// A listed vertex that is no corner of the hull: the piece was not meant to be convex.
@@ -47,7 +47,7 @@ pub enum HullError {
     Inside {
         /// Which, from 0.
         vertex: usize,
-        /// Where, in D.
+        /// Position, in D.
         at: DVec3,
     },
     /// Points so nearly coplanar that their facets do not close.
@@ -123,7 +123,7 @@ pub fn convex_hull(points: &[DVec3]) -> Result<Surface, HullError> {
     compact(points, &polygons).map_err(HullError::Unclear)
 }
 
-/// The corners of one facet, counter-clockwise seen against `normal`: gift wrapping in its plane.
+/// The corners of a facet, counter-clockwise seen against `normal`: gift wrapping in its plane.
 fn corners(points: &[DVec3], normal: DVec3, on: u64, tolerance: f64) -> Vec<u32> {
     let members: Vec<usize> = (0..points.len()).filter(|bit| on & (1 << bit) != 0).collect();
     let u = normal.any_orthonormal_vector();
@@ -170,7 +170,7 @@ fn corners(points: &[DVec3], normal: DVec3, on: u64, tolerance: f64) -> Vec<u32>
     polygon
 }
 
-/// Keeps only the points that are corners. Points closer than rounding are one corner.
+/// Keeps only the points that are corners. Points closer than rounding are merged.
 fn compact(points: &[DVec3], polygons: &[Vec<u32>]) -> Result<Surface, SurfaceError> {
     let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
     let tolerance = ON_PLANE * (hi - lo).length();

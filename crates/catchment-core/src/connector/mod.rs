@@ -47,13 +47,14 @@ use crate::exec::Exec;
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
 
-/// One half of a connector.
+/// A half of a connector.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Half {
-    /// Its closed surface, outward normals: one for every body, where bodies share no area and no volume. Contact, motion, symmetry, features and mass know nothing
-    /// else.
+    /// Its closed surface, with outward normals: one for every body, if bodies share no area and no volume.
+    /// Contact, motion, symmetry, features and mass use nothing else.
     pub surfaces: Vec<Surface>,
-    /// The solids it was written as, where they are not its surfaces: their union is the half. They may touch and overlap.
+    /// The original solids, if they differ from its surfaces: their union is the half. They may touch and
+    /// overlap.
     pub pieces: Vec<Surface>,
 }
 
@@ -66,12 +67,12 @@ impl Half {
     /// The union of solids that may touch and overlap, with coordinates in double precision, in D.
     ///
     /// # Errors
-    /// The solids have no union that closes and encloses what they fill.
+    /// The solids have no union that closes and encloses the same region.
     pub fn union_of(solids: Vec<Surface>) -> Result<Self, UnionProblem> {
         Self::united(solids, mesh::union::EXACT, &Exec::new())
     }
 
-    /// The same, where coordinates are as exact as is said.
+    /// The same, for coordinates of the given exactness.
     fn united(solids: Vec<Surface>, exactness: f64, exec: &Exec) -> Result<Self, UnionProblem> {
         let surfaces = mesh::union::united(&solids, exactness, exec)?;
         let pieces = if surfaces.len() == solids.len() { Vec::new() } else { solids };
@@ -96,7 +97,7 @@ impl Half {
         boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
     }
 
-    /// The middle one of its three extents.
+    /// The middle of its three extents.
     pub fn middle_extent(&self) -> f64 {
         let (low, high) = self.bounds();
         let mut sides = (high - low).to_array();
@@ -123,7 +124,7 @@ impl Half {
     }
 }
 
-/// The half that a design says, files read from disk, as their scales make it: of any size.
+/// The half of a design, with files read from disk, at the scales of the files, without a limit on its size.
 pub fn of_half(spec: &HalfSpec, side: HalfRole, exec: &Exec) -> Result<Half, Vec<GeometryDefect>> {
     Ok(HalfSource::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)?.half)
 }
@@ -137,7 +138,7 @@ enum Size {
     Any,
 }
 
-/// A half and what its files held, or everything that is wrong with it.
+/// A half and the content of its files, or all its errors.
 type Sourced = Result<source::Built, Vec<GeometryDefect>>;
 
 /// The two halves, in the frames the contact room works in.
@@ -147,22 +148,23 @@ pub struct Connector {
     pub fixed: Half,
     /// The moving half, mounted, origin at its face centre.
     pub moving: Half,
-    /// What the meshes held that the halves were built from.
+    /// Content of the meshes from which the halves were built.
     pub contents: Contents,
-    /// Where they came from.
+    /// Origin of the halves.
     pub origin: Origin,
 }
 
-/// Where the halves came from: what leads from the coordinates in which each was drawn to its frame.
+/// Origin of the halves: the transforms from the coordinates in which each was drawn to its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
     /// From the coordinates of the fixed half's file, or of its pieces, to its frame in D.
     pub fixed: DAffine3,
     /// The same of the moving half.
     pub moving: DAffine3,
-    /// How far apart the aligned halves are as drawn, along the approach, in D; negative where they overlap. `None` where nothing was moved.
+    /// Distance of the aligned halves as drawn, along the approach, in D; negative if they overlap. `None` if
+    /// nothing was moved.
     pub apart: Option<f64>,
-    /// The error at which the halves came to rest that were let go as drawn, where that is taken as mated.
+    /// Pose error of the rest that the halves reached when released as drawn, if it serves as the mated pose.
     pub settled: Option<PoseError>,
 }
 
@@ -196,7 +198,7 @@ impl Connector {
         Self::build_with(design, &source::disk::read)
     }
 
-    /// The same with some of the files in memory, given up where a stop is asked for.
+    /// The same with some of the files in memory, cancelled if a stop is requested.
     pub(crate) fn build_on(
         design: &Design,
         files: &FilesInMemory,
@@ -213,10 +215,10 @@ impl Connector {
         Self::build_within(design, read, &Exec::new())
     }
 
-    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    /// The same, cancelled if a stop is requested while a STEP file is meshed.
     ///
     /// # Errors
-    /// Everything that is wrong with the geometry, each with its place.
+    /// All errors of the geometry, each with its place.
     pub fn build_within(
         design: &Design,
         read: FileReader<'_>,
@@ -285,7 +287,7 @@ impl Connector {
         Self::of_own([build(fixed, HalfRole::Fixed), build(moving, HalfRole::Moving)], &own, mount)
     }
 
-    /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.
+    /// Places halves that were built; a face centre still to be found is put at the origin of the drawing.
     fn of_own(
         [fixed, moving]: [Sourced; 2],
         own: &OwnSpec,
@@ -321,7 +323,8 @@ impl Connector {
         self
     }
 
-    /// The same halves, the moving one where a rigid map brings it: where it came to rest, `error` off.
+    /// The same halves, with the moving half transformed by a rigid map to its rest, at the pose error
+    /// `error`.
     #[must_use]
     pub(crate) fn settled(mut self, map: DAffine3, error: PoseError) -> Self {
         self.origin.settled = Some(error);

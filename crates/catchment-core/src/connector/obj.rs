@@ -62,7 +62,7 @@ fn parse(bytes: &[u8], treatment: MeshPreparation) -> Result<Vec<Triangle>, Vec<
     Ok(triangles.list)
 }
 
-/// What a face needs.
+/// Requirement on a face.
 const CORNERS: &str = "corners of a face that were defined before it";
 
 /// The place of a corner among as many as there are, from its number.
@@ -126,7 +126,8 @@ mod tests {
         );
     }
 
-    /// One face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is closed.
+    /// A face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is
+    /// closed.
     #[test]
     fn edges_that_one_side_divides_are_divided_on_the_other() {
         let top = "v .5 0 1\nv 1 .5 1\nv .5 1 1\nv 0 .5 1\nv .5 .5 1\nf 5 9 13 12\nf 9 6 10 13\nf 13 10 7 11\nf 12 13 11 8\n";

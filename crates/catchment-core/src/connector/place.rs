@@ -11,11 +11,11 @@ use crate::design::{DrawnFrames, OwnSpec, PartPlacement, PartSpec};
 use crate::pose::Mount;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// A turn counts as one by right angles when its matrix is as close as this to one of zeros and ones.
+/// A rotation counts as a right-angle rotation if its matrix is this close to a matrix of zeros and ones.
 const RIGHT: f64 = 1e-12;
 
-/// The frames of both halves, from the coordinates in D in which they are drawn. Where the face centre is not known it is the origin of
-/// the drawing.
+/// The frames of both halves, from the coordinates in D in which they are drawn. An unknown face centre is
+/// taken as the origin of the drawing.
 pub(super) fn frames(own: &OwnSpec, mount: Mount) -> [DAffine3; 2] {
     let [fixed, moving] = [&own.fixed_placement, &own.moving_placement].map(placed);
     match own.drawn {
@@ -54,7 +54,8 @@ fn placed(placement: &PartPlacement) -> DAffine3 {
     DAffine3 { matrix3: turn, translation: DVec3::from_array(translate) }
 }
 
-/// The shortest turn from one unit vector to another; between opposite ones about x, or about y where they lie along x.
+/// The shortest rotation from a unit vector to another; between opposite vectors about x, or about y if they
+/// lie along x.
 pub fn turn_between(from: DVec3, to: DVec3) -> DMat3 {
     if from.dot(to) > RIGHT - 1.0 {
         return exact(DMat3::from_quat(DQuat::from_rotation_arc(from, to)));
@@ -82,7 +83,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whichever way a part faces and however it is turned: its frame is a rotation, and what faced out faces up.
+        /// For any facing and rotation of a part: its frame is a rotation, and its facing direction becomes
+        /// up.
         #[test]
         fn a_part_faces_up(v in prop::array::uniform3(-1.0..1.0f64), z in -3.0..3.0f64, t in prop::array::uniform3(-2.0..2.0f64)) {
             let facing = DVec3::from_array(v);
@@ -96,7 +98,7 @@ mod tests {
             prop_assert!(fixed.transform_point3(DVec3::ZERO).abs_diff_eq(DVec3::from_array(t), 1e-12));
         }
 
-        /// Drawn assembled in any frame, the parts are where they are drawn, the approach points down.
+        /// Parts drawn assembled in any frame keep their relative pose, and the approach points down.
         #[test]
         fn an_assembly_may_stand_in_any_frame(v in prop::array::uniform3(-1.0..1.0f64), c in prop::array::uniform3(-50.0..50.0f64)) {
             let approach = DVec3::from_array(v);

@@ -24,7 +24,7 @@ impl fmt::Display for HalfRole {
     }
 }
 
-/// One reason why a design's geometry cannot be built.
+/// Reason why a design's geometry cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeometryDefect {
     /// A family's parameter makes no solid.
@@ -36,7 +36,7 @@ pub enum GeometryDefect {
         parameter: &'static str,
         /// Its value, in D or radians.
         value: f64,
-        /// What it must be.
+        /// The requirement on it.
         advice: String,
     },
     /// Polygons that do not bound a solid.
@@ -59,7 +59,7 @@ pub enum GeometryDefect {
         /// How many there may be.
         most: usize,
     },
-    /// A convex piece that is none.
+    /// An invalid convex piece.
     #[error("{side}, piece {piece}: {error}")]
     Piece {
         /// Which half.
@@ -79,7 +79,7 @@ pub enum GeometryDefect {
         /// Why not.
         error: MeshProblem,
     },
-    /// A part that is none.
+    /// An invalid part.
     #[error("{side}, part {part}: {error}")]
     Part {
         /// Which half.
@@ -105,7 +105,7 @@ pub enum GeometryDefect {
         /// Why not.
         error: MeshProblem,
     },
-    /// A design that says of a half only what it held, not what it is.
+    /// A design that stores only a description of a half, not its geometry.
     #[error("{side}: it was given in memory, so the design does not hold it: give it again")]
     NotInDesign {
         /// Which half.

@@ -15,14 +15,14 @@ use std::f64::consts::TAU;
 
 /// Sides of a polygon from which on it stands for a circle.
 const FEWEST_SIDES: f64 = 16.0;
-/// What counts as on the axis, and as the same radius, in D: single precision.
+/// Largest distance that counts as on the axis, or as the same radius, in D: single precision.
 const NEAR: f64 = 1e-5;
-/// How far a facet may face across the radius beyond half the angle that it spans: rounding.
+/// Largest inclination of a facet across the radius beyond half the angle that it spans: rounding.
 const ACROSS: f64 = 1e-3;
 
 impl Half {
-    /// Whether the half is round where it has facets strictly between two heights: a turn about the approach axis changes nothing there
-    /// but which side of its polygons faces where. `false` if it has none.
+    /// Whether the half is round between two heights, in its facets strictly between them: a rotation about
+    /// the approach axis only changes the orientation of its polygons. `false` if it has no such facets.
     pub fn is_round(&self, zone: [f64; 2]) -> bool {
         let [low, high] = zone;
         let mut any = false;
@@ -48,7 +48,7 @@ impl Half {
     }
 }
 
-/// Whether a facet may be one of a body of revolution.
+/// Whether a facet may belong to a body of revolution.
 fn faces_along_the_radius<I: Iterator<Item = DVec3>>(normal: DVec3, corners: impl Fn() -> I) -> bool {
     if normal.truncate().length() <= NEAR {
         // Level: round if its outline is, which its neighbours tell.
@@ -68,7 +68,7 @@ fn faces_along_the_radius<I: Iterator<Item = DVec3>>(normal: DVec3, corners: imp
     across <= (0.5 * span).sin() + ACROSS && has_even_rings(corners)
 }
 
-/// Whether the corners of a facet lie on at most two circles about the axis, each at one height.
+/// Whether the corners of a facet lie on at most two circles about the axis, each at a constant height.
 fn has_even_rings<I: Iterator<Item = DVec3>>(corners: impl Fn() -> I) -> bool {
     let ring = |p: DVec3| DVec2::new(p.truncate().length(), p.z);
     let Some(first) = corners().next().map(ring) else { return false };

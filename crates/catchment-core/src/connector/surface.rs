@@ -32,7 +32,7 @@ pub struct Surface {
     pub vertices: Vec<DVec3>,
     /// Facets, outward.
     pub facets: Vec<Facet>,
-    /// The *convex* edges only: flat and reflex ones never touch first. In the order of their ends.
+    /// Only the *convex* edges: flat and reflex edges are never first contacts. In the order of their ends.
     pub edges: Vec<Edge>,
     /// Whether the whole solid is convex.
     pub convex: bool,
@@ -47,10 +47,10 @@ pub enum SurfaceError {
         /// Index of the facet.
         facet: usize,
     },
-    /// An edge has a facet on one side only, or two facets run along it in the same sense.
+    /// An edge has only one facet, or two facets run along it in the same direction.
     #[error("the surface is open along the edge from {from} to {to}")]
     Open {
-        /// One end, in D.
+        /// Start of the edge, in D.
         from: DVec3,
         /// The other end, in D.
         to: DVec3,
@@ -58,7 +58,7 @@ pub enum SurfaceError {
     /// More than two facets meet along an edge.
     #[error("more than two facets meet along the edge from {from} to {to}")]
     NonManifold {
-        /// One end, in D.
+        /// Start of the edge, in D.
         from: DVec3,
         /// The other end, in D.
         to: DVec3,
@@ -71,7 +71,7 @@ pub enum SurfaceError {
     },
 }
 
-/// Sine of the dihedral angle below which two facets count as one plane: far above the rounding of a
+/// Sine of the dihedral angle below which two facets count as coplanar: far above the rounding of a
 /// single-precision STL file (1e-7), far below any designed chamfer.
 const FLAT_SINE: f64 = tolerance::SINGLE;
 
@@ -144,7 +144,7 @@ impl Surface {
         }
     }
 
-    /// The mirror image by `map`, a reflection: what is inside stays so.
+    /// The mirror image by `map`, a reflection: the inside stays inside.
     #[must_use]
     pub(crate) fn reflected(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
         let mut image = self.mapped(map);
@@ -160,8 +160,8 @@ impl Surface {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)))
     }
 
-    /// The facets cut into triangles of corner numbers, counter-clockwise seen from outside; none of them is flat, even where
-    /// corners of a facet lie on one line.
+    /// The facets as triangles of corner numbers, counter-clockwise seen from outside; no triangle is flat,
+    /// even if corners of a facet are collinear.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
         for facet in &self.facets {

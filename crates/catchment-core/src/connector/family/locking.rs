@@ -21,8 +21,8 @@ use crate::connector::{Surface, SurfaceError};
 use crate::design::family::XFace3dLocking;
 use glam::{DVec2, DVec3};
 
-/// Smallest draft other than none, radians: below it the mating faces would be slivers narrower than any
-/// workshop makes and than the kernel's seams like.
+/// Smallest draft other than 0, radians: below it the mating faces would be slivers too narrow to manufacture
+/// and to compute with.
 const MIN_DRAFT: f64 = 1e-3;
 
 impl Draw for XFace3dLocking {
@@ -61,10 +61,10 @@ fn height(spec: &XFace3dLocking) -> f64 {
     spec.aspect_ratio + spec.lip_height
 }
 
-/// Vertices of one raised quadrant and the lowered one after it, with vertical lips.
+/// Vertices of a raised quadrant and the lowered quadrant after it, with vertical lips.
 const TURN: u32 = 16;
 
-/// The k-th point of the square's border at multiples of 45°: even ones on the axes, odd ones in the corners.
+/// The k-th point of the square's border at multiples of 45°: even k on the axes, odd k in the corners.
 fn border(k: usize) -> DVec2 {
     const POINTS: [(f64, f64); 8] = [
         (0.5, 0.0),
@@ -79,7 +79,8 @@ fn border(k: usize) -> DVec2 {
     POINTS[k % 8].into()
 }
 
-/// +1 in the raised quadrants, −1 in the lowered ones; octants counted counter-clockwise from the x axis.
+/// +1 in the raised quadrants, −1 in the lowered quadrants; octants counted counter-clockwise from the x
+/// axis.
 fn sign(octant: usize) -> f64 {
     if (octant / 2).is_multiple_of(2) { 1.0 } else { -1.0 }
 }

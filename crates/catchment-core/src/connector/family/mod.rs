@@ -36,15 +36,15 @@ pub(super) struct DrawnHalves {
     pub(super) face_height: f64,
 }
 
-/// What a family's parameters say how to draw.
+/// Geometry from a family's parameters.
 trait Draw {
-    /// Says what is wrong with the parameters that only this family has.
+    /// Checks the parameters that are specific to this family.
     fn check(&self, _check: &mut Check) {}
 
     /// The surfaces, once the parameters are sound.
     fn halves(&self) -> Halves;
 
-    /// z of both face centres, in D, where they do not lie at H/2.
+    /// z of both face centres, in D, if it differs from H/2.
     fn face_height(&self) -> Option<f64> {
         None
     }
@@ -106,7 +106,7 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<DrawnHalves, Vec<GeometryDefect>
 /// The surfaces of the fixed and the moving half, as far as they could be built.
 type Halves = [Vec<Result<Surface, SurfaceError>>; 2];
 
-/// Collects what is wrong with a family's parameters.
+/// Collects the errors in a family's parameters.
 struct Check {
     family: &'static str,
     problems: Vec<GeometryDefect>,

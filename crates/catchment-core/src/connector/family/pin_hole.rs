@@ -74,7 +74,7 @@ impl Draw for PinHole {
         );
     }
 
-    /// The plate with its pins and holes; gendered: holes on the fixed half, pins on the moving one.
+    /// The plate with its pins and holes; gendered: holes on the fixed half, pins on the moving half.
     fn halves(&self) -> Halves {
         let m = features(self);
         let all =
@@ -238,8 +238,9 @@ impl Mesh {
 
     /// Triangles between a convex ring and a convex ring inside it, both counter-clockwise from above.
     ///
-    /// Each outer corner takes the inner edges that it sees; where it sees no more, the next corner goes on
-    /// from the last inner corner, which it sees because the inner ring lies behind their common edge.
+    /// Each outer corner takes the inner edges that are visible from it; after the last visible one, the next
+    /// corner continues from the last inner corner, which is visible to it because the inner ring lies behind
+    /// their common edge.
     fn between(&mut self, outer: &[u32], inner: &[u32]) {
         let at = |mesh: &Self, k: u32| mesh.vertices[k as usize].truncate();
         let start = at(self, outer[0]);

@@ -6,7 +6,7 @@ use crate::design::family::{SFace, VFace, XFace};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// Slab in which a planar half of one layer is extruded, in D.
+/// Slab in which a planar half with a single layer is extruded, in D.
 const SLAB: [f64; 2] = [-0.5, 0.5];
 
 type Cell = Vec<DVec2>;

@@ -21,7 +21,7 @@ const PIECES: Limit =
 /// The triangles of the body with this number, counted from 1, of all bodies of a file; all of them without a number.
 ///
 /// # Errors
-/// A file with fewer bodies, or with too many pieces to tell them apart.
+/// A file with fewer bodies, or with too many pieces to separate them.
 pub(super) fn chosen(
     bodies: Vec<Vec<Triangle>>,
     number: Option<u16>,

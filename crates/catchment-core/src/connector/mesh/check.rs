@@ -8,8 +8,8 @@ use super::sides::Sides;
 use super::{MAX_REPORTED, MeshPoint, MeshProblem, Reported};
 use crate::connector::Surface;
 
-/// Area of a triangle, relative to the square of its longest side, below which it has none: the rounding of
-/// single-precision corners moves the area of a unit triangle by about 1e-7.
+/// Area of a triangle, relative to the square of its longest side, below which it counts as zero: the
+/// rounding of single-precision corners changes the area of a unit triangle by about 1e-7.
 pub(super) const NO_AREA: f64 = 1e-7;
 
 /// Everything that is wrong with a mesh, a few of each kind.
@@ -86,7 +86,7 @@ fn wrong_windings(mesh: &Indexed, sides: &Sides) -> impl Iterator<Item = MeshPro
     })
 }
 
-/// Shells that are turned inside out: all of them together, or one that lies in no other.
+/// Shells that are inside out: all of them together, or a shell that lies in no other.
 fn inside_out(mesh: &Indexed, sides: &Sides) -> Vec<MeshProblem> {
     let shells = shells::of(mesh, sides);
     let at = |shell: &Shell| mesh.corners(shell.triangles[0] as usize)[0].into();

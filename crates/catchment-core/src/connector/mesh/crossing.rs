@@ -12,17 +12,18 @@ use super::indexed::Indexed;
 use super::tree::{Tree, around, overlap};
 use glam::DVec3;
 
-/// Triangles cross where they have a line in common that is longer than so many tolerances: shorter ones come from rounding corners.
+/// Triangles cross if they share a line longer than this many tolerances: shorter lines come from rounded
+/// corners.
 const SHORT: f64 = 4.0;
 
-/// Two triangles that cross, by their numbers, the lower one first.
+/// Two triangles that cross, by their numbers, the lower number first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
     pub(super) pair: [usize; 2],
     pub(super) at: DVec3,
 }
 
-/// The first `most` crossings, and how many triangles were not looked at when there were more.
+/// The first `most` crossings, and the number of triangles that were not tested if there were more.
 pub(super) fn crossings(mesh: &Indexed, most: usize) -> (Vec<Crossing>, usize) {
     let boxes: Vec<_> = (0..mesh.triangles.len()).map(|k| around(mesh.corners(k))).collect();
     let tree = Tree::over(&boxes);
@@ -94,7 +95,8 @@ fn share_a_side(first: [u32; 3], second: [u32; 3]) -> bool {
     first.iter().filter(|k| second.contains(k)).count() >= 2
 }
 
-/// Where two triangles cross, if they do. Sharing a corner or a side is no crossing, folding over it is.
+/// A point of the crossing of two triangles, if they cross. Sharing a corner or a side is not a crossing,
+/// folding over it is.
 fn cross(mesh: &Indexed, first: [u32; 3], second: [u32; 3]) -> Option<DVec3> {
     let tolerance = mesh.tolerance;
     let shared = first.iter().filter(|k| second.contains(k)).count();
@@ -122,7 +124,7 @@ fn cross(mesh: &Indexed, first: [u32; 3], second: [u32; 3]) -> Option<DVec3> {
     (common(a, b) > SHORT * tolerance).then_some(at)
 }
 
-/// How long the line is that two triangles have in common where they cross; infinite where they lie nearly in one plane.
+/// Length of the line that two crossing triangles share; infinite if they are nearly coplanar.
 fn common(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
     let plane = |[p, q, r]: [DVec3; 3]| ((q - p).cross(r - p).normalize_or_zero(), p);
     let (of_a, of_b) = (plane(a), plane(b));
@@ -144,7 +146,7 @@ fn common(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
     in_a.1.min(in_b.1) - in_a.0.max(in_b.0)
 }
 
-/// Where the segment p–q passes through a triangle from one side to the other.
+/// The point at which the segment p–q passes through a triangle from one side to the other.
 fn pierced(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3], tolerance: f64) -> Option<DVec3> {
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let (above, below) = (normal.dot(p - a), normal.dot(q - a));

@@ -33,11 +33,11 @@ pub(in crate::connector) const STEPS: Limit = Limit {
     remedy: "triangulate the mesh when it is exported",
 };
 
-/// An ear that may be taken: the fattest first, of equally fat ones the first, so that the answer depends on the face alone.
+/// A possible ear: the fattest first, among equals the first, so that the result depends on the face alone.
 struct Ear {
     fatness: f64,
     corner: usize,
-    /// Of how many that were looked at at this corner: others before it are out of date.
+    /// Number of the evaluation at this corner: earlier entries are out of date.
     version: u32,
 }
 
@@ -89,7 +89,7 @@ impl Border {
         [self.previous[corner], corner, self.next[corner]]
     }
 
-    /// Looks at a corner whose neighbours are new.
+    /// Evaluates a corner whose neighbours are new.
     fn look(&mut self, corner: usize) {
         self.versions[corner] += 1;
         let version = self.versions[corner];
@@ -127,7 +127,7 @@ impl Border {
     }
 }
 
-/// Triangles of corners by their numbers, wound as the face is; `None` where there are none.
+/// Triangles by the numbers of their corners, wound as the face; `None` if there is no triangulation.
 pub(in crate::connector) fn triangles(
     corners: &[DVec3],
     steps: &mut Budget,
@@ -173,7 +173,7 @@ fn area([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// How far a triangle is from having no area, at most √3/2; `None` where it has none or is wound the wrong way.
+/// A measure of a triangle's fatness, at most √3/2; `None` if it has no area or the wrong winding.
 fn fatness([a, b, c]: [DVec2; 3], on: f64) -> Option<f64> {
     let twice = area([a, b, c]);
     let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
@@ -265,7 +265,8 @@ mod tests {
             holds(&flat(&radii.iter().enumerate().map(at).collect::<Vec<_>>()));
         }
 
-        /// Any corners, most of which are no border: the same triangles as by the definition, or none.
+        /// Arbitrary corners, most of which are not a border: the same triangles as by the definition, or
+        /// none.
         #[test]
         fn as_it_is_defined(points in prop::collection::vec((0..6i8, 0..6i8), 3..14)) {
             let corners = flat(&points.iter().map(|(x, y)| [f64::from(*x), f64::from(*y)]).collect::<Vec<_>>());
@@ -299,7 +300,8 @@ mod tests {
         holds(&flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [1.5, 1.0]]));
     }
 
-    /// A plate with a hole, as it is exported: one border that goes in along a line, around the hole, and out again.
+    /// A plate with a hole, as exported: a single border that goes in along a line, around the hole, and out
+    /// again.
     #[test]
     fn a_ring_that_is_cut_open() {
         let ring = |r: f64, n: usize| {

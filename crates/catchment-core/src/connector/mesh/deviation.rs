@@ -13,10 +13,11 @@ use super::indexed::Indexed;
 use super::tree::{Tree, around};
 use glam::DVec3;
 
-/// One triangle in so many is looked at first.
+/// One triangle in this many is tested first.
 const SPARSE: usize = 61;
 
-/// The largest distance of a point of `from` to `to`; where it is more than `most`, the first that is.
+/// The largest distance of a point of `from` to `to`; if some distance exceeds `most`, the first such
+/// distance.
 pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
     const ROUNDING: f64 = 1e-6;
     let Some(target) = Target::of(to) else { return f64::INFINITY };
@@ -53,7 +54,7 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
     if largest < ROUNDING * to.tolerance { 0.0 } else { largest }
 }
 
-/// A surface to which distances are asked.
+/// A surface for distance queries.
 struct Target<'a> {
     mesh: &'a Indexed,
     tree: Tree,
@@ -65,7 +66,7 @@ impl<'a> Target<'a> {
         (!boxes.is_empty()).then(|| Self { mesh, tree: Tree::over(&boxes) })
     }
 
-    /// The nearest triangle and its distance; `guess` is one that may be near.
+    /// The nearest triangle and its distance; `guess` is a triangle that may be near.
     fn nearest(&self, point: DVec3, guess: usize) -> (usize, f64) {
         let to = |k: usize| point.distance(closest(point, self.mesh.corners(k)));
         let most = to(guess);
@@ -106,7 +107,7 @@ fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     a + ab * ratio(vb, whole) + ac * ratio(vc, whole)
 }
 
-/// A part of a whole; of nothing, none.
+/// A part divided by the whole; zero if the whole is zero.
 fn ratio(part: f64, whole: f64) -> f64 {
     if whole == 0.0 { 0.0 } else { part / whole }
 }

@@ -16,9 +16,9 @@
 use super::indexed::Indexed;
 use super::sides::Sides;
 
-/// Most open edges that are looked at: each is compared with the ends of all others.
+/// Largest number of open edges that are tested: each is compared with the ends of all others.
 const MOST: usize = 4096;
-/// Most passes: one divides one edge of a triangle.
+/// Largest number of passes: each pass divides one edge of a triangle.
 const PASSES: usize = 3;
 
 /// Divides triangles along edges that nothing else shares as a whole, at corners of other such edges on them; who shares which edge then.

@@ -17,14 +17,14 @@ pub(super) struct Indexed {
     pub(super) vertices: Vec<DVec3>,
     /// Corners of each triangle, counter-clockwise seen from outside.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Where each triangle stands in its file.
+    /// Place of each triangle in its file.
     pub(super) places: Vec<TriangleLocation>,
-    /// Distance below which two points are one.
+    /// Distance below which two points are merged.
     pub(super) tolerance: f64,
 }
 
 impl Indexed {
-    /// Welds corners, and divides edges that one neighbour divides; who shares which edge then.
+    /// Merges corners, and divides edges that a neighbour divides; also returns the triangles at each edge.
     pub(super) fn of(triangles: Vec<Triangle>) -> (Self, Sides) {
         let size = triangles
             .iter()
@@ -39,7 +39,7 @@ impl Indexed {
         (mesh, sides)
     }
 
-    /// What a library gave back: its corners are shared already.
+    /// The result of a library: its corners are shared already.
     pub(super) fn made(found: &MeshGL64, tolerance: f64) -> Self {
         let width = found.num_prop as usize;
         let vertices: Vec<DVec3> =
@@ -78,7 +78,8 @@ impl Indexed {
         self.vertices[vertex as usize]
     }
 
-    /// Keeps the triangles that `keep` says, by their numbers; how many went.
+    /// Keeps the triangles for which `keep` is true, by their numbers; returns the number of removed
+    /// triangles.
     pub(super) fn retain(&mut self, keep: impl Fn(usize) -> bool) -> usize {
         let before = self.triangles.len();
         let mut k = 0..before;
@@ -112,7 +113,7 @@ impl Indexed {
 
 /// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
 pub(super) fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    /// No vertex, or no further one in its cell.
+    /// No vertex, or no further vertex in its cell.
     const NONE: u32 = u32::MAX;
     let pitch = tolerance.max(f64::MIN_POSITIVE);
     let key = |p: DVec3| (p / pitch).floor().as_i64vec3();

@@ -55,7 +55,7 @@ pub(super) const BODIES: Limit =
     Limit { most: 256, of: "bodies", remedy: "unite the solids before exporting" };
 /// Bytes that reading, repairing and simplifying take for each triangle, as measured.
 const BYTES_PER_TRIANGLE: u64 = 900;
-/// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
+/// Corners closer than this, relative to the largest coordinate, are merged: ten times the rounding of single
 /// precision.
 pub const WELD: f64 = tolerance::SINGLE;
 /// Widths of a half as drawn, in D, that can be meant: a pin in a plate is far narrower than the plate; an inch is 25 mm.
@@ -73,7 +73,7 @@ pub(super) const fn most_read(treatment: MeshPreparation) -> usize {
     if treatment.simplify.is_some() { MOST_READ } else { MAX_TRIANGLES }
 }
 
-/// What there is to say of more.
+/// The error for more triangles than allowed.
 pub(super) const fn too_many(treatment: MeshPreparation, count: u64) -> MeshProblem {
     if treatment.simplify.is_some() {
         MeshProblem::TooManyToSimplify { count }
@@ -82,18 +82,18 @@ pub(super) const fn too_many(treatment: MeshPreparation, count: u64) -> MeshProb
     }
 }
 
-/// Most vertices of a file: three for every triangle, where none are shared.
+/// Largest number of vertices of a file: three for every triangle, as if no vertex were shared.
 pub(super) const fn vertex_limit(treatment: MeshPreparation) -> Limit {
     let most = 3 * most_read(treatment) as u64;
     Limit { most, of: "vertices", remedy: "export the mesh with a coarser tolerance" }
 }
 
-/// What there is to say of a file that asks for too much at a place.
+/// The error for a file that exceeds a limit at a place.
 pub(super) fn overspent(place: impl Into<String>, over: Overspent) -> Vec<MeshProblem> {
     vec![MeshProblem::Overspent { place: place.into(), over }]
 }
 
-/// A half, or a part of one, and what was done to its meshes.
+/// A half, or a part of a half, with the changes to its meshes.
 #[derive(Debug)]
 pub(super) struct Ready {
     pub(super) half: Half,
@@ -112,12 +112,12 @@ pub(super) struct Triangles {
 }
 
 impl Triangles {
-    /// None yet.
+    /// An empty collection.
     pub(super) const fn new(treatment: MeshPreparation) -> Self {
         Self { list: Vec::new(), treatment, steps: Budget::new(cut::STEPS) }
     }
 
-    /// Appends a face, cut into triangles; `place` says where it stands in the file.
+    /// Appends a face, cut into triangles; `place` is its place in the file.
     pub(super) fn push(
         &mut self,
         corners: &[DVec3],
@@ -156,7 +156,8 @@ pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Half, Vec<MeshProblem>
     half(vec![triangles], 1.0, MeshPreparation::AS_IT_IS).map(|ready| ready.half)
 }
 
-/// A half from the triangles of a file, body by body, treated as it is said; `scale` turns its coordinates into D.
+/// A half from the triangles of a file, body by body, with the given treatment; `scale` converts its
+/// coordinates to D.
 pub(super) fn half(
     bodies: Vec<Vec<Triangle>>,
     scale: f64,
@@ -219,7 +220,7 @@ pub(super) fn implausible_width(corners: impl Iterator<Item = DVec3>) -> Option<
     (!PLAUSIBLE_WIDTH.contains(&width)).then_some(MeshProblem::Unit { width })
 }
 
-/// A closed surface from the triangles of one body, and what was done to it.
+/// A closed surface from the triangles of a body, with the changes made to it.
 #[derive(Debug)]
 struct Solid {
     surface: Surface,

@@ -12,7 +12,7 @@ const MM: f64 = 1e3;
 pub struct MeshPoint {
     /// Its coordinates.
     pub at: DVec3,
-    /// Their unit, where the design has units.
+    /// Their unit, if the design has units.
     pub unit: Option<LengthUnit>,
 }
 

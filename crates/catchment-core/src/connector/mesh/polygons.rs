@@ -20,21 +20,23 @@ use crate::tolerance;
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// How far corners of a polygon of a mesh may lie from its plane, and from the line between their neighbours, in parts of the distance below
-/// which two points are one: the rounding of computed coordinates. Faces that single precision bends, however little, stay bent: where two of them lie
-/// flush, a common plane that is not quite theirs leads a half astray.
+/// Largest distance of a polygon's corners from its plane, and from the line between their neighbours,
+/// relative to the distance below which two points are merged: the rounding of computed coordinates. Faces
+/// that single precision bends, however little, stay bent: on flush faces a common plane that differs
+/// slightly from theirs would misguide a half.
 pub(super) const FLAT: f64 = tolerance::SINGLE;
 
-/// Corners of a polygon at most: whether a point is on it is asked of every side.
+/// Largest number of corners of a polygon: the test whether a point is on it checks every side.
 const MOST_CORNERS: usize = 16;
 
 /// No half-edge.
 const NONE: u32 = u32::MAX;
-/// Triangles whose normals differ by more than this cosine are not one facet, however thin they are.
+/// Triangles whose normals differ by more than this cosine are not merged, however thin they are.
 const SAME_WAY: f64 = 0.5;
 
-/// The corners and the polygons of a closed mesh; corners that no polygon has are left out. `flat` is how far corners may lie from the plane
-/// of their polygon, and from the line between their neighbours, in the coordinates of the mesh.
+/// The corners and the polygons of a closed mesh; corners without a polygon are removed. `flat` is the
+/// largest distance of corners from the plane of their polygon, and from the line between their neighbours,
+/// in the coordinates of the mesh.
 pub(super) fn of(mesh: &Indexed, flat: f64) -> (Vec<DVec3>, Vec<Vec<u32>>) {
     let mut rings = Rings::of(mesh, flat);
     // What is not convex yet may become so beside what is joined later.
@@ -55,9 +57,9 @@ struct Rings<'a> {
     before: Vec<u32>,
     /// The same edge as the neighbour runs along it.
     twin: Vec<u32>,
-    /// The corner at which a half-edge starts; none where it has gone.
+    /// The corner at which a half-edge starts; none for a removed half-edge.
     from: Vec<u32>,
-    /// Leads from a triangle to the largest one of its polygon, whose plane is that of the polygon.
+    /// Leads from a triangle to the largest triangle of its polygon, whose plane is that of the polygon.
     larger: Vec<u32>,
     /// Of each triangle, its normal times twice its area.
     areas: Vec<DVec3>,
@@ -104,7 +106,7 @@ impl<'a> Rings<'a> {
         self.twin[half as usize]
     }
 
-    /// Where a half-edge starts.
+    /// Start of a half-edge.
     fn start(&self, half: u32) -> DVec3 {
         self.mesh.at(self.from[half as usize])
     }
@@ -113,7 +115,7 @@ impl<'a> Rings<'a> {
         self.from[half as usize] == NONE
     }
 
-    /// Makes one half-edge follow another.
+    /// Links two successive half-edges.
     fn link(&mut self, half: u32, next: u32) {
         self.next[half as usize] = next;
         self.before[next as usize] = half;
@@ -130,7 +132,7 @@ impl<'a> Rings<'a> {
         triangle
     }
 
-    /// Edges whose two triangles may be one facet, the longest first.
+    /// Edges whose two triangles may be merged, the longest first.
     fn inner_edges(&self) -> Vec<u32> {
         let mut edges: Vec<(f64, u32)> = (0..self.from.len() as u32)
             .filter(|&half| half < self.twin(half) && self.twin(half) != NONE)
@@ -144,7 +146,8 @@ impl<'a> Rings<'a> {
         edges.into_iter().map(|(_, half)| half).collect()
     }
 
-    /// Joins the two polygons along an edge where they are one convex polygon; whether nothing is left to do there.
+    /// Merges the two polygons along an edge if the result is convex; returns whether nothing is left to do
+    /// there.
     fn join(&mut self, edge: u32) -> bool {
         if self.has_gone(edge) {
             return true;
@@ -193,7 +196,7 @@ impl<'a> Rings<'a> {
         true
     }
 
-    /// Whether a border that goes over from one half-edge to another turns left there, or hardly.
+    /// Whether a border that passes from one half-edge to another turns left there, or hardly turns.
     fn is_convex(&self, [into, out]: [u32; 2], normal: DVec3) -> bool {
         let corner = self.start(out);
         let (along, away) = (corner - self.start(into), self.start(self.next(out)) - corner);
@@ -208,13 +211,14 @@ impl<'a> Rings<'a> {
         self.along(ring).all(|half| normal.dot(self.start(half) - origin).abs() <= self.flat)
     }
 
-    /// The half-edges of a ring, from one of them.
+    /// The half-edges of a ring, starting from the given half-edge.
     fn along(&self, ring: u32) -> impl Iterator<Item = u32> {
         std::iter::successors(Some(ring), move |half| Some(self.next(*half)).filter(|next| *next != ring))
     }
 
-    /// Leaves out corners that two polygons share, and no third, on the line between their neighbours. Where the neighbours have an edge already, as
-    /// where a solid touches itself along it, the corner stays.
+    /// Removes corners that exactly two polygons share, on the line between their neighbours. If the
+    /// neighbours already have an edge, for example because a solid touches itself along it, the corner
+    /// stays.
     fn straighten(&mut self) {
         let mut edges: HashSet<[u32; 2]> = (0..self.from.len() as u32)
             .filter(|half| !self.has_gone(*half))

@@ -9,10 +9,10 @@ use crate::design::LengthUnit;
 use crate::exec::Bytes;
 use std::fmt;
 
-/// Most problems reported of one kind.
+/// Largest number of problems reported of each kind.
 pub(in crate::connector) const MAX_REPORTED: usize = 5;
 
-/// Where a triangle stands in its file.
+/// Place of a triangle in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TriangleLocation {
     /// Which triangle, from 0.
@@ -21,7 +21,7 @@ pub struct TriangleLocation {
     pub start: FileOffset,
 }
 
-/// Where something begins in a file.
+/// Start of an item in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileOffset {
     /// Line of a text, from 1.
@@ -45,7 +45,7 @@ impl fmt::Display for TriangleLocation {
     }
 }
 
-/// One reason why triangles are no half of a connector.
+/// Reason why triangles do not form a half of a connector.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshProblem {
     /// There is no such file.
@@ -54,7 +54,7 @@ pub enum MeshProblem {
     /// The file could not be read.
     #[error("cannot be read: {message}")]
     Io {
-        /// What the system says.
+        /// Message of the system.
         message: String,
     },
     /// Nothing in it.
@@ -79,7 +79,7 @@ pub enum MeshProblem {
         /// Bytes there are.
         found: u64,
     },
-    /// More triangles than one half may have.
+    /// More triangles than a half may have.
     #[error(
         "{count} triangles, more than the {MAX_TRIANGLES} that a half may have: write simplify = \"0.01 mm\" beside the file, which says how far the \
          surface may move, or export the mating faces with a coarser tolerance"
@@ -96,7 +96,7 @@ pub enum MeshProblem {
         /// How many there are, as far as is known.
         count: u64,
     },
-    /// More triangles than one half may have, although it was simplified.
+    /// More triangles than a half may have, after simplification.
     #[error(
         "{count} triangles are left, more than the {MAX_TRIANGLES} that a half may have: let simplify move the surface farther"
     )]
@@ -109,7 +109,7 @@ pub enum MeshProblem {
         "no mesh with fewer triangles keeps to {most:.1e} D of this one: leave simplify out, or let it move the surface farther"
     )]
     NotSimplified {
-        /// How far the surface may move, in D.
+        /// Largest displacement of the surface, in D.
         most: f64,
     },
     /// It would take more memory than there is.
@@ -137,29 +137,29 @@ pub enum MeshProblem {
     Syntax {
         /// Line, from 1.
         line: usize,
-        /// What the format wants there.
+        /// The content that the format requires there.
         expected: &'static str,
-        /// What stands there, shortened.
+        /// The content found there, shortened.
         found: String,
     },
-    /// No PLY, or a broken one.
+    /// Not a PLY file, or a broken one.
     #[error("cannot be read as PLY: {message}")]
     NotPly {
-        /// Where and why.
+        /// Place and reason.
         message: String,
     },
-    /// No 3MF, or a broken one.
+    /// Not a 3MF file, or a broken one.
     #[error("cannot be read as 3MF: {message}")]
     NotThreeMf {
-        /// Where and why.
+        /// Place and reason.
         message: String,
     },
     /// More of something than a file may have.
     #[error("{place}: {over}")]
     Overspent {
-        /// Where in the file.
+        /// Place in the file.
         place: String,
-        /// What, and the remedy.
+        /// The exceeded limit, with the remedy.
         over: Overspent,
     },
     /// The unit of its coordinates is not known.
@@ -168,10 +168,10 @@ pub enum MeshProblem {
     /// A STEP file that gives no triangles.
     #[error(transparent)]
     Step(#[from] StepProblem),
-    /// Something else, which the first bytes tell.
+    /// A file of another type, recognised by its first bytes.
     #[error("this is {what}")]
     Foreign {
-        /// What it is, and what to do about it.
+        /// Its type, with advice.
         what: &'static str,
     },
     /// A face of more than three corners that cannot be cut into triangles.
@@ -208,17 +208,17 @@ pub enum MeshProblem {
     ZeroArea {
         /// Which triangle.
         place: TriangleLocation,
-        /// One of its corners.
+        /// A corner of it.
         at: MeshPoint,
     },
-    /// An edge with a triangle on one side only.
+    /// An edge with a single triangle.
     #[error(
         "the mesh is open along the edge of {place} from {from} to {to}: close the hole (MeshLab: Close Holes; Python: pymeshfix)"
     )]
     Open {
-        /// The triangle on the one side.
+        /// The triangle.
         place: TriangleLocation,
-        /// One end.
+        /// Start of the edge.
         from: MeshPoint,
         /// The other end.
         to: MeshPoint,
@@ -230,7 +230,7 @@ pub enum MeshProblem {
     NonManifold {
         /// How many.
         count: usize,
-        /// One end.
+        /// Start of the edge.
         from: MeshPoint,
         /// The other end.
         to: MeshPoint,
@@ -238,7 +238,7 @@ pub enum MeshProblem {
     /// Two neighbours wound in opposite senses.
     #[error("{first} and {second} are wound in opposite senses at {at}: unify the normals")]
     Winding {
-        /// One of them.
+        /// The first of them.
         first: TriangleLocation,
         /// The other.
         second: TriangleLocation,
@@ -248,17 +248,17 @@ pub enum MeshProblem {
     /// The mesh, or a part of it that lies in no other, is wound inward.
     #[error("the mesh is turned inside out at {at}: flip its normals")]
     InsideOut {
-        /// One of its corners.
+        /// A corner of it.
         at: MeshPoint,
     },
     /// Two triangles cross.
     #[error("{first} and {second} cross near {at}: unite the solids before exporting")]
     SelfIntersection {
-        /// One of them.
+        /// The first of them.
         first: TriangleLocation,
         /// The other.
         second: TriangleLocation,
-        /// Where.
+        /// Position.
         at: MeshPoint,
     },
     /// More triangles may cross than those before it.
@@ -316,7 +316,7 @@ pub(super) struct Reported {
 }
 
 impl Reported {
-    /// Appends the problems of one kind, of which only the first few are spelled out.
+    /// Appends the problems of a kind, of which only the first few are given in full.
     pub(super) fn extend(&mut self, kind: impl IntoIterator<Item = MeshProblem>) {
         let mut rest = 0;
         for (k, problem) in kind.into_iter().enumerate() {

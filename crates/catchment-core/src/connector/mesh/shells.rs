@@ -15,7 +15,7 @@ use crate::disjoint::DisjointSets;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Most steps spent on asking which shell lies in which; beyond it a shell counts as inside where its box is.
+/// Step budget for the nesting of shells; beyond it a shell counts as inside another if its box is.
 const MOST_STEPS: usize = 50_000_000;
 
 /// Triangles that hang together by their edges.
@@ -23,7 +23,7 @@ const MOST_STEPS: usize = 50_000_000;
 pub(super) struct Shell {
     /// Their numbers, ascending.
     pub(super) triangles: Vec<u32>,
-    /// Enclosed volume, negative where it is turned inside out.
+    /// Enclosed volume, negative if it is inside out.
     pub(super) volume: f64,
     bounds: Bounds,
 }

@@ -25,7 +25,7 @@ use manifold_rust::types::{Error, MeshGL64};
 
 /// The first tolerance, as a share of the mesh's largest side: an edge in a thousand of its length is hardly bent by less.
 const FIRST: f64 = 2e-5;
-/// Tolerances at least, each twice the one before it.
+/// Smallest number of tolerances, each twice the one before.
 const LEAST: i32 = 4;
 
 /// A simplified mesh.

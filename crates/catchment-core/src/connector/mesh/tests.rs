@@ -23,7 +23,7 @@ fn block(lo: [f64; 3], hi: [f64; 3]) -> Soup {
         .collect()
 }
 
-/// What became of one body.
+/// Result for a single body.
 fn treated(soup: &Soup, treatment: MeshPreparation) -> Result<Solid, Vec<MeshProblem>> {
     let place = |triangle| TriangleLocation { triangle, start: FileOffset::Memory };
     let list = soup.iter().enumerate().map(|(k, corners)| Triangle { corners: *corners, place: place(k) });
@@ -74,7 +74,8 @@ fn solids_that_touch_along_an_edge_are_parted() {
     assert_eq!((ready.surface.vertices.len(), ready.surface.edges.len()), (16, 24));
 }
 
-/// A ring of blocks that touches itself along one edge: both ends of it belong to one fan of triangles.
+/// A ring of blocks that touches itself along a single edge: both ends of the edge belong to the same fan of
+/// triangles.
 #[test]
 fn a_solid_that_touches_itself_is_parted_in_the_middle() {
     // Around a hole, from (1, 1) to (1, 1): the blocks at (0, 0) and (1, 1) meet along the edge x = y = 1 only.
@@ -217,7 +218,7 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
 }
 
 proptest! {
-    /// A convex solid, spoilt in every way that does not change it, is repaired to what it was.
+    /// A convex solid, spoilt in every way that does not change it, is repaired to the original.
     #[test]
     fn a_spoilt_solid_is_the_sound_one(
         points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 6..16),
@@ -279,8 +280,8 @@ proptest! {
 }
 
 proptest! {
-    /// Tetrahedra with corners on a small lattice, which touch in every way: what is not refused has at least the volume of the largest and at
-    /// most that of all.
+    /// Tetrahedra with corners on a small lattice, which touch in every way: an accepted result has at least
+    /// the volume of the largest and at most that of all.
     #[test]
     fn tangles_are_united_or_refused(
         corners in prop::collection::vec(prop::array::uniform4(prop::array::uniform3(0u8..4)), 2..5)
@@ -320,7 +321,7 @@ fn what_the_union_panics_on_is_refused() {
     assert!(treated(&soup, MeshPreparation::DEFAULT).is_err());
 }
 
-/// Facets, edges and corners of what a half is made of.
+/// Facets, edges and corners of the surfaces of a half.
 fn counts(surface: &Surface) -> [usize; 3] {
     [surface.facets.len(), surface.edges.len(), surface.vertices.len()]
 }

@@ -21,7 +21,8 @@ pub(super) struct Tree {
 #[derive(Debug, Clone, Copy)]
 struct Node {
     bounds: Bounds,
-    /// Of a leaf the first of its boxes in the order, else the node on its right; the one on its left follows it.
+    /// For a leaf the first of its boxes in the order, else the node on its right; the node on its left
+    /// follows it.
     link: u32,
     /// Boxes of a leaf, 0 of others.
     count: u32,
@@ -85,7 +86,8 @@ impl Tree {
         }
     }
 
-    /// The least of `distance` over all boxes, each at least as far from the point as its box, and less than `most`; what has it.
+    /// The smallest value of `distance` over all boxes, if less than `most`, with its item; a box must not be
+    /// farther from the point than its content.
     pub(super) fn nearest(
         &self,
         point: DVec3,

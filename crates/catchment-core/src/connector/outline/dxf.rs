@@ -85,7 +85,7 @@ fn groups(text: &str) -> impl Iterator<Item = Result<Group<'_>, OutlineProblem>>
     })
 }
 
-/// Metres in one of the drawing's coordinates, where it says so.
+/// Metres per unit of the drawing's coordinates, if it states a unit.
 pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
     let mut is_next = false;
     for group in groups(text) {
@@ -209,7 +209,7 @@ fn broken(line: usize, what: &str) -> OutlineProblem {
     OutlineProblem::Syntax { line, message: format!("{what}: the DXF file is broken, export it again") }
 }
 
-/// What the groups of an entity say.
+/// The values in the groups of an entity.
 #[derive(Default)]
 struct Entity<'t> {
     name: &'t str,

@@ -18,14 +18,15 @@ use glam::DVec2;
 
 /// Largest drawing that is read, in bytes: of outlines, megabytes are thousands of curves.
 pub(super) const MOST_BYTES: u64 = 4 << 20;
-/// Most corners of the outlines of one part: their caps are cut into triangles by as many steps as its square.
+/// Largest number of corners of a part's outlines: triangulating their caps takes the square of it in steps.
 const MOST_CORNERS: usize = 2000;
 /// Farthest from the origin that outlines may go, in D: as far as pieces may.
 const REACH: f64 = 1e3;
 /// How near two lines of an outline may come and touch, relative to its size.
 const NEAR: f64 = 1e-9;
 
-/// Why outlines bound nothing. Places are in the coordinates of the drawing, or in D where there is none.
+/// Reason why outlines bound no region. Positions are in the coordinates of the drawing, or in D without a
+/// drawing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OutlineProblem {
     /// There is no such file.
@@ -37,12 +38,12 @@ pub enum OutlineProblem {
         /// Size of the file.
         bytes: u64,
     },
-    /// Not what its ending says, or broken.
+    /// Not the type of its extension, or broken.
     #[error("line {line}: {message}")]
     Syntax {
         /// Line, from 1.
         line: usize,
-        /// What is wrong, and what to do.
+        /// Description and advice.
         message: String,
     },
     /// Something that is drawn and not read.
@@ -50,17 +51,17 @@ pub enum OutlineProblem {
     Unsupported {
         /// Line, from 1.
         line: usize,
-        /// What.
+        /// The item.
         what: String,
-        /// What to do about it.
+        /// Advice for it.
         advice: &'static str,
     },
-    /// A line that does not come back to where it begins.
+    /// A line that does not return to its start.
     #[error("line {line}: the outline that begins at {at} is open: close it, or leave it out of the drawing")]
     Open {
         /// Line of the file, from 1.
         line: usize,
-        /// Where it begins.
+        /// Its start.
         at: DVec2,
     },
     /// Nothing closed in it.
@@ -72,25 +73,25 @@ pub enum OutlineProblem {
         /// How many entities or elements are hidden.
         hidden: usize,
     },
-    /// A number that is none, or too large for a length.
+    /// A number that is invalid, or too large for a length.
     #[error("a coordinate is no number, or more than {REACH} D: check the unit")]
     TooFar,
     /// A loop without area.
     #[error("the outline that begins at {at} has no area")]
     Flat {
-        /// Where it begins.
+        /// Its start.
         at: DVec2,
     },
     /// Two lines cross or touch.
     #[error("the outline crosses or touches itself or another near {at}: unite what is drawn there")]
     Crossing {
-        /// Where.
+        /// Position.
         at: DVec2,
     },
-    /// More corners than one part may have.
+    /// More corners than a part may have.
     #[error("more than {MOST_CORNERS} corners: give a larger chord_error, or a simpler drawing")]
     TooMany,
-    /// Corners so close to each other that nothing can be told apart.
+    /// Corners too close to each other to be distinguished.
     #[error("the outline is too intricate to be cut into triangles: leave out its smallest details")]
     TooIntricate,
     /// More work than a drawing may take.
@@ -120,11 +121,11 @@ impl Region {
 /// A line of a drawing, from corner to corner, in its coordinates; y up.
 struct Stroke {
     corners: Vec<DVec2>,
-    /// Where it stands in the file.
+    /// Its line in the file.
     line: usize,
 }
 
-/// What holds of every drawing, in its coordinates.
+/// Limits for every drawing, in its coordinates.
 #[derive(Clone, Copy)]
 struct Within {
     /// Largest distance of a curve to its chords.
@@ -140,7 +141,7 @@ impl Within {
         (std::f64::consts::PI / half_angle).ceil().max(8.0)
     }
 
-    /// Refuses what is too far away or too much.
+    /// Rejects coordinates that are too large, and too many corners.
     fn holds(self, corners: &[DVec2]) -> Result<(), OutlineProblem> {
         if !corners.iter().all(|p| p.abs().max_element() <= self.reach) {
             return Err(OutlineProblem::TooFar);
@@ -149,7 +150,7 @@ impl Within {
     }
 }
 
-/// What is drawn in a drawing.
+/// The content of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DrawnLoops {
     /// Closed loops, in D.
@@ -218,7 +219,7 @@ pub(super) fn regions(loops: Vec<Vec<DVec2>>) -> Result<Vec<Region>, OutlineProb
     Ok((0..loops.len()).filter(|k| depth[*k].is_multiple_of(2)).map(region).collect())
 }
 
-/// A loop without corners that repeat the one before.
+/// A loop without repeated successive corners.
 fn distinct(mut ring: Vec<DVec2>, near: f64) -> Vec<DVec2> {
     ring.dedup_by(|a, b| a.distance(*b) <= near);
     while ring.len() > 1 && ring[0].distance(ring[ring.len() - 1]) <= near {
@@ -278,7 +279,7 @@ fn refuse_crossings(loops: &[Vec<DVec2>], near: f64) -> Result<(), OutlineProble
     Ok(())
 }
 
-/// Where two lines cross, or come as near to each other as `near`.
+/// The point at which two lines cross, or are within `near` of each other.
 pub(super) fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], near: f64) -> Option<DVec2> {
     let (u, v) = (b - a, d - c);
     let turn = u.perp_dot(v);

@@ -19,16 +19,16 @@ const MOST_CURVES: usize = 2 * super::MOST_CORNERS;
 const OF_ARCS: f64 = 0.1;
 /// Numbers above this are no lengths, whatever the unit: arcs take longer the larger they are.
 const LARGEST: f64 = 1e9;
-/// How far apart the lengths of a unit across and down a picture may be, as a share.
+/// Largest relative difference between the horizontal and vertical scale of a picture.
 const SAME_SCALE: f64 = 1e-3;
 
-/// What is said of a part of a picture, with its line.
+/// The error about a part of a picture, with its line.
 fn refused(text: &str, refusal: &UnsupportedSvg) -> OutlineProblem {
     let message = format!("{}: {}", refusal.message, refusal.help);
     OutlineProblem::Syntax { line: line_of(text, refusal.at.start), message }
 }
 
-/// Metres in one of the picture's coordinates, where it says so.
+/// Metres per unit of the picture's coordinates, if it states a unit.
 pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
     let head = svg::head(text).map_err(|refusal| refused(text, &refusal))?;
     let view: Vec<f64> = head.get("viewBox").map_or_else(Vec::new, |(view, _)| {
@@ -92,7 +92,7 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
     problem.map_or(Ok((loops, hidden)), Err)
 }
 
-/// What an element draws, in its own coordinates.
+/// The outline that an element draws, in its own coordinates.
 fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, UnsupportedSvg> {
     let number = |name: &str| -> Result<Option<f64>, UnsupportedSvg> {
         let Some(XmlAttribute { value, span }) = tag.attribute(name) else { return Ok(None) };

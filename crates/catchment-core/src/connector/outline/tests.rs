@@ -44,8 +44,8 @@ fn what_bounds_nothing_is_refused() {
     assert_eq!(regions(vec![far]), Err(OutlineProblem::TooFar));
 }
 
-/// A plate of 10 by 6 with a round hole of radius 2: as one path, as shapes, and as a DXF drawing. Chords lie inside of the circle by at most
-/// the chord error.
+/// A plate of 10 by 6 with a round hole of radius 2: as a path, as shapes, and as a DXF drawing. Chords lie
+/// inside the circle by at most the chord error.
 #[test]
 fn a_plate_with_a_hole_in_both_kinds_of_drawings() {
     let round = std::f64::consts::PI * 4.0;

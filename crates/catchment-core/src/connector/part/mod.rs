@@ -27,10 +27,10 @@ pub(super) use outline::MOST_BYTES as MOST_BYTES_OF_A_DRAWING;
 #[cfg(test)]
 pub(super) use prism::extruded;
 
-/// Why a part is none.
+/// Reason why a part is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PartGeometryError {
-    /// A mesh file that is none.
+    /// An invalid mesh file.
     #[error("{}: {error}", shown(path))]
     Mesh {
         /// The file.
@@ -41,12 +41,12 @@ pub enum PartGeometryError {
     /// Outlines that bound nothing.
     #[error("{}{error}", path.as_ref().map_or_else(String::new, |path| format!("{}: ", shown(path))))]
     Outline {
-        /// The file, if they come from one.
+        /// The file, if the mesh comes from a file.
         path: Option<PathBuf>,
         /// Why not.
         error: OutlineProblem,
     },
-    /// A convex piece that is none.
+    /// An invalid convex piece.
     #[error("piece {piece}: {error}")]
     Piece {
         /// Which piece, from 0.
@@ -54,7 +54,7 @@ pub enum PartGeometryError {
         /// Why not.
         error: HullError,
     },
-    /// So small a chord error that there would be too many facets, or one as large as the part.
+    /// A chord error so small that there would be too many facets, or as large as the part.
     #[error(
         "the chord error {chord_error:.2e} D does not suit a radius of {radius:.2e} D: give one between {least:.2e} D and the radius"
     )]
@@ -71,7 +71,7 @@ pub enum PartGeometryError {
     Surface(#[from] SurfaceError),
 }
 
-/// The solids of all parts, and what their files held.
+/// The solids of all parts, and the content of their files.
 pub(super) fn half(
     parts: &[(PartSpec, Option<FileBytes>)],
     side: HalfRole,
@@ -106,7 +106,7 @@ pub(super) fn half(
     if problems.is_empty() { Ok((half, contents)) } else { Err(problems) }
 }
 
-/// A part in its own coordinates, and what its file held.
+/// A part in its own coordinates, and the content of its file.
 fn shape(
     shape: &ShapeSpec,
     file: Option<&FileBytes>,

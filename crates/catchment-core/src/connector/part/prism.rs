@@ -73,7 +73,7 @@ struct Bridge {
 }
 
 impl Ord for Bridge {
-    /// The shortest last; of equally short ones any, but always the same.
+    /// The shortest last; ties are broken deterministically.
     fn cmp(&self, other: &Self) -> Ordering {
         let ends = |own: &Self| (own.outer, own.inner);
         other.squared.total_cmp(&self.squared).then_with(|| ends(other).cmp(&ends(self)))
@@ -94,10 +94,11 @@ impl PartialEq for Bridge {
 
 impl Eq for Bridge {}
 
-/// One border of the region, by the numbers of its corners: every hole is cut open to the rest along the shortest bridge that crosses
-/// nothing, which no other bridge touches. Of equally short ones the first along the border as it is then, and of its own the first of the first hole.
+/// A single border of the region, by the numbers of its corners: every hole is connected to the rest along
+/// the shortest bridge that crosses nothing and touches no other bridge. Among equally short bridges the
+/// first along the current border is used, and of its holes the first of the first hole.
 ///
-/// What crosses a wall does so for good: every bridge is compared with the walls once.
+/// A bridge that crosses a wall always does, so every bridge is compared with the walls once.
 fn bridged(region: &Region, flat: &[DVec2], steps: &mut Budget) -> Result<Option<Vec<usize>>, Overspent> {
     let mut rings: Vec<Vec<usize>> = Vec::new();
     // Of every corner its ring, and its place in it.

@@ -3,7 +3,7 @@
 use super::header::{Dialect, Element, Header, Kind};
 use std::str::from_utf8;
 
-/// What is left of a body.
+/// The unread rest of a body.
 pub(super) struct Body<'t> {
     bytes: &'t [u8],
     at: usize,

@@ -20,7 +20,7 @@ pub(super) enum Dialect {
     BigEndian,
 }
 
-/// What a number is.
+/// Type of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Int { bytes: usize, is_signed: bool },
@@ -59,7 +59,7 @@ impl Kind {
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Kind,
-    /// What the length of a list is written as.
+    /// Type of the length of a list.
     pub(super) count: Option<Kind>,
 }
 
@@ -69,12 +69,12 @@ pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
-    /// Where the header announces it, from 1.
+    /// Line of its declaration in the header, from 1.
     pub(super) line: usize,
 }
 
 impl Element {
-    /// Fewest bytes that one of them takes in a body.
+    /// Smallest number of bytes of such an element in a body.
     fn least_bytes(&self, dialect: Dialect) -> u64 {
         let of = |own: &Property| own.count.unwrap_or(own.kind).bytes() as u64;
         match dialect {
@@ -90,7 +90,7 @@ impl Element {
 pub(super) struct Header {
     pub(super) dialect: Dialect,
     pub(super) elements: Vec<Element>,
-    /// Where the body begins: its byte from 0, its line from 1.
+    /// Start of the body: its byte from 0, its line from 1.
     pub(super) end: usize,
     pub(super) lines: usize,
 }

@@ -192,7 +192,7 @@ mod tests {
         assert!(refused(&bytes[..bytes.len() - 3]).starts_with("cannot be read as PLY"));
     }
 
-    /// Elements that take no bytes could be any number: a megabyte of header asked for 29 GB.
+    /// Elements that take no bytes could have any number: a header of a megabyte requested 29 GB.
     #[test]
     fn a_header_is_believed_as_far_as_there_are_bytes() {
         let refused = |bytes: &[u8]| read(bytes).unwrap_err()[0].to_string();

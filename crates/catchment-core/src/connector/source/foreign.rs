@@ -3,14 +3,14 @@
 
 use crate::connector::mesh::MeshProblem;
 
-/// What a ZIP archive is that is no 3MF.
+/// Description of a ZIP archive that is not a 3MF.
 pub(in crate::connector) const ZIP: &str = "a ZIP archive, such as a FreeCAD or Fusion file (a 3MF ends in .3mf): export the part as STL, OBJ, PLY or 3MF, or unpack it";
 
-/// What a STEP file is that is called something else.
+/// Description of a STEP file with another extension.
 const STEP: &str =
     "a STEP file, which holds curved faces and no triangles: let its name end in .step or .stp";
 
-/// How files of other kinds begin, and what they are.
+/// First bytes of files of other types, and their descriptions.
 const KINDS: [(&[u8], &str); 14] = [
     (
         b"version https://git-lfs",
@@ -34,7 +34,7 @@ const KINDS: [(&[u8], &str); 14] = [
     (b"\xff\xd8\xff", "a picture (JPEG): it has no solid"),
 ];
 
-/// The part of a 3MF that holds its solids, by which its archive is told from others.
+/// The part of a 3MF that contains its solids, which distinguishes its archive from others.
 const MODEL: &[u8] = b"3D/3dmodel.model";
 
 /// Header and count of a binary STL, in bytes: the count of any file that can be read has a byte that no text has.
@@ -51,7 +51,8 @@ fn holds(bytes: &[u8], name: &[u8]) -> bool {
     bytes.windows(name.len()).any(|window| window == name)
 }
 
-/// Refuses what begins like no mesh; of the formats that end so one may be an archive.
+/// Rejects files whose first bytes belong to no mesh; among the formats with such an extension one may be an
+/// archive.
 pub(super) fn refuse(bytes: &[u8], endings: &[&str]) -> Result<(), Vec<MeshProblem>> {
     let bytes = bytes.trim_ascii_start();
     let may_be =

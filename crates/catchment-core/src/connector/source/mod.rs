@@ -30,7 +30,7 @@ use glam::DVec3;
 use std::io;
 use std::path::Path;
 
-/// Most convex pieces of a half: beyond it a mesh says the same with less.
+/// Largest number of convex pieces of a half: beyond it use a mesh.
 const MAX_PIECES: usize = 256;
 
 /// A file, or as much of it as may be read.
@@ -50,7 +50,7 @@ impl FileBytes {
     }
 }
 
-/// Gives the first bytes of a file, at most as many as the second argument says.
+/// Returns the first bytes of a file, at most as many as the second argument.
 pub type FileReader<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
 
 /// Reads files that are in memory, and all others from disk.
@@ -64,19 +64,19 @@ pub(super) fn beside(files: &FilesInMemory) -> impl Fn(&Path, u64) -> io::Result
     }
 }
 
-/// What a mesh file holds.
+/// Content of a mesh file.
 #[derive(Debug, Clone)]
 pub(super) struct FileContent {
-    /// The triangles of every body that the file tells apart.
+    /// The triangles of every body that the file distinguishes.
     pub(super) bodies: Vec<Vec<Triangle>>,
-    /// Metres in one of its coordinates, where it says so.
+    /// Metres per unit of its coordinates, if it states a unit.
     pub(super) metres: Option<f64>,
-    /// How its triangles were made, where it holds none itself.
+    /// Origin of its triangles, if the file itself contains none.
     pub(super) curves: Option<step::FromCurves>,
 }
 
 impl FileContent {
-    /// Of a file that tells no bodies apart and says no unit.
+    /// Content of a file without separate bodies and without a unit.
     pub(super) fn of_triangles(triangles: Vec<Triangle>) -> Self {
         Self { bodies: vec![triangles], metres: None, curves: None }
     }
@@ -86,13 +86,13 @@ impl FileContent {
 struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
-    /// What the bytes of a file hold.
+    /// Parses the bytes of a file.
     read: fn(&FileBytes, &FileSpec, &Exec) -> Result<FileContent, Vec<MeshProblem>>,
-    /// What the first bytes of a file say of it as a whole.
+    /// Checks the first bytes of a file before the rest is read.
     refuse_early: fn(&FileBytes, MeshPreparation) -> Result<(), Vec<MeshProblem>>,
 }
 
-/// The table of mesh formats. A file whose ending none of them has is read as the first.
+/// The table of mesh formats. A file with an unknown extension is read as the first.
 const FORMATS: [Format; 5] = [
     Format {
         endings: &["stl"],
@@ -135,14 +135,14 @@ impl Format {
     }
 }
 
-/// A half that was built, and where it came from.
+/// A half that was built, and its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Built {
     /// The solid.
     pub(super) half: Half,
-    /// What its files held, or the triangles that were given in memory.
+    /// Content of its files, or description of the triangles given in memory.
     pub(super) contents: Vec<MeshContent>,
-    /// Multiplies the coordinates of its file to give D; `None` where it is no single file.
+    /// Factor from the coordinates of its file to D; `None` unless it is a single file.
     pub(super) scale: Option<f64>,
 }
 
@@ -152,10 +152,10 @@ impl Built {
     }
 }
 
-/// A half, or a part of one, from the triangles of every body and their scale.
+/// Builds a half, or a part of a half, from the triangles of every body and their scale.
 type BuildMesh = fn(Vec<Vec<Triangle>>, f64, MeshPreparation) -> Result<Ready, Vec<MeshProblem>>;
 
-/// A mesh file as a half or a part of one, what it held, and its scale.
+/// A mesh file as a half or a part of a half, its content, and its scale.
 pub(super) fn read_mesh(
     spec: &FileSpec,
     file: &FileBytes,
@@ -179,7 +179,7 @@ pub(super) fn read_mesh(
     Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, triangles) }, scale))
 }
 
-/// As much of a mesh file as may be read; of a large one the beginning first.
+/// The readable part of a mesh file; of a large file the beginning first.
 fn fetch_mesh(spec: &FileSpec, read: FileReader<'_>) -> Result<FileBytes, MeshProblem> {
     let format = Format::of(&spec.path);
     let first = fetch(&spec.path, FIRST_BYTES, read)?;
@@ -195,7 +195,7 @@ fn fetch_mesh(spec: &FileSpec, read: FileReader<'_>) -> Result<FileBytes, MeshPr
     fetch(&spec.path, most_bytes(spec.treatment), read)
 }
 
-/// The bytes of a file, or why there are none.
+/// The bytes of a file, or the reason why they are not available.
 fn fetch(path: &Path, most: u64, read: FileReader<'_>) -> Result<FileBytes, MeshProblem> {
     read(path, most).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => MeshProblem::NoFile,
@@ -203,7 +203,7 @@ fn fetch(path: &Path, most: u64, read: FileReader<'_>) -> Result<FileBytes, Mesh
     })
 }
 
-/// One half, drawn facing +z, before it is built.
+/// A half, drawn facing +z, before it is built.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HalfSource {
     /// The half that a family has on this side.
@@ -212,12 +212,13 @@ pub enum HalfSource {
     Pieces(Vec<Vec<DVec3>>),
     /// A mesh file.
     Mesh {
-        /// What messages call it, what leads from its coordinates to D, and what may be done to it; its ending tells the format.
+        /// Its name in messages, the conversion of its coordinates to D, and its permitted changes; its
+        /// extension determines the format.
         spec: FileSpec,
-        /// What it holds.
+        /// Its content.
         file: FileBytes,
     },
-    /// Parts, each with what its file holds where it comes from one.
+    /// Parts, each with the content of its file if it comes from a file.
     Parts(Vec<(PartSpec, Option<FileBytes>)>),
     /// Loose triangles that bound the half, corners in D, counter-clockwise seen from outside.
     Triangles(Vec<[DVec3; 3]>),
@@ -226,7 +227,7 @@ pub enum HalfSource {
 }
 
 impl HalfSource {
-    /// What a design says of a half, its files read.
+    /// The source for a half of a design, with its files read.
     pub(super) fn of(
         spec: &HalfSpec,
         side: HalfRole,
@@ -266,7 +267,7 @@ impl HalfSource {
         }
     }
 
-    /// The solid, and what its files held.
+    /// The solid, and the content of its files.
     pub(super) fn build(
         &self,
         side: HalfRole,
@@ -282,7 +283,7 @@ impl HalfSource {
         Ok(Built { half, ..built })
     }
 
-    /// The solids as they are written, not united, and what its files held.
+    /// The solids as written, not united, and the content of their files.
     fn solids(&self, side: HalfRole, size: Size, exec: &Exec) -> Result<Built, Vec<GeometryDefect>> {
         match self {
             Self::Family(spec) => {

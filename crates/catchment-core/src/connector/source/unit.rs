@@ -2,21 +2,21 @@
 
 use crate::design::{FileSpec, FileUnit, LengthUnit};
 
-/// How far two units may differ and be the same, relative to them: rounding.
+/// Largest relative difference between units that count as equal: rounding.
 const SAME: f64 = 1e-6;
 
 /// Why the unit of a file is not known.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum UnitProblem {
-    /// The file says another unit than the design.
+    /// The file states another unit than the design.
     #[error(
         "the file says that its unit is {in_file}, and the design says {}: remove `unit` from the design, or correct it",
         stated.symbol()
     )]
     Other {
-        /// What the file says.
+        /// Unit stated by the file.
         in_file: String,
-        /// What the design says.
+        /// Unit stated by the design.
         stated: LengthUnit,
     },
     /// A STEP file, which is read in millimetres whatever it was written in.
@@ -25,15 +25,16 @@ pub enum UnitProblem {
         stated.symbol()
     )]
     NotMm {
-        /// What the design says.
+        /// Unit stated by the design.
         stated: LengthUnit,
     },
-    /// Neither the file nor the design says it.
+    /// Neither the file nor the design states a unit.
     #[error("the file does not say its unit: write it beside the file, unit = \"mm\"")]
     Unsaid,
 }
 
-/// Multiplies the coordinates of a file to give D; `metres` are in one of them, where the file says it.
+/// Factor from the coordinates of a file to D; `metres` is the length of a coordinate unit, if the file
+/// states it.
 pub(in crate::connector) fn scale(file: &FileSpec, metres: Option<f64>) -> Result<f64, UnitProblem> {
     match (file.unit, metres) {
         (FileUnit::Stated(stated), Some(metres)) if (metres / stated.metres() - 1.0).abs() > SAME => {

@@ -18,9 +18,9 @@ use std::time::Duration;
 
 /// Names the interpreter.
 pub(super) const VARIABLE: &str = "CATCHMENT_PYTHON";
-/// The interpreter where the variable names none.
+/// The default interpreter, if the variable is not set.
 const USUAL: &str = if cfg!(windows) { "python" } else { "python3" };
-/// How often it is asked whether anybody still waits.
+/// Interval of checks for cancellation.
 const LOOK: Duration = Duration::from_millis(20);
 /// Last words that are kept.
 const MOST_WORDS: u64 = 64 << 10;
@@ -32,7 +32,7 @@ pub(super) fn interpreter() -> OsString {
     std::env::var_os(VARIABLE).filter(|name| !name.is_empty()).unwrap_or_else(|| USUAL.into())
 }
 
-/// What is started.
+/// A program to run.
 pub(super) struct Job<'a> {
     pub(super) program: OsString,
     pub(super) arguments: &'a [String],
@@ -79,14 +79,14 @@ impl Drop for Nowhere {
     }
 }
 
-/// The entries of a search path that mean the same in every folder; `None` where there are none.
+/// The absolute entries of a search path; `None` if there are none.
 fn absolute_entries(paths: Option<OsString>) -> Option<OsString> {
     let paths = paths?;
     let kept = std::env::split_paths(&paths).filter(|path| path.is_absolute());
     std::env::join_paths(kept).ok().filter(|kept| !kept.is_empty())
 }
 
-/// A child that does not outlive whoever waits for it.
+/// A child process that ends with its owner.
 struct Started(Child);
 
 impl Drop for Started {
@@ -97,7 +97,7 @@ impl Drop for Started {
     }
 }
 
-/// Runs a program on `input`, and gives what it wrote to stdout.
+/// Runs a program on `input`, and returns its output on stdout.
 pub(super) fn run(
     job: Job<'_>,
     input: Vec<u8>,

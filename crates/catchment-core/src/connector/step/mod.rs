@@ -30,11 +30,11 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// What the child runs.
+/// The script of the child process.
 const SCRIPT: &str = include_str!("mesh.py");
 /// How a STEP file begins.
 const BEGINNING: &[u8] = b"ISO-10303-21";
-/// Longer than any part took that was tried, by far: what hangs is ended.
+/// Time limit, far longer than any part tried: a hanging process is ended.
 const MOST_TIME: Duration = Duration::from_mins(10);
 /// Files whose triangles are kept.
 const MOST_KEPT: usize = 4;
@@ -42,7 +42,7 @@ const MOST_KEPT: usize = 4;
 /// Why a STEP file gives no triangles.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StepProblem {
-    /// It begins like none.
+    /// Its first bytes are not those of a STEP file.
     #[error("this is no STEP file, which begins with ISO-10303-21: export it again")]
     NotStep,
     /// No interpreter.
@@ -55,7 +55,7 @@ pub enum StepProblem {
     NoPython {
         /// The interpreter.
         program: String,
-        /// What the system says.
+        /// Message of the system.
         message: String,
     },
     /// An interpreter without the package.
@@ -68,19 +68,19 @@ pub enum StepProblem {
     NoPackage {
         /// The interpreter.
         program: String,
-        /// What it says.
+        /// Its message.
         message: String,
     },
     /// `OpenCASCADE` does not understand it.
     #[error("cannot be read as STEP: {message}")]
     Unreadable {
-        /// What it says.
+        /// Its message.
         message: String,
     },
     /// No solid in it.
     #[error("the file holds no solid ({message}): export the part as a closed solid")]
     NoSolid {
-        /// What it holds.
+        /// Its content.
         message: String,
     },
     /// More triangles than are read.
@@ -97,7 +97,7 @@ pub enum StepProblem {
     /// Something is no face that can be meshed.
     #[error("{message}: repair the part in the CAD program, or export it as STL, OBJ, PLY or 3MF")]
     NotMeshed {
-        /// What.
+        /// Description.
         message: String,
     },
     /// It takes too long.
@@ -121,25 +121,25 @@ pub enum StepProblem {
         /// How it ended, and its last words.
         message: String,
     },
-    /// A stop was asked for.
+    /// The computation was cancelled.
     #[error("cancelled")]
     Cancelled,
 }
 
-/// What `OpenCASCADE` made of a file.
+/// Result of `OpenCASCADE` for a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::connector) struct FromCurves {
-    /// How far facets may be off, in mm.
+    /// Largest allowed distance between faces and facets, in mm.
     pub(in crate::connector) deflection: f64,
-    /// How far they are, as far as it knows, in mm.
+    /// Largest distance between faces and facets as it reports, in mm.
     pub(in crate::connector) reached: f64,
-    /// What meshed it.
+    /// The mesher.
     pub(in crate::connector) by: String,
     /// SHA-256 of the triangles.
     pub(in crate::connector) sha256: String,
 }
 
-/// What leads to the same triangles: the file, the deflection in mm, and how many there may be.
+/// Key of a meshing: the file, the deflection in mm, and the triangle limit.
 #[derive(Clone, PartialEq)]
 struct MeshingRequest {
     sha256: String,
@@ -210,10 +210,11 @@ fn meshed(
     reply::read(&answer, &program, spec.treatment)
 }
 
-/// The triangles of every body that an answer of the interpreter holds: for tests and the fuzzer, which have no interpreter.
+/// The triangles of every body in a reply of the interpreter: for tests and the fuzzer, which have no
+/// interpreter.
 ///
 /// # Errors
-/// What the answer refuses, or that it is broken.
+/// The error that the reply contains, or that it is broken.
 #[doc(hidden)]
 pub fn bodies_of_answer(answer: &[u8]) -> Result<Vec<Vec<[glam::DVec3; 3]>>, Vec<MeshProblem>> {
     let held = reply::read(answer, "python3", crate::design::MeshPreparation::DEFAULT)?;

@@ -14,7 +14,7 @@ const CORNER: usize = 24;
 const TRIANGLE: usize = 12;
 /// Bytes of the line of JSON, far more than the numbers of thousands of bodies take.
 const MOST_HEAD: usize = 1 << 20;
-/// Characters of the name of what meshed it.
+/// Largest length of the mesher's name, in characters.
 const LONGEST_NAME: usize = 100;
 
 /// The line.
@@ -39,7 +39,7 @@ pub(super) const fn most_bytes(triangles: usize) -> u64 {
     (MOST_HEAD + triangles * (TRIANGLE + 3 * CORNER)) as u64
 }
 
-/// The bodies of an answer, or what it refuses.
+/// The bodies of a reply, or the error that it contains.
 pub(super) fn read(
     answer: &[u8],
     program: &str,

@@ -67,7 +67,7 @@ fn only_what_begins_like_a_step_file_is_meshed() {
     assert!(refused(b"ISO-10303-21;", &in_inches).contains("read in mm; the design says in"));
 }
 
-/// What a shell does in place of Python.
+/// A shell script in place of Python.
 #[cfg(unix)]
 fn shell(script: &str, input: Vec<u8>, most_time: Duration, exec: &Exec) -> Result<Vec<u8>, StepProblem> {
     let arguments = ["-c".to_owned(), script.to_owned()];

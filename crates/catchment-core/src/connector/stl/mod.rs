@@ -23,7 +23,8 @@ use crate::design::MeshPreparation;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
 pub const MAX_BYTES: u64 = 128 << 20;
-/// Longest file that is read to be simplified: a binary one of as many triangles as are read.
+/// Longest file that is read for simplification: a binary file with the largest number of triangles that are
+/// read.
 pub const MOST_BYTES: u64 = 84 + 50 * MOST_READ as u64;
 
 /// As the table of formats wants it.
@@ -31,7 +32,7 @@ pub(super) fn read(file: &FileBytes, treatment: MeshPreparation) -> Result<FileC
     parse::parse(&file.bytes, file.size, treatment).map(FileContent::of_triangles)
 }
 
-/// What the first bytes of a file say of it as a whole: a binary file with too many triangles is refused before they are read.
+/// Checks the first bytes of a file: a binary file with too many triangles is rejected before they are read.
 pub(super) fn refuse_early(file: &FileBytes, treatment: MeshPreparation) -> Result<(), Vec<MeshProblem>> {
     parse::refuse_early(&file.bytes, file.size, treatment)
 }

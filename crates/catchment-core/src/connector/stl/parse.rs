@@ -98,7 +98,7 @@ fn binary(records: &[u8]) -> Vec<Triangle> {
 
 type Split<'a> = std::slice::Split<'a, u8, fn(&u8) -> bool>;
 
-/// The lines of an ASCII file that say something, with their numbers.
+/// The non-empty lines of an ASCII file, with their numbers.
 struct Lines<'a> {
     lines: std::iter::Enumerate<Split<'a>>,
     last: usize,
@@ -116,7 +116,7 @@ impl<'a> Lines<'a> {
         None
     }
 
-    /// The next line, which must begin with the words of `expected`; returns what follows them.
+    /// The next line, which must begin with the words of `expected`; returns the words after them.
     fn expect(&mut self, expected: &'static str) -> Result<(usize, Vec<&'a [u8]>), MeshProblem> {
         let Some((line, words)) = self.next() else {
             return Err(MeshProblem::Syntax {

@@ -16,8 +16,8 @@ pub enum StlEncoding {
 /// Writes all surfaces of `half` as one mesh, in its own coordinates.
 ///
 /// The halves of a [`Connector`](crate::connector::Connector) have their face centre at the origin, and the
-/// moving one is mounted; to get it as a design file wants it, turn it back with `mapped(|p| mount.apply(p))`
-/// and give `face_height = 0`.
+/// moving half is mounted; for use in a design file, rotate it back with `mapped(|p| mount.apply(p))` and set
+/// `face_height = 0`.
 pub fn write(half: &Half, format: StlEncoding, out: &mut impl Write) -> io::Result<()> {
     let triangles: Vec<[DVec3; 3]> = half.surfaces.iter().flat_map(corners).collect();
     match format {

@@ -27,9 +27,9 @@ use zip::ZipArchive;
 
 /// Longest file that is read.
 pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
-/// Most bytes that are unpacked from it: four times what as many triangles take as a half may have.
+/// Largest number of unpacked bytes: four times the size of the largest number of triangles of a half.
 const MOST_UNPACKED: u64 = 64 << 20;
-/// Most model parts of a file: a program that splits them makes one per object.
+/// Largest number of model parts of a file: programs that split models make a part per object.
 const MOST_MODELS: usize = 64;
 /// Items and components that are followed, and how deep: two that hold two each, and so on, are soon more than any file has bytes.
 const COMPONENTS: Limit =
@@ -40,7 +40,7 @@ const DEPTH: Limit =
 const ENTRY: &[u8] = b"PK\x01\x02";
 /// Entries of an archive, which are pictures and settings but for the models.
 const ENTRIES: Limit = Limit { most: 10_000, of: "entries", remedy: "export the part alone" };
-/// The part with the model where no relationship names it.
+/// The part with the model, if no relationship names it.
 const USUAL_MODEL: &str = "3D/3dmodel.model";
 /// How the relationship to it ends.
 const MODEL_RELATION: &str = "/3dmodel";
@@ -151,11 +151,12 @@ impl Package<'_> {
     }
 }
 
-/// What the items of a build put together.
+/// The combined items of a build.
 struct Build<'a> {
     package: Package<'a>,
     bodies: Vec<Vec<Triangle>>,
-    /// Meshes that are there, each with its part and where it stands: the same one in the same place once more is the same solid.
+    /// Placed meshes, each with its part and its transform: a repeated mesh in the same place is the same
+    /// solid.
     placed: BTreeSet<(String, u32, [u64; 12])>,
     components: Budget,
     triangles: usize,

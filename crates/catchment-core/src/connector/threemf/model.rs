@@ -9,9 +9,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Read;
 
-/// Most vertices of a file: three for every triangle, where none are shared.
+/// Largest number of vertices of a file: three for every triangle, as if no vertex were shared.
 pub(super) const MOST_VERTICES: usize = 3 * MAX_TRIANGLES;
-/// What the XML of a part may have. Elements of extensions come to those of the solids.
+/// Limits on the XML of a part. Elements of extensions are counted with those of the solids.
 const LIMITS: XmlLimits = XmlLimits {
     elements: Limit { most: 4_000_000, of: "elements", remedy: "export the solids alone" },
     depth: Limit { most: 64, of: "elements within each other", remedy: "export the part again" },
@@ -31,19 +31,19 @@ const UNITS: [(&str, f64); 6] = [
     ("foot", 0.3048),
     ("meter", 1.0),
 ];
-/// What the namespaces of required extensions hold that change no solid, or that are read.
+/// Namespaces of required extensions that do not change solids, or that are supported.
 const KNOWN_EXTENSIONS: [&str; 3] = ["/production/", "/material/", "/slice/"];
 
 /// An item of the build, or a component of an object.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Use {
     pub(super) object: u32,
-    /// The part that it is in, where that is another one.
+    /// Its part, if it is in another part.
     pub(super) path: Option<String>,
     pub(super) transform: DAffine3,
 }
 
-/// What an object is.
+/// Geometry of an object.
 #[derive(Debug)]
 pub(super) enum Geometry {
     Mesh {
@@ -63,7 +63,7 @@ pub(super) struct Model {
     pub(super) items: Vec<Use>,
 }
 
-/// The elements that begin, one after the other.
+/// The start tags of the elements, in order.
 fn walk(part: impl Read, mut each: impl FnMut(&Tag<'_>) -> Result<(), String>) -> Result<(), String> {
     let mut walk = Walk::new(part, LIMITS);
     loop {
@@ -91,7 +91,7 @@ fn number<T: std::str::FromStr>(tag: &Tag<'_>, name: &str) -> Result<T, String> 
     })
 }
 
-/// Twelve numbers: where the axes go, and the origin.
+/// Twelve numbers: the images of the axes, and the origin.
 fn transform(tag: &Tag<'_>) -> Result<DAffine3, String> {
     let Some(written) = attribute(tag, "transform") else { return Ok(DAffine3::IDENTITY) };
     let numbers: Vec<f64> = written.split_whitespace().filter_map(|number| number.parse().ok()).collect();
@@ -195,7 +195,7 @@ impl Model {
         self.objects.get_mut(&id?)
     }
 
-    /// The unit, and what the file requires of its reader.
+    /// The unit, and the extensions that the file requires.
     fn head(&mut self, tag: &Tag<'_>) -> Result<(), String> {
         if let Some(unit) = attribute(tag, "unit") {
             let known = UNITS.iter().find(|(name, _)| *name == unit);

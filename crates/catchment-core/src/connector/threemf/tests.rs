@@ -105,7 +105,7 @@ fn what_is_wrong_is_said_with_its_place() {
     assert_eq!(of_model(&model("", "", "")).unwrap().bodies.len(), 0);
 }
 
-/// Small files that would be large: none is unpacked further than it may.
+/// Small files that would unpack to large content: unpacking stops at the limit.
 #[test]
 fn bombs_do_not_go_off() {
     let refused = |text: &str| of_model(text).err().unwrap();
@@ -152,7 +152,8 @@ fn bombs_do_not_go_off() {
     assert!(held(package(&entries)).err().unwrap().contains("the archive: more than 10000 entries"));
 }
 
-/// The same mesh in the same place any number of times is one solid; in too many places it is refused.
+/// The same mesh in the same place, repeated any number of times, is one solid; in too many places it is
+/// rejected.
 #[test]
 fn bodies_that_fall_together_are_one() {
     let one = format!("<object id=\"1\">{MESH}</object>");

@@ -80,7 +80,7 @@ pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
     parted
 }
 
-/// The triangles on either side of an edge are of one fan at both of its ends.
+/// Joins the triangles on either side of an edge in the fans at both of its ends.
 fn join(fans: &mut DisjointSets, mesh: &Indexed, a: Side, b: Side) {
     for end in a.edge {
         let slot = |side: Side| {
@@ -91,7 +91,8 @@ fn join(fans: &mut DisjointSets, mesh: &Indexed, a: Side, b: Side) {
     }
 }
 
-/// The pairs of sides between which solid lies around an edge, the one that runs down first; `None` where they do not alternate.
+/// The pairs of sides that enclose solid around an edge, the side that runs down first; `None` if they do not
+/// alternate.
 fn wedges(mesh: &Indexed, sides: &[Side]) -> Option<Vec<[Side; 2]>> {
     let [a, b] = sides.first()?.edge.map(|end| mesh.at(end));
     let along = (b - a).try_normalize()?;

@@ -6,7 +6,7 @@
 
 use crate::connector::mesh::indexed::Indexed;
 
-/// What was dropped.
+/// Number of removed triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Dropped {
     pub(super) without_area: usize,

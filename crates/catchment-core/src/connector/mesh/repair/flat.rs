@@ -19,7 +19,7 @@ use std::collections::BinaryHeap;
 /// Most steps for each flat triangle that there is: far more than ever needed.
 const MOST_STEPS: usize = 64;
 
-/// A flat triangle that waits, the longest first; of equal ones the first in the file.
+/// A flat triangle in the queue, the longest first; among equals the first in the file.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting {
     /// Bits of the length of its longest edge: for positive numbers in the order of the lengths.

@@ -32,20 +32,21 @@ use super::sides::Sides;
 use super::{MAX_TRIANGLES, MeshProblem};
 use crate::design::Repairs;
 
-/// Most crossings that are united: what crosses more often is no part but a tangle.
+/// Largest number of crossings that are united: a surface with more is not a part but a tangle.
 const MOST_CROSSINGS: usize = 20_000;
 /// Most rounds of uniting: rounding the corners of a union may leave a crossing of its own.
 const ROUNDS: usize = 3;
 
-/// Tolerances by which a repair may move the surface: several steps move it by one each, and what moves it farther is no repair.
+/// Largest displacement of the surface by a repair, in tolerances: several steps move it by one tolerance
+/// each.
 const MOST_MOVED: f64 = 20.0;
 
 /// A mesh as far as it could be mended.
 pub(super) struct Mended {
     pub(super) mesh: Indexed,
-    /// What was done; its deviation in the coordinates of the mesh.
+    /// The repairs; their deviation is in the coordinates of the mesh.
     pub(super) repairs: Repairs,
-    /// What is still wrong.
+    /// The remaining defects.
     pub(super) problems: Vec<MeshProblem>,
 }
 
@@ -88,7 +89,7 @@ pub(super) fn mended(before: &Indexed) -> Mended {
     Mended { mesh, repairs, problems }
 }
 
-/// Tidies up; what is still wrong.
+/// Applies `tidy`; returns the remaining defects.
 fn tidied(mesh: &mut Indexed, repairs: &mut Repairs) -> Vec<MeshProblem> {
     tidy(mesh, repairs);
     mesh.compact();
@@ -106,7 +107,7 @@ fn needs_union(problems: &[MeshProblem]) -> bool {
     problems.iter().any(crossing) && !problems.iter().any(open)
 }
 
-/// Everything that leaves the surface where it is.
+/// Applies all repairs that do not move the surface.
 fn tidy(mesh: &mut Indexed, repairs: &mut Repairs) {
     let doubled = doubled::drop(mesh);
     repairs.without_area += doubled.without_area;

@@ -56,7 +56,7 @@ pub(super) fn collapse(mesh: &mut Indexed) -> usize {
     count
 }
 
-/// Whether one end of an edge may be moved to the other.
+/// Whether a given end of an edge may be moved to the other.
 fn may_go(mesh: &Indexed, around: &[Vec<u32>], stays: u32, goes: u32) -> bool {
     let neighbours = |of: u32| {
         let mut list: Vec<u32> = around[of as usize]

@@ -25,14 +25,14 @@ use manifold_rust::robust::cells::{build_cells, extract, windings};
 use manifold_rust::robust::intersection_graph::build_graph;
 use manifold_rust::types::{OpType, WindingRule};
 
-/// Points at which both are asked how often they wind around, at most: every one costs a walk over all triangles.
+/// Largest number of points at which both winding numbers are compared: each costs a pass over all triangles.
 const POINTS: usize = 96;
-/// Triangles looked at by all points together, at most.
+/// Largest number of triangle tests over all points together.
 const MOST_STEPS: usize = 20_000_000;
-/// How far off the surface points lie, relative to the tolerance of the mesh.
+/// Distance of the points from the surface, relative to the tolerance of the mesh.
 const OFF: f64 = 20.0;
 
-/// The union, if there is one that holds.
+/// The union, if it passes verification.
 pub(super) fn united(mesh: &Indexed) -> Option<Indexed> {
     let result = solid(mesh)?;
     holds(mesh, &result).then_some(result)
@@ -67,7 +67,7 @@ fn solid(mesh: &Indexed) -> Option<Indexed> {
     Some(united).filter(|united| !united.triangles.is_empty())
 }
 
-/// Whether the result winds once around what the mesh winds around, and not around the rest.
+/// Whether the result winds once around the regions that the mesh winds around, and not around the rest.
 fn holds(before: &Indexed, after: &Indexed) -> bool {
     let all = |mesh: &Indexed| (0..mesh.triangles.len() as u32).collect::<Vec<_>>();
     let (of_before, of_after) = (all(before), all(after));

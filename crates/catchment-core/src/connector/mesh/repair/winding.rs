@@ -50,7 +50,8 @@ fn turn(mesh: &mut Indexed, which: &[bool]) {
     mesh.triangles.iter_mut().zip(which).filter(|(_, turn)| **turn).for_each(|(t, _)| t.swap(1, 2));
 }
 
-/// Which triangles are wound unlike the first of their shell; `false` where a shell has but one side.
+/// Finds the triangles with the opposite winding to the first of their shell; `false` for a single-sided
+/// shell.
 fn flood(count: usize, sides: &Sides, is_turned: &mut [bool]) -> bool {
     // Of each triangle its neighbours, and whether they are wound unlike it.
     let mut neighbours: Vec<[(u32, bool); 3]> = vec![[(u32::MAX, false); 3]; count];

@@ -72,7 +72,7 @@ impl Flat {
         self.places.get(&point).copied().unwrap_or_default()
     }
 
-    /// Twice the signed area of a triangle, positive where it is counter-clockwise.
+    /// Twice the signed area of a triangle, positive if it is counter-clockwise.
     fn turn(&self, [a, b, c]: [u32; 3]) -> i128 {
         turn([a, b, c].map(|point| self.at(point)))
     }
@@ -82,7 +82,7 @@ impl Flat {
         ring.windows(2).map(|pair| self.turn([ring[0], pair[0], pair[1]])).sum()
     }
 
-    /// The closed loops of a border; `None` where two of its edges lead on to the same one.
+    /// The closed loops of a border; `None` if two of its edges lead to the same edge.
     fn loops(&self, border: &[[u32; 2]]) -> Option<Vec<Vec<u32>>> {
         let mut ways: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, [from, _]) in border.iter().enumerate() {
@@ -137,7 +137,7 @@ impl Flat {
         is_in
     }
 
-    /// An outline and its holes as one ring.
+    /// An outline and its holes as a single ring.
     fn opened(&self, mut ring: Vec<u32>, mut holes: Vec<Vec<u32>>) -> Option<Vec<u32>> {
         while !holes.is_empty() {
             let mut bridges: Vec<(i128, usize, usize, usize)> = Vec::new();

@@ -45,9 +45,10 @@ use planes::Model;
 pub(in crate::connector) const EXACT: f64 = 1e-8;
 /// The same for coordinates from files in single precision, whose rounding is 6e-8.
 pub(in crate::connector) const SINGLE: f64 = 2e-7;
-/// Tolerances that are tried, as multiples of these: what is thin may need a smaller one, coordinates with few digits larger ones.
+/// Tolerances that are tried, as multiples of the base: thin features may need a smaller one, coordinates
+/// with few digits larger ones.
 const TRIED: [f64; 4] = [1.0, 0.1, 10.0, 100.0];
-/// The largest tolerance that is tried: the one by which corners of a mesh are welded.
+/// The largest tolerance that is tried: that of welding the corners of a mesh.
 const LARGEST: f64 = 1.001 * super::WELD;
 
 /// Why solids have no union that holds.
@@ -56,25 +57,25 @@ pub enum UnionProblem {
     /// Its facets do not close.
     #[error("{}", explained("does not close", .at))]
     Open {
-        /// Where.
+        /// Position.
         at: MeshPoint,
     },
     /// The border of a face crosses itself.
     #[error("{}", explained("has a face that crosses itself", .at))]
     Tangled {
-        /// Where.
+        /// Position.
         at: MeshPoint,
     },
     /// Facets pass through each other.
     #[error("{}", explained("crosses itself", .at))]
     Crossed {
-        /// Where.
+        /// Position.
         at: MeshPoint,
     },
-    /// What it encloses is not what the solids fill.
+    /// It encloses another region than the solids fill.
     #[error("{}", explained("encloses something else than they fill", .at))]
     Differs {
-        /// Where.
+        /// Position.
         at: MeshPoint,
     },
     /// The computation was cancelled.
@@ -93,7 +94,7 @@ fn explained(what: &str, at: &MeshPoint) -> String {
 /// `exactness` is [`EXACT`] or [`SINGLE`].
 ///
 /// # Errors
-/// No tolerance gives a union that holds; where the first one fails.
+/// No tolerance gives a valid union; with the place at which the first one fails.
 pub(in crate::connector) fn united(
     surfaces: &[Surface],
     exactness: f64,
@@ -117,7 +118,7 @@ pub(in crate::connector) fn united(
     Err(first.unwrap_or(UnionProblem::Open { at: DVec3::ZERO.into() }))
 }
 
-/// The union with one tolerance.
+/// The union with a given tolerance.
 fn attempt(surfaces: &[Surface], w: f64, exec: &Exec) -> Result<Vec<Surface>, UnionProblem> {
     let mut model = Model::of(surfaces, w);
     let left = overlay::left(&mut model, exec)?;

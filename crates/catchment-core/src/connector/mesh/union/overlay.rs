@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 type Node = IntPoint<i64>;
 type Ring = Vec<Node>;
 
-/// What is left of all facets.
+/// The remainders of all facets.
 pub(super) struct Left {
     /// Of every facet its loops, interior on the left seen from outside; of those that lost nothing, its corners.
     pub(super) loops: Vec<Vec<Vec<u32>>>,
@@ -30,7 +30,7 @@ pub(super) struct Left {
     pub(super) joined: DisjointSets,
 }
 
-/// Takes from every facet what others cover.
+/// Removes from every facet the parts that others cover.
 pub(super) fn left(model: &mut Model, exec: &Exec) -> Result<Left, UnionProblem> {
     let whole = |facet: &super::planes::Facet| {
         if facet.corners.is_empty() { Vec::new() } else { vec![facet.corners.clone()] }
@@ -112,7 +112,7 @@ impl Sheet {
             .collect()
     }
 
-    /// What a solid fills on one side of the plane.
+    /// Section of a solid on one side of the plane.
     fn cover(&mut self, model: &mut Model, solid: u32, is_above: bool) -> Vec<Ring> {
         if let Some(cover) = self.covers.get(&(solid, is_above)) {
             return cover.clone();
@@ -190,7 +190,7 @@ fn around(rings: &[Ring]) -> ([i64; 2], [i64; 2]) {
     })
 }
 
-/// Rings of the result, outer ones counter-clockwise, holes clockwise.
+/// Rings of the result, outer rings counter-clockwise, holes clockwise.
 fn overlaid(subject: &[Ring], clip: &[Ring], rule: OverlayRule) -> Vec<Ring> {
     let capacity = subject.iter().chain(clip).map(Vec::len).sum();
     let mut overlay = Overlay::<i64>::new_custom(capacity, IntOverlayOptions::default(), Solver::default());

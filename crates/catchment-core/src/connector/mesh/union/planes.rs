@@ -8,9 +8,9 @@ use super::super::tree::{Bounds, Tree, overlap};
 use crate::connector::Surface;
 use glam::DVec3;
 
-/// Distance from a plane below which a corner lies in it, in w: welding moves a corner by up to one w.
+/// Distance from a plane, in w, below which a corner lies in it: welding moves a corner by up to one w.
 const ON_PLANE: f64 = 2.0;
-/// Facets whose normals differ by more than this cosine are not in one plane, however small they are.
+/// Facets whose normals differ by more than this cosine are not coplanar, however small they are.
 const SAME_WAY: f64 = 0.9;
 
 /// A plane `normal · p = level`, `normal` of unit length.
@@ -27,11 +27,11 @@ impl Plane {
     }
 }
 
-/// A facet of one of the solids.
+/// A facet of a solid.
 #[derive(Debug, Clone)]
 pub(super) struct Facet {
     pub(super) solid: u32,
-    /// Numbers of its corners, counter-clockwise seen from outside; none where welding left it no area.
+    /// Numbers of its corners, counter-clockwise seen from outside; empty if welding left it no area.
     pub(super) corners: Vec<u32>,
     /// The number of its plane.
     pub(super) plane: u32,
@@ -154,7 +154,7 @@ impl Model {
         }
     }
 
-    /// Gives the facets of one plane to another one, if they lie in it.
+    /// Moves the facets of a plane to another plane, if they lie in it.
     fn merge(&mut self, from: u32, into: u32) {
         let plane = self.planes[into as usize];
         let corners = |k: &u32| &self.facets[*k as usize].corners;
@@ -181,7 +181,7 @@ impl Model {
         ON_PLANE * self.w
     }
 
-    /// A box with what is nearer than rounding.
+    /// A box enlarged by the rounding distance.
     pub(super) fn widened(&self, (low, high): Bounds) -> Bounds {
         (low - self.on_plane(), high + self.on_plane())
     }
@@ -192,7 +192,7 @@ pub(super) fn bounds_of(points: impl Iterator<Item = DVec3>) -> Bounds {
     points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
-/// Of every point the first one within `tolerance` that stands for itself.
+/// For every point the first point within `tolerance` that represents itself.
 pub(super) fn welded(points: &[DVec3], tolerance: f64) -> Vec<u32> {
     let boxes: Vec<Bounds> = points.iter().map(|p| (*p - tolerance, *p + tolerance)).collect();
     let tree = Tree::over(&boxes);

@@ -14,10 +14,10 @@ use super::planes::Model;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// An edge by the numbers of its ends, the lower one first.
+/// An edge by the numbers of its ends, the lower number first.
 type Edge = [u32; 2];
 
-/// Solids cut by one plane.
+/// Solids cut by a plane.
 #[derive(Debug)]
 pub(super) struct Cutter {
     plane: u32,
@@ -30,7 +30,8 @@ impl Cutter {
         Self { plane, made: BTreeMap::new() }
     }
 
-    /// Closed loops, by the numbers of points, around what a solid fills above the plane, or below it. Makes the points where edges pass.
+    /// Closed loops, by the numbers of points, around the section of a solid above the plane, or below it.
+    /// Creates the points at which edges pass.
     pub(super) fn filled(&mut self, model: &mut Model, solid: u32, is_above: bool) -> Vec<Vec<u32>> {
         let heights = Heights::of(model, self.plane, solid, is_above);
         // From the edge on which a facet goes down through the plane to the one on which it came up.
@@ -76,7 +77,7 @@ impl Cutter {
         loops
     }
 
-    /// The point at which an edge passes the plane: an end that lies in it, or a new one.
+    /// The point at which an edge passes the plane: an end in the plane, or a new point.
     fn passing(&mut self, model: &mut Model, heights: &Heights, edge: Edge) -> u32 {
         let [from, to] = edge.map(|end| heights.at(&model.points, end));
         if from == 0.0 {
@@ -98,7 +99,7 @@ struct Heights {
     normal: DVec3,
     level: f64,
     on_plane: f64,
-    /// Corners of facets of the plane: they lie in it whatever rounding says.
+    /// Corners of facets of the plane: they lie in it regardless of rounding.
     level_corners: Vec<u32>,
 }
 

@@ -16,12 +16,13 @@ use crate::connector::mesh::tree::{Bounds, Tree, overlap};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Points that were made are one within this distance, in w, and edges are divided at points as near as that.
+/// New points are merged within this distance, in w, and edges are divided at points within it.
 pub(super) const SPLIT: f64 = 4.0;
-/// Most times that all edges are divided: dividing one moves it by less than the tolerance, which may bring it to another point.
+/// Largest number of passes that divide all edges: a division moves an edge by less than the tolerance, which
+/// may bring it to another point.
 const PASSES: usize = 4;
 
-/// What solids of one cluster leave of a plane on one of its sides.
+/// The remainder of the solids of a cluster on one side of a plane.
 #[derive(Debug)]
 pub(super) struct Face {
     pub(super) cluster: u32,
@@ -107,7 +108,7 @@ pub(super) fn stitched(
     Ok(faces.into_iter().map(face).filter(|face| !face.border.is_empty()).collect())
 }
 
-/// Leaves out points at which nothing but an edge goes on, straight ahead.
+/// Removes points at which only a single straight edge continues.
 fn straighten(faces: &mut BTreeMap<Key, Net>, points: &[DVec3], tolerance: f64) {
     let mut neighbours: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
     for ((cluster, ..), net) in faces.iter() {

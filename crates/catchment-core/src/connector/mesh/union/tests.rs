@@ -14,7 +14,7 @@ fn union(surfaces: &[Surface]) -> Vec<Surface> {
     united(surfaces, EXACT, &Exec::new()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The one surface of a union.
+/// The single surface of a union.
 fn one(surfaces: &[Surface]) -> Surface {
     let mut union = union(surfaces);
     assert_eq!(union.len(), 1);
@@ -85,7 +85,7 @@ fn a_hole_may_be_closed_all_around_and_a_cavity_stays() {
     assert!((hollow.volume() - 26.0).abs() < 1e-12);
 }
 
-/// Corners rounded as a person writes them.
+/// Corners rounded as in a hand-written file.
 fn rounded(surface: &Surface, digits: f64) -> Option<Surface> {
     let round = |p: &DVec3| (*p * digits).round() / digits;
     convex_hull(&surface.vertices.iter().map(round).collect::<Vec<_>>()).ok()
@@ -154,7 +154,8 @@ proptest! {
         prop_assert!((volume - cells as f64 / 27.0).abs() < 1e-12, "{volume} {cells}");
     }
 
-    /// Convex solids anywhere: their union has no more volume than they have together, no less than the largest, and as much as points say.
+    /// Convex solids anywhere: their union has at most their total volume, at least that of the largest, and
+    /// the volume found by sampling.
     #[test]
     fn solids_anywhere_have_a_union(
         clouds in prop::collection::vec(

@@ -17,15 +17,16 @@ use crate::connector::mesh::tree::{Bounds, Tree, overlap};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Where over a facet the points lie, as shares of two of its corners, and their distance from it, in w. One place that agrees is enough: another one may be
-/// on an edge of the union, which says nothing, or what is there thinner than the distance.
+/// Positions of the test points over a facet, as shares of two of its corners, and their distance from it, in
+/// w. A single point that agrees is sufficient: another may be on an edge of the union, or near a feature
+/// thinner than the distance.
 const PLACES: [([f64; 2], f64); 4] = [
     ([0.414_213, 0.317_837], 64.0),
     ([0.236_067, 0.449_489], 64.0),
     ([0.381_966, 0.302_775], 16.0),
     ([0.291_502, 0.360_679], 6.0),
 ];
-/// Facets and triangles looked at by all points together, at most.
+/// Largest number of facet and triangle tests over all points together.
 const MOST_STEPS: usize = 200_000_000;
 
 /// Whether a mesh is the border of the union of solids.
@@ -60,7 +61,7 @@ pub(super) fn holds(mesh: &Indexed, solids: &[&Surface], w: f64) -> Result<(), U
     }
 }
 
-/// Solids that are asked for points.
+/// Solids for point queries.
 struct Solids<'a> {
     surfaces: &'a [&'a Surface],
     boxes: Vec<Bounds>,
@@ -85,7 +86,7 @@ impl<'a> Solids<'a> {
         is_in
     }
 
-    /// Three corners of every facet, the first ones that are not on a line.
+    /// Three corners of every facet, the first that are not collinear.
     fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         self.surfaces.iter().flat_map(|surface| {
             surface.facets.iter().map(|facet| {
