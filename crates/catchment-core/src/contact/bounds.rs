@@ -19,7 +19,7 @@ const STEEP: f32 = 0.05;
 /// Beyond all heights.
 const FAR: f32 = 1e30;
 
-/// Bounds of one part (`f32`) or of four (`f32x4`).
+/// Bounds of a single part (`f32`) or of four (`f32x4`).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds<T> {
     center: [T; 3],
@@ -29,20 +29,21 @@ pub(super) struct Bounds<T> {
     own: [T; 3],
     /// Largest distance from the centre.
     radius: T,
-    /// Mean normal of the features, unit, or 0 where they cancel.
+    /// Mean normal of the features, unit, or 0 if they cancel.
     normal: [T; 3],
-    /// How far in front of the centre the plane lies across the normal.
+    /// Distance of the plane in front of the centre, across the normal.
     ahead: T,
-    /// The plane over the centre, where it is not steep, and its slopes in x and y; else far above a fixed part and far below a moving one.
+    /// Height of the plane above the centre, if it is not steep, and its slopes in x and y; else far above a
+    /// fixed part and far below a moving part.
     over: T,
     slope: [T; 2],
-    /// Cosine and sine of half the angle of the cone around the normal, for each slack; no numbers where it is wide.
+    /// Cosine and sine of half the angle of the cone around the normal, for each slack; NaN for a wide cone.
     cones: [[T; 2]; SLACKS.len()],
 }
 
 /// Four parts.
 pub(super) type Four = Bounds<f32x4>;
-/// One part.
+/// A single part.
 pub(super) type One = Bounds<f32>;
 
 /// By how much coordinates may be wrong of parts that are up to `extent` away, in D: a dozen roundings of single precision, with room. On planes
@@ -131,13 +132,13 @@ impl Four {
         }
     }
 
-    /// Four times one of them.
+    /// Four copies of a lane.
     #[inline]
     pub(super) fn repeated(&self, lane: usize) -> Self {
         self.map(|four| f32x4::splat(four.as_array()[lane]))
     }
 
-    /// Half of the larger side of the box of one of them in plan view.
+    /// Half of the larger side of the box of a lane in plan view.
     #[inline]
     pub(super) fn size(&self, lane: usize) -> f32 {
         let [x, y, _] = self.half.each_ref().map(|half| half.as_array()[lane]);
@@ -159,8 +160,9 @@ impl Four {
         self
     }
 
-    /// How far above where it is the moving part may be carried by the fixed one, at most and but for the [`rounding`] of a height, where they are
-    /// not farther than `reach` and that beside each other.
+    /// Upper bound on the height at which the fixed part can carry the moving part above its current height,
+    /// except for the [`rounding`] of a height, and a mask of the lanes whose boxes are within `reach` of each
+    /// other in plan view.
     #[inline]
     pub(super) fn most(&self, moving: &Self, reach: f32, rounding: f32) -> (f32x4, f32x4) {
         let reach = f32x4::splat(reach + rounding);
@@ -198,9 +200,10 @@ impl Four {
         self.center[2] - self.half[2] - (moving.center[2] + moving.half[2])
     }
 
-    /// Whether gaps between anything of the two parts may be between −`deep` and `front`, the latter no more than the former, where features count
-    /// with a slack. What overlaps along a normal of a part's cone does not lie in front of its plane. Boxes are looked at along the axes of both halves:
-    /// long walls of a turned half are thin along its own.
+    /// Whether gaps between features of the two parts may be between −`deep` and `front`, with `front` ≤
+    /// `deep`, for features that count with a slack. Parts that overlap along a normal of a part's cone do
+    /// not lie in front of its plane. Boxes are tested along the axes of both halves: long walls of a rotated
+    /// half are thin along its own axes.
     #[inline]
     pub(super) fn is_near(
         &self,
@@ -247,7 +250,8 @@ impl Four {
         meets & beside & ahead & behind & under
     }
 
-    /// Whether features of the two parts may touch as they face, with a slack, where normals may lean beyond the horizontal by this angle.
+    /// Whether features of the two parts may touch by their orientation, with a slack, for normals that may
+    /// lean beyond the horizontal by this angle.
     #[inline]
     pub(super) fn may_touch(&self, moving: &Self, slack: usize, overhang: [f32; 2]) -> f32x4 {
         let ([c, s], [d, t]) = (self.cones[slack], moving.cones[slack]);
@@ -262,7 +266,7 @@ impl Four {
     }
 }
 
-/// Where the moving half is.
+/// Pose of the moving half.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     /// Rows of its rotation, and how boxes grow by it: the same without signs.

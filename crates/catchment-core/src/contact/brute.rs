@@ -7,11 +7,12 @@ use crate::pose::CorPose;
 use crate::tolerance;
 use glam::{DVec2, DVec3};
 
-/// How far beyond the border of a facet or edge a contact still counts, relative to D: wide enough to close the cracks that
-/// rounding (1e-16) opens between neighbouring facets, far below any length that matters.
+/// Distance beyond the border of a facet or edge at which a contact still counts, relative to D: wide enough
+/// to close the cracks that rounding (1e-16) opens between neighbouring facets, far below any length that
+/// matters.
 pub(super) const SEAM: f64 = tolerance::ROUNDING;
 
-/// z of the COR at first contact, in D; `None` where the halves pass each other by.
+/// z of the COR at first contact, in D; `None` if the halves pass each other by.
 pub fn height(pair: &Pair, pose: &CorPose) -> Option<f64> {
     let lateral = pose.lateral.extend(0.0);
     let place = |s: &Surface| s.mapped(|p| pose.rotation * p + lateral);
@@ -25,7 +26,8 @@ pub fn height(pair: &Pair, pose: &CorPose) -> Option<f64> {
     highest.is_finite().then_some(highest)
 }
 
-/// How far `moving` must be lifted to just touch `fixed` from above; −∞ if no vertical line meets both.
+/// Height by which `moving` must be lifted to just touch `fixed` from above; −∞ if no vertical line meets
+/// both.
 fn surfaces(fixed: &Surface, moving: &Surface) -> f64 {
     let mut lift = f64::NEG_INFINITY;
     for polygon in polygons(fixed) {
@@ -81,7 +83,7 @@ fn z_over(polygon: &[DVec3], p: DVec2) -> Option<f64> {
     Some(polygon[0].z - normal.truncate().dot(p - polygon[0].truncate()) / normal.z)
 }
 
-/// `z` of the first segment minus `z` of the second where they cross in plan view.
+/// `z` of the first segment minus `z` of the second at their crossing in plan view.
 fn crossing(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<f64> {
     let (u, v) = (b - a, d - c);
     let (ul, vl) = (u.truncate().length(), v.truncate().length());

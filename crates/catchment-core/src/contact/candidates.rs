@@ -28,11 +28,11 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
 pub(super) const ROUNDING: f64 = tolerance::PARALLEL;
-/// The same for heights: above the angle by which facets that count as one plane may differ (1e-6), so that of two halves that lie flush some
-/// feature always counts. What counts too much is above the other half all the same, and no height rises by it.
+/// The same for heights: above the angle by which coplanar facets may differ (1e-6), so that for flush halves
+/// some feature always counts. Superfluous features lie above the other half, and do not raise any height.
 pub(crate) const FLUSH: f64 = 4e-6;
 
-/// What passes.
+/// Criteria of the sieve.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sieve {
     /// Sine of the angle by which a feature may fail to support a normal and still count.
@@ -41,7 +41,7 @@ pub(super) struct Sieve {
     pub(super) lowest: f64,
     /// Chord of the rotations for which the candidates hold.
     pub(super) skin: f64,
-    /// Where in plan view; `None`: everywhere.
+    /// Region in plan view; `None`: everywhere.
     pub(super) window: Option<Window>,
 }
 
@@ -54,14 +54,15 @@ pub(super) struct Counts {
     pub(super) lowest: f64,
 }
 
-/// Where the COR is in plan view, and how close features must come to count.
+/// Position of the COR in plan view, and the distance at which features count as near.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     pub(super) lateral: DVec2,
     pub(super) reach: f64,
 }
 
-/// A feature of a fixed shape and one of a moving shape; indices into the corners, facets or ridges of the shapes.
+/// A feature of a fixed shape and a feature of a moving shape; indices into the corners, facets or ridges of
+/// the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Candidate {
     pub(super) shapes: [u32; 2],
@@ -78,7 +79,7 @@ pub(super) struct Candidates {
     scratch: Scratch,
 }
 
-/// One shape's features seen from the other half's frame, kept to be allocated once.
+/// A shape's features in the frame of the other half, kept to avoid allocations.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
     vertices: Vec<DVec3>,
@@ -248,7 +249,8 @@ pub(super) fn corner_facet(
     })
 }
 
-/// Two edges, if they support their common normal and it faces up enough; `seen` is the direction of the fixed one in the moving frame.
+/// Two edges, if they support their common normal and it points up enough; `seen` is the direction of the
+/// fixed edge in the moving frame.
 pub(super) fn edge_edge(
     candidate: &Candidate,
     fixed: &Shape,
@@ -278,7 +280,8 @@ pub(super) fn edge_edge(
     Some(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset })
 }
 
-/// Whether two edges pass the sieve, its window aside; `seen` is the direction of the fixed one in the moving frame.
+/// Whether two edges pass the sieve, regardless of its window; `seen` is the direction of the fixed edge in
+/// the moving frame.
 pub(super) fn edges_may_touch(
     fixed: &Ridge,
     moving: &Ridge,
@@ -290,7 +293,7 @@ pub(super) fn edges_may_touch(
     edges.may_touch(fixed, seen, sieve.slack, sieve.lowest, sieve.skin)
 }
 
-/// A moving edge at one rotation.
+/// A moving edge at a given rotation.
 struct EdgesAt<'a> {
     /// Its direction in the world.
     w: DVec3,
@@ -298,8 +301,8 @@ struct EdgesAt<'a> {
 }
 
 impl EdgesAt<'_> {
-    /// (u × w)·s for the directions s into the facets of the fixed edge, then of the moving one; `seen` is u in the
-    /// moving frame.
+    /// (u × w)·s for the directions s into the facets of the fixed edge, then of the moving edge; `seen` is u
+    /// in the moving frame.
     fn products(&self, fixed: &Ridge, seen: DVec3) -> ([f64; 2], [f64; 2]) {
         let [left, right] = fixed.normals.map(|n| self.w.dot(n));
         let [port, starboard] = self.moving.normals.map(|n| seen.dot(n));

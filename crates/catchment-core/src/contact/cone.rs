@@ -68,7 +68,8 @@ pub(super) fn of_corner(axis: DVec3, shape: &Shape, corner: &Corner, slack: f64)
     around_spokes(axis, spread, shape.spokes_of(corner), slack).unwrap_or(PI)
 }
 
-/// The angle from the axis of a corner up to which it touches, its facets within `spread` of it; `None` where that is too much to tell.
+/// The angle from the axis up to which a corner touches, with its facets within `spread` of the axis; `None`
+/// if the spread is too large to determine it.
 fn around_spokes(axis: DVec3, spread: f64, spokes: &[DVec3], slack: f64) -> Option<f64> {
     // From here on a normal is against all facets.
     let inside = INSIDE.asin() + FRAC_PI_2 + spread;

@@ -24,7 +24,8 @@ const FLAT_SINE: f64 = tolerance::SINGLE;
 pub(super) struct Crease {
     /// Its ends.
     pub(super) ends: [DVec3; 2],
-    /// The facets on both sides of one of its stretches, counted over all surfaces of the half, and their outward normals.
+    /// The facets on both sides of a segment of it, counted over all surfaces of the half, and their outward
+    /// normals.
     pub(super) facets: [u32; 2],
     pub(super) normals: [DVec3; 2],
     /// The surface, and the ends of that stretch, the lower number first.

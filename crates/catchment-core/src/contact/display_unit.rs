@@ -9,7 +9,7 @@ use crate::pose::{Dof, PoseError};
 
 /// Digits of lengths that are shown: a thousandth of their first.
 const GRAIN: f64 = 1e-3;
-/// Errors below these are not shown: what two decimals of a degree do not show, and a millionth of D.
+/// Errors below these are not shown: below two decimals of a degree, and a millionth of D.
 const NONE: [f64; 2] = [1e-6, 0.005 / 180.0 * std::f64::consts::PI];
 
 /// How much of a unit D is, and the unit's name.
@@ -22,7 +22,7 @@ pub struct DisplayUnit {
 }
 
 impl DisplayUnit {
-    /// Where nobody says a unit.
+    /// For designs without a unit.
     pub(crate) const IN_D: Self = Self { scale: 1.0, unit: "D" };
 
     /// As a design has it.

@@ -25,7 +25,8 @@ pub(super) enum Elements {
     EdgeEdge { fixed: [u32; 2], moving: [u32; 2] },
 }
 
-/// Two features that meet, named: the same two at another pose are asked for by [`Pair::contact`](super::Pair::contact).
+/// A pair of features that meet, by name: [`Pair::contact`](super::Pair::contact) evaluates the same pair at
+/// another pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Meeting {
     /// Index of the fixed and of the moving shape.
@@ -34,8 +35,8 @@ pub struct Meeting {
 }
 
 impl Meeting {
-    /// The contact of the two features, borders aside, with the COR at `c` and the moving half at `rotation`; edges keep
-    /// the sense of `before`, and its normal where they have become parallel.
+    /// The contact of the two features, regardless of their borders, with the COR at `c` and the moving half
+    /// at `rotation`; edges keep the orientation of `before`, and its normal if they have become parallel.
     pub(super) fn at(
         &self,
         before: &Contact,
@@ -73,7 +74,7 @@ impl Meeting {
     }
 }
 
-/// A possible contact at one rotation.
+/// A possible contact at a given rotation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Element {
     pub(super) meeting: Meeting,
@@ -94,8 +95,8 @@ impl Element {
         -(self.normal.truncate().dot(lateral) + self.offset) / self.normal.z
     }
 
-    /// The point of the fixed half where this element touches (or would, across its gap) with the COR at `c` and the
-    /// moving half at `rotation`; `None` when the foot misses one of the features by more than `seam`.
+    /// The point of the fixed half at which this element touches (or would, across its gap) with the COR at
+    /// `c` and the moving half at `rotation`; `None` if the foot misses a feature by more than `seam`.
     pub(super) fn foot(
         &self,
         fixed: &Shape,
@@ -133,7 +134,7 @@ impl Element {
         }
     }
 
-    /// The touching point with the COR at `c`, where the element is known to touch: affine in c; `turned` are the
+    /// The contact point with the COR at `c`, for an element known to touch: affine in c; `turned` are the
     /// moving vertices at the element's rotation.
     pub(super) fn touch(&self, fixed: &Shape, turned: &[DVec3], c: DVec3) -> DVec3 {
         match self.meeting.features {

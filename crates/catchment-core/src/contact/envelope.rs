@@ -13,7 +13,8 @@ use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The pair at one rotation: everything that can carry the moving half from below, for any position of the COR.
+/// The pair at a given rotation: everything that can carry the moving half from below, for any position of
+/// the COR.
 ///
 /// Reusable: [`HeightEnvelope::turn`] replaces the rotation without allocating anew.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub struct HeightEnvelope<'a> {
     candidates: Candidates,
     /// Vertices of the moving shapes at the rotation.
     moving: Vec<Vec<DVec3>>,
-    /// What was found to carry where nothing is listed.
+    /// The carriers found by search, if nothing is listed.
     carriers: Vec<Element>,
 }
 
@@ -58,7 +59,8 @@ impl<'a> HeightEnvelope<'a> {
         }
     }
 
-    /// z of the COR at first contact with the COR at `lateral`, in D; `None` where the halves pass each other.
+    /// z of the COR at first contact with the COR at `lateral`, in D; `None` if the halves pass each other
+    /// by.
     pub fn height(&mut self, lateral: DVec2) -> Option<f64> {
         self.turned.height_below(lateral, f64::INFINITY).0
     }
@@ -84,9 +86,9 @@ impl<'a> HeightEnvelope<'a> {
         });
     }
 
-    /// Heights as by [`HeightEnvelope::heights`], and for every cell the number of what carries the moving half there, for
-    /// [`HeightEnvelope::carried_by`]; [`HeightEnvelope::NOTHING`] where the halves pass each other by. Among equals the first
-    /// counts.
+    /// Heights as by [`Envelope::heights`], and for every cell the number of the element that carries the
+    /// moving half there, for [`Envelope::carried_by`]; [`Envelope::NOTHING`] if the halves pass each other
+    /// by. Among equals the first counts.
     pub fn heights_and_carriers(
         &mut self,
         x: Lattice,
@@ -128,7 +130,7 @@ impl<'a> HeightEnvelope<'a> {
         (Contact { gap: 0.0, normal: element.normal, point }, cor)
     }
 
-    /// Visits every cell in which something carries the half, with the number of what does.
+    /// Visits every cell in which an element carries the half, with its number.
     fn search(&mut self, x: Lattice, y: Lattice, mut visit: impl FnMut(usize, u32, f64)) {
         let Self { turned, carriers, .. } = self;
         carriers.clear();

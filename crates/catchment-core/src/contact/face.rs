@@ -21,10 +21,11 @@ use crate::design::{Alignment, ConnectorSpec, DrawnFrames, OwnSpec};
 use crate::pose::{DofSet, Mount};
 use glam::{DVec2, DVec3};
 
-/// How far from where they first touch halves may be drawn that are drawn docked, in D: more than any play or press fit.
+/// Largest distance from first contact at which halves count as drawn docked, in D: more than any play or
+/// press fit.
 pub(crate) const MOST_APART: f64 = 0.05;
 
-/// What speaks against halves that are drawn docked: that they are not.
+/// The error if halves that should be drawn docked are not.
 pub fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProblem> {
     let ConnectorSpec::Own(OwnSpec { drawn: DrawnFrames::Assembled { .. }, .. }) = spec else { return None };
     let gap = connector.origin.apart?;
@@ -35,7 +36,8 @@ pub fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProb
     }
 }
 
-/// The halves of `own`, moved to their common face centre where the design leaves that open; as they are where they pass each other by.
+/// The halves of `own`, moved to their common face centre if the design does not state it; unchanged if they
+/// pass each other by.
 pub fn found(connector: Connector, own: &OwnSpec) -> Connector {
     if !own.is_face_unknown() {
         return connector;

@@ -21,12 +21,13 @@ use crate::connector::{Half, HalfRole};
 use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
-/// A facet counts where its normal's z is beyond this.
+/// A facet counts if the z-component of its normal is above this.
 const LOOKS: f64 = tolerance::SINGLE;
-/// Parts share enough where this share of the points of the smaller one lies over the other.
+/// The overlap in plan view is sufficient if this share of the points of the smaller part lies over the
+/// other.
 const SHARED: f64 = 0.3;
 
-/// Heights over a lattice; −∞ where there is nothing.
+/// Heights over a lattice; −∞ at points without material.
 pub struct HeightMap {
     /// The first point, in plan view.
     pub first: DVec2,
@@ -115,13 +116,13 @@ impl HeightMap {
         Self { first: self.first, counts: self.counts, z, filled }
     }
 
-    /// Without what is narrower than three points: worn, then grown again.
+    /// Without features narrower than three points: eroded, then dilated.
     #[must_use]
     pub fn without_narrow(&self) -> Self {
         self.worn().around(f32::max)
     }
 
-    /// Whether two say the same.
+    /// Whether two height maps are equal.
     pub fn is_like(&self, other: &Self) -> bool {
         const SAME: f32 = 1e-4;
         self.counts == other.counts
@@ -147,24 +148,27 @@ pub fn broadest(half: &Half) -> f64 {
     (size * size.zxy()).max_element()
 }
 
-/// Something narrow of one half, which alone keeps the other from sinking into a seat.
+/// A narrow feature of a half that alone keeps the other half from sinking into a seat.
 #[derive(Debug, Clone, Copy)]
 pub struct Obstruction {
     /// Whose it is.
     pub(crate) side: HalfRole,
-    /// Where it is touched, in the frame of the fixed half as it was turned, and the same place of the moving half in its own.
+    /// Contact point, in the frame of the fixed half as rotated, and the same point of the moving half in its
+    /// own frame.
     pub at: [DVec3; 2],
     /// How much deeper the half would sink without it.
     pub(crate) deeper: f64,
 }
 
-/// Side of a cell for [`in_the_way`], as a share of the smaller half's middle extent: what is narrower than three of them is narrow.
+/// Side of a cell for [`in_the_way`], as a share of the smaller half's middle extent: features narrower than
+/// three cells are narrow.
 pub const NARROW: f64 = 0.05;
-/// How far off a rise is looked at, in cells.
+/// Distances at which a rise is evaluated, in cells.
 pub(crate) const REACHES: [i32; 2] = [3, 7];
 /// Rises beyond this count as this.
 pub const MOST_RISE: f32 = 0.5;
-/// It would sink deeper by at least this many cells, and climb by so much of what counts when it is off.
+/// Smallest additional depth, in cells, and the smallest climb at an offset, for a feature to count as an
+/// obstacle.
 const DEEPER: f32 = 1.0;
 const CLIMBS: f32 = 0.02;
 
@@ -200,7 +204,7 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
     })
 }
 
-/// The same in words, with both places as they are told.
+/// The result in words, with both points as given text.
 pub fn in_words(found: &Obstruction, at: &[String; 2], told: DisplayUnit) -> String {
     let Obstruction { side, deeper, .. } = found;
     let (whose, [fixed, moving]) = (if *side == HalfRole::Fixed { "fixed" } else { "moving" }, at);
@@ -211,10 +215,10 @@ pub fn in_words(found: &Obstruction, at: &[String; 2], told: DisplayUnit) -> Str
     )
 }
 
-/// Two height maps of one cell size.
+/// Two height maps with equal cells.
 pub struct HeightMaps<'a> {
     fixed: [&'a HeightMap; 2],
-    /// As it is, beside the worn fixed one; worn.
+    /// The moving map unchanged, for use with the eroded fixed map; and eroded.
     moving: [Vec<([i32; 2], f32)>; 2],
     fewest: usize,
 }
@@ -227,8 +231,8 @@ pub fn with<T>(fixed: &HeightMap, moving: &HeightMap, with: impl FnOnce(&HeightM
 }
 
 impl HeightMaps<'_> {
-    /// The height of first contact with the moving lattice moved by whole cells, and how many points both have; `None` where they
-    /// share too few.
+    /// The height of first contact with the moving lattice shifted by whole cells, and the number of common
+    /// points; `None` if they are too few.
     pub fn height(&self, [dx, dy]: [i32; 2]) -> Option<(f32, usize)> {
         let (mut highest, mut most) = (f32::NEG_INFINITY, 0);
         for (fixed, points) in self.fixed.iter().zip(&self.moving) {
@@ -252,7 +256,7 @@ impl HeightMaps<'_> {
     }
 }
 
-/// How much heights rise around one of them, eight ways, near and farther off: on average, and at least.
+/// Rise of the heights around a given height, in eight directions, near and farther off: mean and minimum.
 pub fn climb([i, j]: [i32; 2], height: f32, at: impl Fn([i32; 2]) -> Option<f32>) -> (f32, f32) {
     let (mut sum, mut worst, mut ways) = (0.0f32, f32::INFINITY, 0.0f32);
     for reach in REACHES {

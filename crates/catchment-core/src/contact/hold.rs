@@ -16,7 +16,7 @@ use super::shape::Shape;
 use super::{Contact, Pair};
 use glam::{DMat3, DVec3};
 
-/// How far a contact is from ending; negative beyond.
+/// Distance of a contact from its end; negative beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// Distance of the foot from the border of the features, in D.
@@ -26,8 +26,8 @@ pub(crate) struct Hold {
 }
 
 impl Pair {
-    /// How firmly the two features of `meeting` hold `contact`, which is theirs with the COR at `position` and the moving
-    /// half at `rotation`.
+    /// The hold of the two features of `meeting` on `contact`, their contact with the COR at `position` and
+    /// the moving half at `rotation`.
     pub(crate) fn hold(
         &self,
         contact: &Contact,

@@ -14,8 +14,8 @@ use crate::pose::{CorPose, PoseError};
 use crate::tolerance::TOUCHING;
 
 impl Pair {
-    /// Whether something that touches at a pose error, with the moving half lowered onto the fixed one, touches what is not its
-    /// partner.
+    /// Whether a contact at a pose error, with the moving half lowered onto the fixed half, is between
+    /// surfaces that are not partners.
     pub fn crosses(&self, error: &PoseError) -> bool {
         let Alignment { center_of_rotation, free, rotation_length, .. } = self.alignment;
         let pose = CorPose::from_error(error, center_of_rotation, free);

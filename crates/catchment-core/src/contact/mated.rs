@@ -26,36 +26,37 @@ use crate::tolerance;
 use glam::DVec2;
 use std::fmt;
 
-/// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
+/// Largest distance of the aligned halves from contact, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
 pub const CONTACT_TOLERANCE: f64 = tolerance::TOUCHING;
 /// Length of a probe in the ρ-metric, in D: small beside any facet, so that only the facets that meet at the
 /// mated pose are seen.
 const PROBE: f64 = 1e-3;
-/// What progress is told of, and the share of it that the search for something deeper takes.
+/// Name of the progress stage, and the share of it for the search for a deeper pose.
 const STAGE: &str = "mated pose";
 const DEEPEST: f64 = 0.2;
 /// An offset to write, such as this much of D.
 const SUCH_AS: f64 = 0.01;
-/// Descent per length that counts: above the curvature of a rotation over one probe (some 1e-3).
+/// Slope of a descent that counts: above the curvature of a rotation over a probe (some 1e-3).
 const SLOPE: f64 = 1e-2;
 
-/// Why the aligned pose is no mated pose. Shown with lengths in D; reports of designs tell them in the design's own unit.
+/// Reason why the aligned pose is not a valid mated pose. Shown with lengths in D; reports of designs use the
+/// design's own unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MatedProblem {
     /// The halves overlap in the aligned pose.
     Collision {
-        /// How far they would have to be drawn apart, in D.
+        /// Distance by which they would have to be separated, in D.
         overlap: f64,
     },
     /// The halves do not touch in the aligned pose.
     Gap {
-        /// How far they are apart, in D.
+        /// Distance between them, in D.
         gap: f64,
     },
     /// Halves that are drawn docked do not touch there.
     DrawnApart {
-        /// How far they are apart, in D.
+        /// Distance between them, in D.
         gap: f64,
     },
     /// Halves that are drawn docked are stopped before.
@@ -71,7 +72,7 @@ pub enum MatedProblem {
     NotMinimum {
         /// The error that lets them sink deepest among those tried.
         error: PoseError,
-        /// How much deeper, in D; infinite where they pass each other by.
+        /// Additional depth, in D; infinite if they pass each other by.
         sinks: f64,
     },
     /// No rest is near.
@@ -80,7 +81,7 @@ pub enum MatedProblem {
     Free {
         /// Which.
         dof: Dof,
-        /// How far off it may rest at least, D or radians.
+        /// Lower bound on its play, D or radians.
         play: f64,
     },
     /// A half is round, and its yaw counts.
@@ -108,7 +109,7 @@ impl fmt::Display for MatedProblem {
 }
 
 impl MatedProblem {
-    /// What is wrong, as a sentence.
+    /// The problem as a sentence.
     pub fn told(&self, told: DisplayUnit) -> String {
         match self {
             Self::Collision { overlap } => format!(
@@ -169,7 +170,7 @@ impl MatedProblem {
         }
     }
 
-    /// What helps.
+    /// Advice.
     pub(crate) fn help(&self, told: DisplayUnit) -> Option<String> {
         match self {
             Self::Free { dof, .. } => {
@@ -214,25 +215,25 @@ fn direction(way: DVec2) -> String {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fall {
-    /// The error that it was let go with; none where it falls by itself.
+    /// Pose error at the release; `None` if it falls by itself.
     pub from: PoseError,
-    /// Where it comes to rest.
+    /// Pose error of its rest.
     pub rest: PoseError,
-    /// How much deeper that is than the aligned pose, in D; infinite where it runs off.
+    /// Its depth below the aligned pose, in D; infinite if it runs off.
     pub sinks: f64,
 }
 
-/// What becomes of halves that are let go a little off the mated pose.
+/// Motions of halves that are released slightly off the mated pose.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct About {
     /// The first that falls out of the seat.
     pub(crate) fall: Option<Fall>,
-    /// How near the mated pose all come to it, in the ρ-metric; 0 where that is not known.
+    /// Largest distance from the mated pose at which they end, in the ρ-metric; 0 if it is not known.
     pub(crate) home: f64,
 }
 
 impl Fall {
-    /// What is wrong, as a sentence.
+    /// The problem as a sentence.
     pub fn told(&self, told: DisplayUnit) -> String {
         let let_go = match self.from {
             from if from == PoseError::default() => "a half let go without any error".to_owned(),
@@ -247,7 +248,7 @@ impl Fall {
     }
 }
 
-/// Everything that keeps the aligned pose of a pair from being a mated pose; empty when it is one.
+/// All reasons why the aligned pose of a pair is not a valid mated pose; empty if it is valid.
 pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
     problems_on(pair, &Exec::new())
 }
@@ -281,7 +282,7 @@ pub fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
     problems
 }
 
-/// What is wrong with the play of one error.
+/// The problem with the play of an error.
 fn loose(pair: &Pair, found: &Play) -> Option<MatedProblem> {
     let (dof, play) = (found.axis, found.most());
     let docked = &pair.alignment.docked;
@@ -294,7 +295,8 @@ fn loose(pair: &Pair, found: &Play) -> Option<MatedProblem> {
     })
 }
 
-/// A half that is round where it can meet the other, if the yaw counts although nobody said how much.
+/// A half that is round in the region in which it can meet the other, if yaw counts without a docking
+/// tolerance in the design.
 pub fn round_half(pair: &Pair) -> Option<&'static str> {
     let Alignment { free, dont_care, docked, .. } = &pair.alignment;
     if !free.contains(Dof::Yaw) || dont_care.contains(Dof::Yaw) || docked.limit(Dof::Yaw).is_some() {
@@ -313,7 +315,7 @@ pub(crate) fn sinking(pair: &Pair, among: DofSet) -> Option<MatedProblem> {
     deepest(pair, pair.mated_height(), among, &Exec::new())
 }
 
-/// The probe that sinks deepest, if one sinks more than rounding and curvature explain.
+/// The probe that sinks deepest, if it sinks more than rounding and curvature explain.
 fn deepest(pair: &Pair, aligned: f64, among: DofSet, exec: &Exec) -> Option<MatedProblem> {
     let matters = |dof: &Dof| among.contains(*dof) && !pair.alignment.dont_care.contains(*dof);
     let free: Vec<Dof> = pair.alignment.free.iter().filter(matters).collect();
@@ -432,7 +434,7 @@ mod tests {
         assert!(matches!(found[..], [MatedProblem::NotMinimum { .. }]), "{found:?}");
     }
 
-    /// Two blocks that end in the plane y = 0, one on either side of it, and the same overlapping.
+    /// Two blocks that end in the plane y = 0, on opposite sides of it, and the same blocks overlapping.
     #[test]
     fn halves_that_share_a_plane_alone_are_not_mated() {
         let block = |y: [f64; 2]| {

@@ -17,7 +17,7 @@ use crate::connector::Half;
 use crate::pose::Dof;
 use glam::DVec3;
 
-/// Corners closer than this are one, in D: rounding of a computed vertex, far below any feature.
+/// Corners closer than this are equal, in D: rounding of a computed vertex, far below any feature.
 const GRAIN: f64 = 1e-9;
 
 /// One of the three reflections.

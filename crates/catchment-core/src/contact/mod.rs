@@ -73,11 +73,13 @@ use shape::Shape;
 use std::sync::OnceLock;
 use turned::Turned;
 
-/// From this product of their numbers of facets on, halves have trees, and heights and motions ask them: pins in holes that fit tightly move 1.6 times as
-/// fast with trees at 150 × 150 facets, 2.5 times at 300 × 300, and 0.8 times at 20 × 20.
+/// Product of the numbers of facets from which on halves have trees, for heights and motions: for pins in
+/// tight holes motions are 1.6 times as fast with trees at 150 × 150 facets, 2.5 times at 300 × 300, and 0.8
+/// times at 20 × 20.
 const MANY: usize = 300 * 300;
 const MANY_WHERE_TIGHT: usize = 100 * 100;
-/// From this one on grids ask the trees, too: below it a list of all that can carry, which serves all cells of a rotation, is as fast.
+/// From this product on grids use the trees, too: below it a list of all possible carriers, which serves all
+/// cells of a rotation, is as fast.
 const MOST_LISTED: usize = 3000 * 3000;
 
 /// Facets of a half.
@@ -109,9 +111,9 @@ pub struct Pair {
     tight: bool,
     mated_height: f64,
     homing: OnceLock<bool>,
-    /// How far the seat reaches by yaw alone, either way, in radians.
+    /// Range of the seat in yaw alone, in both directions, in radians.
     spins: OnceLock<[f64; 2]>,
-    /// What becomes of a half that is a little off.
+    /// Motions of a half that is slightly off.
     about_mated: OnceLock<About>,
     /// Whether its seat has no rim somewhere.
     leaks: OnceLock<bool>,
@@ -155,7 +157,7 @@ impl Pair {
         pair
     }
 
-    /// The same halves where other errors are free.
+    /// The same halves with other free errors.
     #[must_use]
     pub(crate) fn with_free(&self, free: DofSet) -> Self {
         let mut pair = self.clone();
@@ -176,69 +178,72 @@ impl Pair {
         pair
     }
 
-    /// Whether the halves have so many facets that what may touch is searched anew for every cell of a grid, not listed.
+    /// Whether the halves have so many facets that possible contacts are searched anew for every cell of a
+    /// grid, not listed.
     pub(crate) fn is_large(&self) -> bool {
         self.searched().is_some()
     }
 
-    /// Whether motions ask trees for what may touch.
+    /// Whether motions use trees to find possible contacts.
     pub(crate) const fn asks_trees(&self) -> bool {
         self.trees.is_some()
     }
 
-    /// The trees, where there is too much to list for a grid.
+    /// The trees, if a list for a grid would be too long.
     fn searched(&self) -> Option<&Trees> {
         self.trees.as_ref().filter(|_| !self.lists)
     }
 
-    /// The same halves without trees: motions list what may touch.
+    /// The same halves without trees: motions use lists of possible contacts.
     #[cfg(test)]
     pub(crate) fn without_trees(&self) -> Self {
         Self { trees: None, lists: true, ..self.clone() }
     }
 
-    /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
+    /// Whether all motion near the mated pose leads to it; `find` is called once to determine it.
     pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
         *self.homing.get_or_init(find)
     }
 
-    /// How far the seat reaches by yaw alone, either way, in radians: as `find` says, which is asked once.
+    /// Range of the seat in yaw alone, in both directions, in radians; `find` is called once to determine it.
     pub(crate) fn spins(&self, find: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
         *self.spins.get_or_init(find)
     }
 
-    /// What becomes of a half that is let go a little off the mated pose, as `find` says, which is asked once.
+    /// Motions of a half that is released slightly off the mated pose; `find` is called once to determine
+    /// them.
     pub(crate) fn about_mated(&self, find: impl FnOnce() -> About) -> About {
         *self.about_mated.get_or_init(find)
     }
 
-    /// Seconds that a motion takes, as `find` says, which is asked once.
+    /// Seconds that a motion takes; `find` is called once to determine them.
     pub(crate) fn motion_seconds(&self, find: impl FnOnce() -> f64) -> f64 {
         *self.motion_seconds.get_or_init(find)
     }
 
-    /// Whether the seat has no rim somewhere, as `find` says, which is asked once.
+    /// Whether the rim of the seat has a gap; `find` is called once to determine it.
     pub(crate) fn leaks(&self, find: impl FnOnce() -> bool) -> bool {
         *self.leaks.get_or_init(find)
     }
 
-    /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.
+    /// h₀, the z of the COR at first contact at zero error, in D; −∞ if the halves pass each other by.
     pub const fn mated_height(&self) -> f64 {
         self.mated_height
     }
 
-    /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.
+    /// The reflections that map the pair onto itself: poses that are images of each other have the same
+    /// outcome.
     pub fn mirrors(&self) -> &[Mirror] {
         &self.mirrors
     }
 
-    /// Whether steep walls of the two halves face each other closely when mated, as a peg's and its hole's do: what is
-    /// inside can only move as its contacts let it, one after another.
+    /// Whether steep walls of the two halves face each other closely when mated, as those of a peg and its
+    /// hole: the inner half can only move as its contacts permit, one after another.
     pub fn is_tight(&self) -> bool {
         self.tight
     }
 
-    /// z of the COR at first contact, in D; `None` where the halves pass each other by.
+    /// z of the COR at first contact, in D; `None` if the halves pass each other by.
     pub fn height(&self, pose: &CorPose) -> Option<f64> {
         Turned::height_at(self, pose)
     }
@@ -249,7 +254,7 @@ impl Pair {
         meeting.at(before, &self.fixed_shapes[fixed], &self.moving_shapes[moving], rotation, position)
     }
 
-    /// The pair near a pose that will move on by small steps, asked with up to this `slack` and `reach`: see
+    /// The pair near a pose that will move by small steps, with queries up to this `slack` and `reach`: see
     /// [`Nearby::turn`].
     pub fn nearby(&self, slack: f64, reach: f64) -> Nearby<'_> {
         Nearby::new(self, slack, reach)
@@ -260,7 +265,7 @@ impl Pair {
         Nearby::new(self, reach / self.alignment.rotation_length, reach)
     }
 
-    /// The pair at one rotation: heights for any lateral position.
+    /// The pair at a given rotation: heights for any lateral position.
     pub fn at_rotation(&self, rotation: DMat3) -> HeightEnvelope<'_> {
         HeightEnvelope::new(self, &rotation)
     }
@@ -284,7 +289,7 @@ impl Lattice {
     }
 }
 
-/// A point where the halves touch, or nearly do.
+/// A point at which the halves touch, or nearly touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Distance along the normal, in D; 0 when touching, negative when the halves overlap by rounding.
@@ -296,8 +301,8 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Gradient of the height of first contact where this is the only contact: `[∂h/∂x, ∂h/∂y]` (D/D) of the COR's
-    /// lateral position and `∂h/∂ω` (D/rad) of a turn about the COR in world axes.
+    /// Gradient of the height of first contact if this is the only contact: `[∂h/∂x, ∂h/∂y]` (D/D) of the
+    /// COR's lateral position and `∂h/∂ω` (D/rad) of a rotation about the COR in world axes.
     ///
     /// `∂h/∂x = −n_x/n_z`, `∂h/∂y = −n_y/n_z`, `∂h/∂ω = −(r × n)/n_z` with r from the COR to the contact.
     pub fn gradient(&self, cor: DVec3) -> ([f64; 2], DVec3) {

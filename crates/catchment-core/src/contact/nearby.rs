@@ -20,35 +20,38 @@ use super::{Contact, Pair};
 use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
-/// Facets that lean further back belong to the undersides of the halves, which only motions that hook under them look for ([`Nearby::look_under`]).
+/// Contacts that pull down are searched up to this slope (sine, 30°): a tilted plug hooks under the lip of a
+/// slot. Facets that lean further back belong to the undersides of the halves, which only motions that hook
+/// under them search ([`Nearby::look_under`]).
 const OVERHANG: f64 = 0.5;
 /// The same with undersides: all normals, and their rounding.
 const ANY: f64 = 2.0;
 
-/// What is announced to a motion of halves of many facets, in D, and as a share of what its step may meet.
+/// Distance at which possible contacts are reported to a motion of halves with many facets, in D, and as a
+/// share of the reach of its step.
 pub(super) const MET: f64 = 1e-4;
 const SHARE_MET: f64 = 0.01;
 
 /// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
 const SKIN: f64 = 1.0;
 
-/// The pair near one pose: what can touch, also walls and features that a small turn may bring into contact.
+/// The pair near a pose: the features that can touch, including walls and features that a small rotation may
+/// bring into contact.
 #[derive(Debug, Clone)]
 pub struct Nearby<'a> {
     turned: Turned<'a>,
     candidates: Candidates,
-    /// Slack and reach that are asked for as a rule: collected at least.
+    /// Usual slack and reach of queries: the minimum for a collection.
     slack: f64,
     reach: f64,
     /// Largest distance of a moving vertex from the COR.
     radius: f64,
-    /// How far down normals of contacts may point: minus their z-component.
+    /// Largest downward inclination of contact normals: minus their z-component.
     overhang: f64,
     collected: Option<Collected>,
 }
 
-/// Where the candidates were collected, and for which questions.
+/// Pose and queries for which the candidates were collected.
 #[derive(Debug, Clone, Copy)]
 struct Collected {
     rotation: DMat3,
@@ -66,22 +69,22 @@ impl<'a> Nearby<'a> {
         Self { turned, candidates, slack, reach, radius, overhang: OVERHANG, collected: None }
     }
 
-    /// Forgets where it was: what follows does not depend on what was before.
+    /// Discards the current pose: later results do not depend on earlier ones.
     pub fn leave(&mut self) {
         (self.overhang, self.collected) = (OVERHANG, None);
     }
 
-    /// Looks for contacts with undersides as well, until [`Nearby::leave`]; says whether it did not before. What is told at a pose is told anew by
-    /// the next [`Nearby::turn`].
+    /// Also searches contacts with undersides, until [`Nearby::leave`]; returns whether this is new. The
+    /// results at a pose are renewed by the next [`Nearby::turn`].
     pub fn look_under(&mut self) -> bool {
         let is_new = self.overhang < ANY;
         (self.overhang, self.collected) = (ANY, self.collected.filter(|_| !is_new));
         is_new
     }
 
-    /// Moves on to a rotation, for questions about the COR at `lateral` alone: keeps what is within `reach` of
-    /// touching there in plan view, also walls and features that support a normal only within `slack` radians: what a
-    /// motion that turns by up to `slack` may meet.
+    /// Moves to a rotation, for queries with the COR at `lateral`: keeps the features within `reach` of
+    /// contact in plan view, including walls and features that support a normal only within `slack` radians:
+    /// the possible contacts of a motion that rotates by up to `slack`.
     pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
         let slack = slack.max(ROUNDING);
         let counts = Counts { slack, lowest: -self.overhang };
@@ -105,13 +108,14 @@ impl<'a> Nearby<'a> {
         self.turned.turn(rotation, &self.candidates, counts);
     }
 
-    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
-    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    /// Height at which a half lowered from `ceiling`, not from far above, is stopped; and whether something
+    /// above the ceiling would have stopped it earlier. This is the case for a half that has slid under an
+    /// overhang, or beside a wall.
     pub fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         self.turned.height_below(lateral, ceiling)
     }
 
-    /// The same, sooner where it is above what is `expected`.
+    /// The same, faster if it is above `expected`.
     pub(crate) fn height_about(
         &mut self,
         lateral: DVec2,
@@ -121,13 +125,15 @@ impl<'a> Nearby<'a> {
         self.turned.height_about(lateral, ceiling, expected)
     }
 
-    /// The height of first contact at a pose error, in D; `None` where the halves pass each other by. Cheap where the last one was near.
+    /// The height of first contact at a pose error, in D; `None` if the halves pass each other by. Fast if
+    /// the last pose was near.
     pub fn height(&mut self, error: &PoseError) -> Option<f64> {
         let lateral = self.go_to(error);
         self.height_below(lateral, f64::INFINITY).0
     }
 
-    /// Whether the height of first contact at a pose error is above `level`, in D: cheaper than the height where it is.
+    /// Whether the height of first contact at a pose error is above `level`, in D: faster than the height if
+    /// it is.
     pub fn is_above(&mut self, error: &PoseError, level: f64) -> bool {
         let lateral = self.go_to(error);
         self.turned.is_stopped_above(lateral, level)
@@ -138,7 +144,7 @@ impl<'a> Nearby<'a> {
         self.is_above(error, f64::NEG_INFINITY)
     }
 
-    /// Turns to a pose error, for heights; returns where the COR is.
+    /// Moves to a pose error, for heights; returns the position of the COR.
     fn go_to(&mut self, error: &PoseError) -> DVec2 {
         let alignment = &self.turned.pair.alignment;
         let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
@@ -146,8 +152,9 @@ impl<'a> Nearby<'a> {
         pose.lateral
     }
 
-    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
-    /// step's reach holds thousands, what is nearer than 10⁻⁴ D, or a hundredth of it, counts alone: the rest is met on the way.
+    /// All contacts, and all features closer than `reach` along their normals, with the COR at `position`.
+    /// For halves with many facets, of which the reach of a step contains thousands, only those closer than
+    /// 10⁻⁴ D, or a hundredth of the reach, count: the others are detected during the step.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
         let reach =
             if self.turned.pair.trees.is_some() { reach.min((SHARE_MET * reach).max(MET)) } else { reach };
@@ -155,7 +162,7 @@ impl<'a> Nearby<'a> {
         self.turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
     }
 
-    /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
+    /// As [`Nearby::contacts`], including contacts beyond the border of their feature by up to `seam`, in D.
     pub fn contacts_within(
         &mut self,
         position: DVec3,
@@ -167,7 +174,7 @@ impl<'a> Nearby<'a> {
         self.turned.contacts(position, Gaps::within(reach), seam, |contact| out.push(contact));
     }
 
-    /// As [`Nearby::contacts_within`], only what overlaps by more than `touching`, and by up to `reach`.
+    /// As [`Nearby::contacts_within`], only overlaps of more than `touching`, and up to `reach`.
     pub(crate) fn overlaps_within(
         &mut self,
         position: DVec3,
@@ -191,7 +198,7 @@ impl<'a> Nearby<'a> {
         self.turned.overlaps(rotation, position)
     }
 
-    /// What all searches of trees took until now, about: counted, in nanoseconds.
+    /// Estimated cost of all tree searches so far: counted, in nanoseconds.
     pub(crate) const fn took(&self) -> u64 {
         self.turned.took()
     }

@@ -23,7 +23,7 @@ use super::plan::Plan;
 use super::shape::{Ridge, Shape};
 use glam::{DMat3, DVec3};
 
-/// What counts as overlapping rather than touching, in D.
+/// Depth from which on halves overlap rather than touch, in D.
 pub(super) const MARGIN: f64 = 3e-7;
 /// Parts of an edge shorter than this hold no witness, in D.
 const SHORT: f64 = 4.0 * MARGIN;
@@ -32,7 +32,7 @@ const SHARP: f64 = 0.02;
 /// Facets with a smaller z-component of the normal are upright: no vertical line crosses them.
 const UPRIGHT: f64 = 1e-12;
 
-/// From the frame of one half to that of the other.
+/// Transforms between the frames of the two halves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frames {
     rotation: DMat3,
@@ -45,19 +45,19 @@ impl Frames {
         Self { rotation: *rotation, back: rotation.transpose(), position }
     }
 
-    /// A ridge of the moving half as the fixed one sees it.
+    /// A ridge of the moving half in the frame of the fixed half.
     fn placed(&self, moving: &Shape, ridge: &Ridge) -> Segment {
         let ends = ridge.ends.map(|k| self.rotation * moving.at(k) + self.position);
         Segment { ends, normals: ridge.normals.map(|n| self.rotation * n) }
     }
 
-    /// A ridge of the fixed half as the moving one sees it.
+    /// A ridge of the fixed half in the frame of the moving half.
     fn seen(&self, fixed: &Shape, ridge: &Ridge) -> Segment {
         let ends = ridge.ends.map(|k| self.back * (fixed.at(k) - self.position));
         Segment { ends, normals: ridge.normals.map(|n| self.back * n) }
     }
 
-    /// Whether a ridge of the moving shape and a facet of the fixed one show that they overlap.
+    /// Whether a ridge of the moving shape and a facet of the fixed shape prove an overlap.
     pub(super) fn moving_enters(&self, moving: &Shape, ridge: u32, fixed: &Shape, facet: u32) -> bool {
         let segment = self.placed(moving, &moving.ridges[ridge as usize]);
         let in_moving = |p: DVec3| moving.encloses(self.back * (p - self.position));
@@ -68,7 +68,7 @@ impl Frames {
         }
     }
 
-    /// Whether a ridge of the fixed shape and a facet of the moving one show that they overlap.
+    /// Whether a ridge of the fixed shape and a facet of the moving shape prove an overlap.
     pub(super) fn fixed_enters(&self, fixed: &Shape, ridge: u32, moving: &Shape, facet: u32) -> bool {
         let segment = self.seen(fixed, &fixed.ridges[ridge as usize]);
         let in_fixed = |p: DVec3| fixed.encloses(self.rotation * p + self.position);
@@ -116,7 +116,8 @@ enum Crossing {
     None,
     /// Through its middle.
     Through,
-    /// On its border, in its plane or with an end, and some of A may lie inside B there; where the segment is cut, as a share of its length.
+    /// On its border, in its plane or with an end, and A may lie partly inside B there; with the position of
+    /// the cut, as a share of the segment's length.
     Border(Option<f64>),
 }
 
@@ -125,7 +126,8 @@ impl Segment {
         Plan::around(self.ends.iter().map(|p| p.truncate())).widened(MARGIN)
     }
 
-    /// Whether A overlaps B along this edge of A; `in_a` says which points of the frame of B lie inside A.
+    /// Whether A overlaps B along this edge of A; `in_a` is the test whether a point, in the frame of B, lies
+    /// inside A.
     fn enters(&self, b: &Shape, in_a: impl Fn(DVec3) -> bool) -> bool {
         let plan = self.plan();
         if !b.plans.facets.bounds().meets(&plan) {
@@ -146,7 +148,7 @@ impl Segment {
         through || may_enter && self.has_witness(cuts, |p| b.encloses(p) && in_a(p))
     }
 
-    /// How this edge meets one facet of B.
+    /// Meeting of this edge with a facet of B.
     fn meets(&self, b: &Shape, facet: u32) -> Crossing {
         let normal = b.facets[facet as usize].normal;
         let level = b.levels[facet as usize];
@@ -214,9 +216,11 @@ impl Segment {
 }
 
 impl Shape {
-    /// Whether a point is inside the solid: its surface winds once about whoever looks up from there.
+    /// Whether a point is inside the solid: its surface winds once around the vertical line upwards from the
+    /// point.
     ///
-    /// A vertical line that passes an edge is counted by one of its two facets: which, both decide alike, by the same numbers.
+    /// A vertical line that passes an edge is counted by exactly one of its two facets, because both use the
+    /// same numbers for the decision.
     fn encloses(&self, point: DVec3) -> bool {
         let mut winds = 0;
         self.plans.facets.visit(&Plan::around([point.truncate()].into_iter()), |k| {

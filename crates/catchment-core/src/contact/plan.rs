@@ -43,7 +43,7 @@ impl Plan {
     }
 }
 
-/// The features of one kind of a shape, by where they are in plan view.
+/// The features of one kind of a shape, by their positions in plan view.
 #[derive(Debug, Clone)]
 pub(super) struct PlanTree {
     /// Boxes and numbers of the features, ordered so that every node holds a range of them.
@@ -94,7 +94,7 @@ impl PlanTree {
         });
     }
 
-    /// Whether `is` says so of any feature whose box has a point in common with `window`.
+    /// Whether `is` is true for any feature whose box intersects `window`.
     pub(super) fn any(&self, window: &Plan, mut is: impl FnMut(u32) -> bool) -> bool {
         self.descend(0, &self.features, window, &mut is)
     }

@@ -43,10 +43,10 @@ const FIRST: f64 = 1e-4;
 const FOUND: f64 = 1e-5;
 /// Looks grow with the length by this share.
 const GROWTH: f64 = 0.125;
-/// A play beyond this many times what is allowed is not measured any further.
+/// A play beyond this many times the allowed value is not measured any further.
 const BEYOND: f64 = 2.0;
 
-/// Directions that are looked along one after another, from a common list of what may touch.
+/// Number of directions that are searched in sequence with a common list of possible contacts.
 const TOGETHER: usize = 16;
 
 /// The play of every free error that matters, in their order.
@@ -54,7 +54,8 @@ pub fn play(pair: &Pair) -> Vec<Play> {
     play_on(pair, DofSet::ALL, &Exec::new())
 }
 
-/// The same, of what is `asked`, on these threads and with its progress: of other errors it may be more.
+/// The same, only for the errors in `asked`, on these threads and with its progress: for other errors the
+/// play may be larger.
 pub fn play_on(pair: &Pair, asked: DofSet, exec: &Exec) -> Vec<Play> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
@@ -73,10 +74,10 @@ pub fn play_on(pair: &Pair, asked: DofSet, exec: &Exec) -> Vec<Play> {
     play
 }
 
-/// What progress is told of.
+/// Name of the progress stage.
 const STAGE: &str = "play";
 
-/// Looks along directions, and makes the play as much as they say; which errors nothing stopped.
+/// Searches along directions, and increases the play accordingly; returns the errors that nothing stopped.
 fn along(pair: &Pair, free: &[Dof], ways: &[Vec<f64>], play: &mut [Play], exec: &Exec) -> DofSet {
     let look = |signs: &Vec<f64>, nearby: &mut Nearby<'_>| {
         let count = signs.iter().filter(|sign| **sign != 0.0).count() as f64;
@@ -121,7 +122,7 @@ pub(super) fn unit(pair: &Pair, dof: Dof) -> f64 {
     if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 }
 }
 
-/// How far the seat stays at or below `level` along a direction, up to `farthest`.
+/// Length up to which the seat stays at or below `level` along a direction, at most `farthest`.
 fn reach(nearby: &mut Nearby, level: f64, way: &[f64; 5], farthest: f64) -> f64 {
     let mut is_level = |length: f64| {
         let error = PoseError::from_array(way.map(|part| length * part));

@@ -26,16 +26,18 @@ use super::{Nearby, Pair};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
 
-/// Poses this near the mated one, in the ρ-metric, are connected with it: finer structure than that is not told apart.
+/// Poses within this distance of the mated pose, in the ρ-metric, are connected with it: finer structure is
+/// not resolved.
 pub(crate) const CORE: f64 = 5e-3;
-/// How densely a path is looked at, in the ρ-metric.
+/// Spacing of the samples of a path, in the ρ-metric.
 pub(super) const PATH_STEP: f64 = 5e-3;
-/// Looks along one path at most.
+/// Largest number of samples of a path.
 const MOST_LOOKS: f64 = 2000.0;
-/// What heights along a path may exceed the seat by, in D: curvature of a turn over rounded drawings.
+/// Amount by which heights along a path may exceed the seat, in D: curvature of a rotation over rounded
+/// drawings.
 const ROUNDING: f64 = 1e-6;
 
-/// Answers for one pair whether a half is docked; keeps its buffers.
+/// Tests for a pair whether a half is docked; keeps its buffers.
 #[derive(Debug, Clone)]
 pub struct Seat<'a> {
     pair: &'a Pair,
@@ -58,8 +60,9 @@ impl<'a> Seat<'a> {
         height <= self.level() && self.is_connected(error)
     }
 
-    /// The least height of the COR at which a half at rest is in the seat, in D: as far below the mated height as the greatest is above, and no
-    /// less than drawings are rounded. What rests deeper has left the mated pose for another.
+    /// The smallest height of the COR at which a half at rest is in the seat, in D: as far below the mated
+    /// height as the greatest is above, and at least the rounding of drawings. A half that rests deeper has
+    /// left the mated pose for another.
     pub fn floor(&self) -> f64 {
         self.pair.mated_height() - self.pair.alignment.docked.depth.max(CONTACT_TOLERANCE)
     }
@@ -84,12 +87,14 @@ impl<'a> Seat<'a> {
         alignment.free.iter().any(binds)
     }
 
-    /// The error against the nearest mated pose, which differs from the error itself where the pair is symmetric.
+    /// The pose error relative to the nearest mated pose, which differs from the error itself if the pair is
+    /// symmetric.
     pub fn off(&self, error: &PoseError) -> PoseError {
         PoseError { yaw: error.yaw - self.pair.alignment.nearest_yaw(error.yaw), ..*error }
     }
 
-    /// Whether the seat reaches over a rim to where a half would lie below its floor, or touch nothing: so a half that is deep enough may yet leave.
+    /// Whether the seat extends over a rim to poses below its floor, or without contact: a half that is deep
+    /// enough may still leave.
     pub fn leaks(&mut self) -> bool {
         let pair = self.pair;
         pair.leaks(|| self.ways_out().any(|way| self.leaks_along(way)))
@@ -116,7 +121,7 @@ impl<'a> Seat<'a> {
         groups.into_iter().flat_map(move |group| [1.0, -1.0].map(|sign| way(&group, sign)))
     }
 
-    /// Whether the seat leaks this way, as far as errors are looked at.
+    /// Whether the seat leaks in this direction, within the range of the errors.
     fn leaks_along(&mut self, way: PoseError) -> bool {
         let (level, floor) = (self.level() + ROUNDING, self.floor());
         let way = way.to_array();

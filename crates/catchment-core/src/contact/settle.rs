@@ -24,10 +24,11 @@ const FIRST: f64 = 1e-2;
 const LAST: f64 = 1e-7;
 /// Farthest place that counts as the same seat, in the ρ-metric.
 const FARTHEST: f64 = 0.25;
-/// Sinking by less than this share of a step is none: the slope that mated halves may have at most is ten times as much.
+/// A descent by less than this share of a step counts as zero: the largest slope of mated halves is ten times
+/// as much.
 const SLOPE: f64 = 1e-3;
 
-/// The error at which aligned halves come to rest that are let go; `None` where they run off.
+/// Pose error of the rest that aligned halves reach when released; `None` if they run off.
 pub fn rest(pair: &Pair) -> Option<PoseError> {
     let Alignment { free, dont_care, .. } = &pair.alignment;
     let free: Vec<Dof> = free.iter().filter(|dof| !dont_care.contains(*dof)).collect();
@@ -82,7 +83,7 @@ fn going(from: [f64; 5], way: &[f64; 5], step: f64) -> [f64; 5] {
     std::array::from_fn(|k| from[k] + step * way[k])
 }
 
-/// The connector whose mated pose is where the given one comes to rest; `None` where it runs off.
+/// The connector whose mated pose is the rest of the given connector; `None` if it runs off.
 pub fn settled(connector: Connector, alignment: &Alignment) -> Option<Connector> {
     let pair = Pair::new(&connector, alignment);
     let error = rest(&pair)?;
@@ -119,7 +120,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
-        /// A pyramid drawn askew settles, and the halves at rest are the mated ones.
+        /// A pyramid drawn at an angle settles, and the halves at rest are the mated ones.
         #[test]
         fn what_is_drawn_askew_settles(e in prop::array::uniform5(-0.03..0.03f64)) {
             let design = pyramid();

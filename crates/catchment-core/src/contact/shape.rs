@@ -64,7 +64,7 @@ pub(super) struct Shape {
     pub(super) facets: Vec<Facet>,
     /// `normal·p` for the points p of each facet.
     pub(super) levels: Vec<f64>,
-    /// The sides of all facets, one facet after the other, and where those of each begin.
+    /// The sides of all facets, one facet after the other, and the start of each facet.
     sides: Vec<FacetSide>,
     first_sides: Vec<u32>,
     pub(super) corners: Vec<Corner>,

@@ -20,19 +20,19 @@ use std::collections::BTreeSet;
 const OVER: f64 = tolerance::SINGLE;
 /// Facets steeper than this (z of their normal) are vertical.
 const VERTICAL: f64 = tolerance::SINGLE;
-/// Directions nearer than this are one.
+/// Directions closer than this are equal.
 const ONE_WAY: f64 = tolerance::SINGLE;
 
 /// How halves lie beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SideBySide {
-    /// Unit normal of the plane that they share, in plan view, from the fixed half to the moving one.
+    /// Unit normal of their common plane, in plan view, from the fixed half to the moving half.
     pub across: DVec2,
-    /// How far the moving half has to go against it until the middles of both lie on each other, in D.
+    /// Distance that the moving half must move against it until the middles of both coincide, in D.
     pub apart: f64,
 }
 
-/// How the halves of a pair lie beside each other in the aligned pose; `None` where they do not.
+/// The arrangement of two halves side by side in the aligned pose; `None` if they are not side by side.
 pub(super) fn of(pair: &Pair) -> Option<SideBySide> {
     let passes = |lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY }).is_none();
     let off = 2.0 * OVER;

@@ -7,7 +7,7 @@ use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use proptest::prelude::*;
 
-/// A pair of a family, round shapes cut coarsely so that the judge stays affordable.
+/// A pair of a family, with coarse round shapes so that the reference stays affordable.
 fn pair(family: Family, aspect_ratio: f64, cor: f64) -> Pair {
     let spec = FamilySpec::new(family).with_aspect_ratio(aspect_ratio).with_chord_error(0.02);
     let mut alignment = Alignment::default_for(Some(family));
@@ -40,7 +40,7 @@ fn poses() -> impl Strategy<Value = CorPose> {
         .prop_map(|(x, y, [r, p, w])| CorPose { lateral: DVec2::new(x, y), rotation: rotation(r, p, w) })
 }
 
-/// Equal heights, or both none.
+/// Equal heights, or no height in both.
 fn same(fast: Option<f64>, slow: Option<f64>) -> bool {
     match (fast, slow) {
         // Slopes reach 10 for tilted facets, positions are exact to 1e-16: 1e-11 leaves four digits.
@@ -94,7 +94,8 @@ proptest! {
         prop_assert!(same(fast, slow), "{family:?}: {fast:?} against {slow:?}");
     }
 
-    /// Facets that are parallel but for rounding, where features that count as one plane do not support to the last digit.
+    /// Facets that are parallel up to rounding, on which features of a common plane do not support to the
+    /// last digit.
     #[test]
     fn flush_faces_have_heights(
         sides in 3..9u32, digits in 3..10i32, x in -0.2..0.2f64, y in -0.2..0.2f64,
@@ -133,8 +134,8 @@ proptest! {
         }
     }
 
-    /// What is left out far from a position changes nothing there, and neither does a small motion since the candidates were
-    /// collected: bit for bit what is found when nothing is left out at the pose itself.
+    /// Features omitted far from a position change nothing there, nor does a small motion since the
+    /// candidates were collected: the results are bit for bit those without omissions at the pose itself.
     #[test]
     fn candidates_of_a_neighbourhood_hide_nothing(
         family in families(), ratio in 0.2..2.0f64, pose in poses(), slack in 0.0..0.1f64, reach in 0.0..0.1f64,
@@ -200,7 +201,8 @@ proptest! {
         prop_assert_eq!(envelope.height(second.lateral), pair.height(&second));
     }
 
-    /// Where one contact carries the body, its gradient is that of the height: differences over ±δ agree to O(δ).
+    /// If a single contact carries the body, its gradient is that of the height: differences over ±δ agree to
+    /// O(δ).
     #[test]
     fn the_gradient_is_the_slope_of_the_height(
         family in families(), ratio in 0.2..1.5f64, cor in -1.0..1.0f64, pose in poses(),

@@ -26,7 +26,7 @@ pub(super) struct Leaf {
     pub(super) index: u32,
 }
 
-/// What a feature is; as bits.
+/// Kind of a feature; as bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub(super) enum Kind {
@@ -38,10 +38,10 @@ pub(super) enum Kind {
 /// Sines of the angles by which features may fail to support a normal and still count: those of heights, those of the steps of a motion, and those of lists, which hold
 /// for some turn as well.
 pub(super) const SLACKS: [f64; 3] = [FLUSH, 0.1, 0.35];
-/// What is below a node: four parts at most, each another node or a feature.
+/// The content of a node: at most four parts, each another node or a feature.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
-    /// Where they are in their half's frame: of the fixed half, in the world.
+    /// Bounds of the parts in their half's frame: of the fixed half, in the world.
     pub(super) parts: Four,
     children: [Child; 4],
 }
@@ -133,8 +133,9 @@ impl Tree {
     }
 }
 
-/// Divides features: kinds from each other, as most pairs of kinds never meet, then where the boxes of both sides are small (surface area heuristic,
-/// Wald, *On fast construction of SAH-based bounding volume hierarchies*, 2007), so that long facets do not widen the boxes of short ones.
+/// Divides features: first by kind, as most pairs of kinds never meet, then such that the boxes of both sides
+/// are small (surface area heuristic, Wald, *On fast construction of SAH-based bounding volume hierarchies*,
+/// 2007), so that long facets do not widen the boxes of short ones.
 fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
     for kind in [Kind::Ridge, Kind::Facet] {
         let count = features.iter().filter(|f| f.leaf.kind == kind).count();
@@ -159,10 +160,11 @@ fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
     features.split_at_mut(features.len() / 2)
 }
 
-/// Where the places of features along an axis (twice the middle of their boxes) are divided for the least area of the boxes on both sides, each
-/// weighted by the number of its features; `None` where nearly all are at one place.
+/// Position along an axis (twice the middle of the features' boxes) that divides the features with the
+/// smallest area of the boxes on both sides, each weighted by the number of its features; `None` if nearly
+/// all have the same position.
 fn least_area(features: &[Built]) -> Option<(usize, f64)> {
-    /// Borders tried along each axis, but one.
+    /// Number of positions tried along each axis, plus one.
     const BINS: usize = 16;
     /// The smaller side has at least this share, so that trees stay shallow.
     const LEAST_SHARE: f64 = 1.0 / 16.0;
@@ -216,7 +218,7 @@ fn least_area(features: &[Built]) -> Option<(usize, f64)> {
     best.map(|(_, axis, border)| (axis, border))
 }
 
-/// What bounds some features.
+/// Bounds of some features.
 fn bounds(features: &[Built], shapes: &[Shape]) -> One {
     let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
     let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -268,7 +270,7 @@ impl Leaf {
         }
     }
 
-    /// What bounds it where it is `placed`.
+    /// Its bounds with the half at `placed`.
     pub(super) fn part(
         &self,
         shape: &Shape,
@@ -310,13 +312,13 @@ impl Node {
     }
 }
 
-/// What bounds a feature: a box around it, and a plane that all of it lies behind.
+/// Bounds of a feature: a box around it, and a plane with all of it behind.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     center: DVec3,
     /// Half of the size of the box.
     half: DVec3,
-    /// `normal·p ≤ level` for all points, as z = `over` + `slope`·(x, y); 0 where there is none.
+    /// `normal·p ≤ level` for all points, as z = `over` + `slope`·(x, y); 0 without a plane.
     normal: DVec3,
     slope: DVec2,
     over: f64,
@@ -324,7 +326,7 @@ pub(super) struct Part {
 
 /// Normals that face up or down by less have steep planes, which bound no height.
 const STEEP: f64 = 0.05;
-/// Feet may lie outside their features by twice the seam, in D: how much wider boxes are than what they hold.
+/// Feet may lie outside their features by twice the seam, in D: boxes are this much wider than their content.
 pub(super) const MARGIN: f64 = 2.0 * super::brute::SEAM;
 
 impl Part {
@@ -333,8 +335,9 @@ impl Part {
         Self { center, half, normal, slope: normal.truncate() * -inverse, over: level * inverse }
     }
 
-    /// Where heights of contact of a part of the fixed half and one of the moving half may lie: none is below the first number nor above
-    /// the second; `None` where they are beside each other. Heights are those of the COR above where it is.
+    /// Bounds on the heights of contact of a part of the fixed half and a part of the moving half: no height
+    /// is below the first number or above the second; `None` if they are side by side. Heights are those of
+    /// the COR above its current position.
     #[inline]
     pub(super) fn heights(&self, moving: &Self) -> Option<[f64; 2]> {
         // What both boxes have in common in plan view.

@@ -11,11 +11,12 @@ use crate::pose::CorPose;
 use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
-/// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
+/// Below this z-component a normal counts as horizontal: such a facet has no height of its own and is
+/// represented by its rim. Slopes beyond 10⁹ are indistinguishable from a wall in double precision.
 pub(super) const VERTICAL: f64 = tolerance::PARALLEL;
 
-/// A pair, a rotation, and what can touch there: a list of elements, or, without one, the trees of the pair.
+/// A pair at a rotation, with its possible contacts: a list of elements, or, without a list, the trees of the
+/// pair.
 #[derive(Debug, Clone)]
 pub(super) struct Turned<'a> {
     pub(super) pair: &'a Pair,
@@ -24,21 +25,23 @@ pub(super) struct Turned<'a> {
     trees: Option<&'a Trees>,
     /// Which of their elements count.
     counts: Counts,
-    /// What carried the half last, as the trees number it, from far above and from a ceiling: where it is looked for first.
+    /// The last carriers of the half, by the numbers of the trees, from far above and from a ceiling: the
+    /// next search starts with them.
     carriers: [Option<Number>; 2],
-    /// What the trees found near a few poses, the last one asked for last: a step returns to where it started, and goes on where it was tried.
+    /// Results of the trees near a few poses, the most recent last: a step returns to its start, and
+    /// continues from poses that were tried.
     near: Vec<Near>,
-    /// What may touch and what may pass about where it is.
+    /// Features that may touch, and those that may pass, near the current pose.
     touching: Lists<Touching>,
     passing: Lists<Passing>,
-    /// What lowering took, about, in nanoseconds.
+    /// Estimated cost of lowering, in nanoseconds.
     lowering: u64,
 }
 
-/// Poses near which what was found is kept: a step and all that is tried for it.
+/// Number of poses whose neighbourhoods are stored: those of a step and its trials.
 const KEPT: usize = 8;
 
-/// What may touch near one pose, by the trees.
+/// Possible contacts near a pose, by the trees.
 #[derive(Debug, Clone)]
 struct Near {
     rotation: DMat3,
@@ -72,13 +75,13 @@ impl<'a> Turned<'a> {
         candidates.try_at(self.pair, rotation, counts, &mut self.elements);
     }
 
-    /// Leaves it to the trees of the pair what can touch at `rotation`.
+    /// Uses the trees of the pair for the possible contacts at `rotation`.
     pub(super) fn turn_trees(&mut self, rotation: &DMat3, trees: &'a Trees, counts: Counts) {
         (self.rotation, self.trees, self.counts) = (*rotation, Some(trees), counts);
         self.elements.clear();
     }
 
-    /// The height of first contact at one pose alone, in D: what is beside it in plan view is left out.
+    /// The height of first contact at a single pose, in D, without features off to the side in plan view.
     pub(super) fn height_at(pair: &'a Pair, pose: &CorPose) -> Option<f64> {
         let mut turned = Self::new(pair);
         let counts = Counts { slack: FLUSH, lowest: VERTICAL };
@@ -94,13 +97,14 @@ impl<'a> Turned<'a> {
         turned.height_below(pose.lateral, f64::INFINITY).0
     }
 
-    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
-    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    /// Height at which a half lowered from `ceiling`, not from far above, is stopped; and whether something
+    /// above the ceiling would have stopped it earlier. This is the case for a half that has slid under an
+    /// overhang, or beside a wall.
     pub(super) fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         self.height_about(lateral, ceiling, f64::NEG_INFINITY)
     }
 
-    /// The same, sooner where it is above what is `expected`.
+    /// The same, faster if it is above `expected`.
     pub(super) fn height_about(
         &mut self,
         lateral: DVec2,
@@ -153,12 +157,13 @@ impl<'a> Turned<'a> {
         height.is_some_and(|height| height > level)
     }
 
-    /// What carries a half lowered from far above, by the trees.
+    /// The carrier of a half lowered from far above, by the trees.
     pub(super) fn carried_by(&mut self, lateral: DVec2) -> Option<(Element, Number, f64)> {
         self.trees.and_then(|trees| self.carried(trees, lateral, HeightQuery::WHOLE).by)
     }
 
-    /// By what supports: what does only within a slack is above the other half, and carries nothing.
+    /// Only supporting features count: features that support only within a slack lie above the other half,
+    /// and carry nothing.
     fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: HeightQuery) -> Carried {
         let counts = Counts { slack: FLUSH, lowest: VERTICAL };
         let carrier = &mut self.carriers[usize::from(asked.ceiling.is_finite())];
@@ -168,7 +173,7 @@ impl<'a> Turned<'a> {
         carried
     }
 
-    /// What all searches of trees took until now, about: counted, in nanoseconds.
+    /// Estimated cost of all tree searches so far: counted, in nanoseconds.
     pub(super) const fn took(&self) -> u64 {
         self.lowering + self.touching.took + self.passing.took
     }
@@ -205,7 +210,7 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Sees to it that what was found last is what has such gaps here, or more.
+    /// Ensures that the last result contains all features with such gaps here, or more.
     fn look_near(&mut self, trees: &Trees, position: DVec3, gaps: Gaps) {
         let Self { pair, rotation, counts, near, touching, .. } = self;
         let holds = |near: &Near| {

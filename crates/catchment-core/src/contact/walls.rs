@@ -22,7 +22,7 @@ use glam::DVec3;
 /// Walls have normals within this sine of the horizontal. A peg with 7° of draft (0.12) centres itself and does not need to
 /// be followed from touch to touch.
 const STEEP: f64 = 0.15;
-/// Walls face each other where the cosine between their normals is below this: 45°.
+/// Walls face each other if the cosine between their normals is below this: 45°.
 const FACING: f64 = -0.7;
 /// Wider gaps are no fit, in D: several steps of a motion go into them.
 const NEAR: f64 = 0.1;

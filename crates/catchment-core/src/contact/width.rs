@@ -18,15 +18,17 @@ use crate::design::WidthFrom;
 use crate::tolerance;
 use glam::{DVec2, DVec3};
 
-/// A facet looks up or down where its normal's z is beyond this: above what upright walls are rounded by.
+/// A facet faces up or down if the z-component of its normal is beyond this: above the rounding of upright
+/// walls.
 const LOOKS: f64 = tolerance::SINGLE;
 /// How much wider than D a half may be as drawn: a little less than designs allow.
 pub const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
-/// Flat on flat they share a plane: how far beyond it what touches is looked for, as a share of the halves' width.
+/// Flat faces in contact share a plane: distance beyond it in which contacts are searched, as a share of the
+/// halves' width.
 const THIN: f64 = 1e-4;
 
-/// The box in plan view around what can touch, lowest and highest corner, with the moving half lifted by `lift`; `None` where they
-/// share nothing.
+/// The box in plan view around the features that can touch, lowest and highest corner, with the moving half
+/// lifted by `lift`; `None` if the halves share no area.
 pub fn touching(fixed: &Half, moving: &Half, lift: f64) -> Option<[DVec2; 2]> {
     let ([_, top], [bottom, _]) = (fixed.span(), moving.span());
     let wide = |half: &Half| {
@@ -50,14 +52,14 @@ pub fn width(fixed: &Half, moving: &Half, lift: f64) -> Option<f64> {
     Some((high - low).max_element()).filter(|width| *width > 0.0)
 }
 
-/// Where D comes from, and D, of halves as mated, `widest` of which is the larger lateral extent as drawn: designs allow no half that is much
-/// wider than D.
+/// The source of D, and D, for halves as mated; `widest` is their larger lateral extent as drawn: designs
+/// allow no half much wider than D.
 pub(crate) fn default(fixed: &Half, moving: &Half, lift: f64, widest: f64) -> Option<(f64, WidthFrom)> {
     let (touching, least) = (width(fixed, moving, lift)?, widest / MOST_WIDE);
     Some(if touching < least { (least, WidthFrom::Size) } else { (touching, WidthFrom::Touching) })
 }
 
-/// The box around what looks along `up`·z and lies at or above `level` along it.
+/// The box around the facets that face along `up`·z and lie at or above `level` along it.
 fn around(half: &Half, up: f64, level: f64) -> [DVec2; 2] {
     let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     let mut hold = |p: DVec3| bounds = [bounds[0].min(p.truncate()), bounds[1].max(p.truncate())];

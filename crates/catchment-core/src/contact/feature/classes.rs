@@ -13,9 +13,9 @@ use crate::tolerance;
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// Places nearer than this are one, in D.
+/// Positions closer than this are equal, in D.
 const GRAIN: f64 = tolerance::SINGLE;
-/// Facets beyond which symmetries are not looked for: each takes a search of all of them.
+/// Number of facets beyond which symmetries are not searched: each takes a search of all facets.
 const MOST_FACETS: usize = 20_000;
 
 /// The turns and reflections that map a half onto itself, the identity first.
@@ -58,7 +58,7 @@ impl Creases {
         Self { list, middles }
     }
 
-    /// The crease that lies where `map` brings another one.
+    /// The crease onto which `map` maps a given crease.
     fn image(&self, crease: &Crease, map: &DMat3) -> Option<&Crease> {
         let [a, b] = crease.ends.map(|end| *map * end);
         let lies = |crease: &&Crease| {
@@ -70,7 +70,7 @@ impl Creases {
     }
 }
 
-/// The class of every feature: the least number of those that lie where a symmetry brings it.
+/// The class of every feature: the smallest number among its symmetric images.
 pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) -> Vec<u32> {
     let mut sets = DisjointSets::new(count);
     let faces: Vec<u32> = surfaces.iter().flat_map(|lookup| &lookup.faces).copied().collect();

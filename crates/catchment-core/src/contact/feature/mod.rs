@@ -30,15 +30,17 @@ use std::f64::consts::FRAC_PI_2;
 mod classes;
 pub(crate) use classes::Turns;
 
-/// Cosine of 30°: facets that meet at less are one face. A round of thirteen sides is one, a chamfer of 45° is another.
+/// Cosine of 30°: facets that meet at less belong to one face. A round of thirteen sides is one face, a
+/// chamfer of 45° is another.
 const BEND: f64 = 0.866;
-/// Cosine of 60°: facets around a corner that spread wider make it a point, also where no two neighbours meet at an edge.
+/// Cosine of 60°: facets around a corner that spread wider make it a point, even if no two neighbours meet at
+/// an edge.
 const POINTED: f64 = 0.5;
-/// Sine of half a degree: what lies nearer than that to a plane lies in it. Motions come to rest far nearer.
+/// Sine of half a degree: features within this angle of a plane lie in it. Motions come to rest far closer.
 const IN_PLANE: f64 = 0.009;
-/// Inclinations that differ by less are one, radians: 2°.
+/// Inclinations that differ by less are equal, radians: 2°.
 const EVEN: f64 = 0.035;
-/// Heights that differ by less are one, in D.
+/// Heights that differ by less are equal, in D.
 const LEVEL: f64 = tolerance::SINGLE;
 
 /// Kind of a feature.
@@ -79,7 +81,7 @@ pub struct FaceOrientation {
 /// A face, an edge or a corner of a half.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Feature {
-    /// What it is.
+    /// Kind of the feature.
     pub kind: FeatureKind,
     /// The number of its surface in the half.
     pub surface: usize,
@@ -140,7 +142,7 @@ pub struct Features {
     halves: [Anatomy; 2],
 }
 
-/// The features of one half.
+/// The features of a half.
 #[derive(Debug, Clone)]
 struct Anatomy {
     features: Vec<Feature>,

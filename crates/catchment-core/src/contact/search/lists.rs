@@ -37,24 +37,24 @@ use glam::{DMat3, DVec3};
 
 /// Pairs of a list, at most.
 const MOST: usize = 150_000;
-/// Lists of one reach that are kept: a step tries poses on both sides of where it ends.
+/// Number of lists of the same reach that are kept: a step tries poses on both sides of its end.
 const KEPT: usize = 3;
 /// Places of each level for which savings are kept.
 const RENTED: usize = 16;
-/// The price of a list in the price of one of the next narrower level, before one was made.
+/// Estimated price of a list relative to the price of a list of the next narrower level, before one was made.
 const WIDER: u64 = 5;
-/// What rounding makes of a clearance and of how far a half has moved, in D.
+/// Rounding of a clearance and of the distance that a half has moved, in D.
 const ROUNDED: f64 = 1e-6;
-/// The share of its reach by which a half may have turned where a list holds.
+/// Share of its reach by which a half may have rotated for a list to hold.
 const TURNED: f64 = 0.5;
 
-/// What is kept: two features that may meet, or an edge and a facet that it may pass through.
+/// Type of the stored pairs: two features that may meet, or an edge and a facet that it may pass through.
 pub(in crate::contact) trait Pairs {
     /// Two features.
     type Two: Copy;
-    /// Reaches of the lists, in D, the widest first; each is asked for up to half of it.
+    /// Reaches of the lists, in D, the widest first; each serves queries up to half of it.
     const REACHES: &'static [f64];
-    /// Whether they count only where they face each other.
+    /// Whether pairs count only if they face each other.
     const FACE: bool;
     /// Whether parts hold such pairs.
     fn meet(fixed: Child, moving: Child) -> bool;
@@ -64,7 +64,7 @@ pub(in crate::contact) trait Pairs {
     fn clearance(turned: &Turned<'_>, two: &Self::Two, sieve: &Sieve, most: f64) -> Option<f64>;
 }
 
-/// Where a list holds.
+/// Poses for which a list holds.
 #[derive(Debug, Clone)]
 struct Ball {
     rotation: DMat3,
@@ -82,7 +82,8 @@ impl Ball {
         Self { rotation, position, counts, skin: TURNED * reach / turned.trees.radius, reach }
     }
 
-    /// By how much at most the clearance of a pair is above its distance at another pose, where the list holds what is within `reach` there.
+    /// Largest difference between a pair's clearance and its distance at another pose, if the list contains
+    /// all pairs within `reach` there.
     fn moved(&self, turned: &Turned<'_>, reach: f64, skin: f64) -> Option<f64> {
         let turn = chord(&self.rotation, &turned.rotation);
         let moved = self.position.distance(turned.position) + turned.trees.radius * turn + ROUNDED;
@@ -94,7 +95,7 @@ impl Ball {
     }
 }
 
-/// The pairs about one pose, by their clearances.
+/// The pairs around a pose, by their clearances.
 #[derive(Debug, Clone)]
 struct List<T> {
     ball: Ball,
@@ -103,16 +104,16 @@ struct List<T> {
     pairs: Vec<(f64, T)>,
 }
 
-/// The lists of one reach, and what they cost, in pairs looked at.
+/// The lists of one reach, and their cost, in pairs tested.
 #[derive(Debug, Clone)]
 struct Level<T> {
-    /// The one that was asked last at the end.
+    /// The most recently used list at the end.
     lists: Vec<List<T>>,
     /// The pose of the last query that went to the trees without a list.
     unlisted: Option<Ball>,
-    /// Where a list would have saved so much; the one that was asked last at the end.
+    /// Poses at which a list would have saved this much; the most recently used at the end.
     rented: Vec<(Ball, u64)>,
-    /// The cost of the last list, of the last one from the trees, and of the last one from a wider list.
+    /// The cost of the last list, of the last list from the trees, and of the last list from a wider list.
     price: Option<u64>,
     from_trees: Option<u64>,
     from_list: Option<u64>,
@@ -124,7 +125,7 @@ pub(in crate::contact) struct Lists<P: Pairs> {
     levels: Vec<Level<P::Two>>,
     /// The widest that is not too long.
     widest: usize,
-    /// What all of it took, about, in nanoseconds.
+    /// Estimated total cost, in nanoseconds.
     pub(in crate::contact) took: u64,
 }
 
@@ -143,7 +144,8 @@ impl<P: Pairs> Default for Lists<P> {
 }
 
 impl<T> Level<T> {
-    /// Sees to it that the last list holds what is within `reach` of each other for turns of `skin`, if any does; by how much clearances may be too large.
+    /// Ensures that the last list contains all pairs within `reach` of each other for rotations of `skin`, if
+    /// a list can; returns the largest excess of the clearances.
     fn find(&mut self, turned: &Turned<'_>, reach: f64, skin: f64) -> Option<f64> {
         let lists = self.lists.iter().enumerate().rev();
         let (k, moved) =
@@ -152,7 +154,8 @@ impl<T> Level<T> {
         Some(moved)
     }
 
-    /// Whether a list should serve a query: one that is there, or a new one that is likely to serve another query, as the last one did.
+    /// Whether a list should serve a query: an existing list, or a new list that is likely to serve another
+    /// query, as the last one did.
     fn is_worth_it(&mut self, turned: &Turned<'_>, own: f64, reach: f64) -> bool {
         let holds = |ball: &Ball| ball.moved(turned, reach, 0.0).is_some();
         if let Some(list) = self.lists.iter_mut().rev().find(|list| holds(&list.ball)) {
@@ -173,7 +176,7 @@ impl<T> Level<T> {
         &pairs[..pairs.partition_point(|(clearance, _)| *clearance <= moved + reach)]
     }
 
-    /// Counts what a list of this level would have saved about a pose, had `narrow` come from it.
+    /// Accumulates the savings of a list of this level at a pose, if `narrow` had been made from it.
     fn rent(&mut self, turned: &Turned<'_>, reach: f64, narrow: &Ball, saved: u64) {
         let holds = |(ball, _): &(Ball, u64)| ball.moved(turned, narrow.reach, narrow.skin).is_some();
         if let Some(k) = self.rented.iter().position(holds) {
@@ -189,7 +192,8 @@ impl<T> Level<T> {
 }
 
 impl<P: Pairs> Lists<P> {
-    /// Shows every pair within `reach` of each other, and some beyond; says whether it could, else nothing was shown.
+    /// Passes every pair within `reach` of each other, and some beyond, to `see`; returns whether a list
+    /// could serve, and passes nothing if not.
     fn within(&mut self, turned: &Turned<'_>, reach: f64, mut see: impl FnMut(&P::Two) -> bool) -> bool {
         let fits = |level: &usize| reach <= 0.5 * P::REACHES[*level];
         let Some(level) = (self.widest..P::REACHES.len()).rev().find(fits) else { return false };
@@ -203,7 +207,8 @@ impl<P: Pairs> Lists<P> {
         true
     }
 
-    /// Sees to it that the last list of a level holds what is within `reach` of each other for turns of `skin`; by how much clearances may be too large.
+    /// Ensures that the last list of a level contains all pairs within `reach` of each other for rotations of
+    /// `skin`; returns the largest excess of the clearances.
     fn prepare(&mut self, turned: &Turned<'_>, level: usize, reach: f64, skin: f64) -> Option<f64> {
         if let Some(moved) = self.levels[level].find(turned, reach, skin) {
             return Some(moved);
@@ -261,8 +266,8 @@ impl<P: Pairs> Lists<P> {
         moved
     }
 
-    /// The level whose last list has all pairs for a narrower ball, and by how much its clearances may be too large: one that is there and
-    /// shorter than the way through the trees, or one that has paid.
+    /// The level whose last list contains all pairs for a narrower ball, and the largest excess of its
+    /// clearances: an existing list that is shorter than a search of the trees, or a list that has paid off.
     fn wider(&mut self, turned: &Turned<'_>, level: usize, narrow: &Ball) -> Option<(usize, f64)> {
         let from_trees = self.levels[level].from_trees.unwrap_or(u64::MAX);
         for k in (self.widest..level).rev() {
@@ -332,7 +337,7 @@ impl Pairs for Touching {
     }
 }
 
-/// Edges of one half and facets of the other: whether it is the facet that is fixed, and which two.
+/// Edges of one half and facets of the other: whether the facet is fixed, and the two features.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Passing;
 
@@ -369,7 +374,8 @@ impl Pairs for Passing {
 }
 
 impl Lists<Touching> {
-    /// The elements with such gaps, in the order of the list of all; says whether lists could tell.
+    /// The elements with such gaps, in the order of the list of all elements; returns whether lists could
+    /// serve.
     pub(super) fn near(
         &mut self,
         turned: &Turned<'_>,
@@ -388,7 +394,7 @@ impl Lists<Touching> {
 }
 
 impl Lists<Passing> {
-    /// Whether an edge of one half passes through a facet of the other; `None` where lists cannot tell.
+    /// Whether an edge of one half passes through a facet of the other; `None` if lists cannot decide.
     pub(super) fn pass(&mut self, turned: &Turned<'_>, reach: f64) -> Option<bool> {
         let frames = Frames::new(&turned.rotation, turned.position);
         let mut found = false;
@@ -405,7 +411,7 @@ impl Lists<Passing> {
     }
 }
 
-/// A lower bound of the distance of a point from a facet; of its plane alone where that is above `most`.
+/// A lower bound of the distance of a point from a facet; only of its plane if that is above `most`.
 fn from_facet(shape: &Shape, facet: u32, point: DVec3, most: f64) -> f64 {
     let normal = shape.facets[facet as usize].normal;
     let above = normal.dot(point) - shape.levels[facet as usize];

@@ -29,20 +29,22 @@ use glam::{DMat3, DVec2, DVec3};
 use std::cell::Cell;
 use wide::f32x4;
 
-/// How far beyond the bounds of its facets a height of contact may come, in D: rounding of planes as steep as bound heights, and the
-/// seam on them (2e-12 on a slope of 20). Steeper elements round worse, and are held to it.
+/// Largest excess of a height of contact over the bounds of its facets, in D: rounding of planes at the
+/// steepness that bounds heights, and the seam on them (2e-12 on a slope of 20). Steeper elements round
+/// worse, and are limited by it.
 const SURE: f64 = 1e-10;
-/// What the steepest elements round to at most, in D: 1e-16 on a slope of 10⁹.
+/// Largest rounding of the steepest elements, in D: 1e-16 on a slope of 10⁹.
 const STEEPEST: f64 = 1e-6;
 /// Elements whose normal has a larger z-component keep to [`SURE`] by themselves: 1e-16 on a slope of 10⁵.
 const GENTLE: f64 = 1e-5;
 
-/// Where a corner is over a facet, the height is at least that of their touching, whether they support it or not; by as much as this, in
-/// D, facets that count as one plane may leave it lower.
+/// If a corner is over a facet, the height is at least that of their contact, whether they support it or not;
+/// facets that count as coplanar may leave it lower by this much, in D.
 const LOOSE: f64 = 1e-5;
 
-/// What a search takes is counted, so that it is the same on every machine: nanoseconds of one core of 2024 for a part that is divided, for a pair that is looked
-/// at in a list, and for one that is looked at for a list. Of grid cups, gears and funnels of 1 000 to 100 000 facets right within a factor of 1.5.
+/// The cost of a search is counted, so that it is the same on every machine: nanoseconds of one core of 2024
+/// for a part that is divided, for a pair tested in a list, and for a pair tested to make a list. For grid
+/// cups, gears and funnels of 1 000 to 100 000 facets it is accurate within a factor of 1.5.
 const DIVIDED: u64 = 38;
 const LISTED: u64 = 22;
 const ENLISTED: u64 = 100;
@@ -88,14 +90,14 @@ impl Trees {
     }
 }
 
-/// What is asked of heights.
+/// A query for heights.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HeightQuery {
-    /// From where the half is lowered.
+    /// Height from which the half is lowered.
     pub(super) ceiling: f64,
-    /// Any height above this one is as good as the greatest.
+    /// Heights above this need not be distinguished from the greatest.
     pub(super) enough: f64,
-    /// Heights below this one are as good as none.
+    /// Heights below this count as no contact.
     pub(super) floor: f64,
     /// Whether something above the ceiling is known to stop it earlier.
     pub(super) covered: bool,
@@ -107,14 +109,14 @@ impl HeightQuery {
         Self { ceiling: f64::INFINITY, enough: f64::INFINITY, floor: f64::NEG_INFINITY, covered: false };
 }
 
-/// What carries a half lowered from a ceiling.
+/// The carrier of a half lowered from a ceiling.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
     /// The element, its place in the list, and its height.
     pub(super) by: Option<(Element, Number, f64)>,
     /// Whether something above the ceiling would have stopped it earlier.
     pub(super) covered: bool,
-    /// What the search took, about, in nanoseconds.
+    /// Estimated cost of the search, in nanoseconds.
     pub(super) took: u64,
 }
 
@@ -124,13 +126,13 @@ impl Carried {
     }
 }
 
-/// Sine and cosine of how far beyond the horizontal normals lean whose z-component is as low as this.
+/// Sine and cosine of the angle beyond the horizontal of normals with this lowest z-component.
 fn overhang(lowest: f64) -> [f32; 2] {
     let sine = (-lowest).clamp(0.0, 1.0);
     [sine as f32, (1.0 - sine * sine).sqrt() as f32]
 }
 
-/// The pair at one pose.
+/// The pair at a given pose.
 #[derive(Clone)]
 pub(super) struct Turned<'a> {
     pair: &'a Pair,
@@ -141,11 +143,11 @@ pub(super) struct Turned<'a> {
     counts: Counts,
     /// Which cones hold.
     cones: Option<usize>,
-    /// Which parts are looked at together.
+    /// Pairs of parts that are tested together.
     pairs: fn(Child, Child) -> bool,
-    /// Sine and cosine of how far beyond the horizontal normals may lean.
+    /// Sine and cosine of the largest angle of normals beyond the horizontal.
     overhang: [f32; 2],
-    /// Where the moving half is, and by how much bounds may be wrong there.
+    /// Pose of the moving half, and the possible error of bounds there.
     placed: Placed,
     rounding: f32,
     /// How many parts were divided.
@@ -176,13 +178,14 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Which of two is divided first: the larger one, in plan view.
+    /// Which of two parts is divided first: the larger one, in plan view.
     fn divides_fixed(fixed: &Side<'_>, moving: &Side<'_>) -> bool {
         moving.child.is_leaf || !fixed.child.is_leaf && fixed.size() >= LARGER * moving.size()
     }
 
-    /// Divides one of two parts, at least one of which is a node: `test` sees four pairs of parts and says which may count, as bits, and between which
-    /// heights; `look` is shown those that may touch as they face, the one that may be highest first.
+    /// Divides one of two parts, at least one of which is a node: `test` receives four pairs of parts and
+    /// returns the pairs that may count, as bits, and the bounds of their heights; `look` receives the pairs
+    /// that may touch by their orientation, the possibly highest first.
     #[inline]
     fn divide(
         &self,
@@ -225,7 +228,7 @@ impl<'a> Turned<'a> {
         (alive, least, most)
     }
 
-    /// Shows the parts of a node that are alive beside another part, the one that may be highest first.
+    /// Passes the active parts of a node, paired with another part, the possibly highest first.
     #[inline]
     fn look(
         &self,
@@ -249,7 +252,7 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Both halves, unless one has no features: what they are, and what bounds each, four times.
+    /// Both halves, unless one has no features: their roots, and the bounds of each, four times.
     fn roots(&self) -> Option<([Child; 2], [Four; 2])> {
         let ((fixed, f), (moving, m)) = (self.trees.fixed.root()?, self.trees.moving.root()?);
         let bounds = [Four::of(&[f; 4]).with_planes(true), self.placed.four(&Four::of(&[m; 4]))];
@@ -289,7 +292,7 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Where the heights of two features may lie, the position being counted from `position`.
+    /// Bounds on the heights of two features, relative to `position`.
     fn heights(&self, fixed: &Leaf, moving: &Leaf, position: DVec3) -> Option<[f64; 2]> {
         let (f, m) = self.shapes([fixed.shape, moving.shape]);
         let fixed = fixed.part(f, |p| p, |n| n);
@@ -303,13 +306,13 @@ impl<'a> Turned<'a> {
     }
 }
 
-/// The search for what carries a half.
+/// The search for the carrier of a half.
 struct Lowered<'a> {
     turned: &'a Turned<'a>,
     lateral: DVec2,
     asked: HeightQuery,
     found: Carried,
-    /// No height is the greatest below this one.
+    /// Heights below this cannot be the greatest.
     floor: f64,
 }
 
@@ -400,7 +403,7 @@ impl Carried {
 /// How much larger a part of the fixed half is that is divided first. Of a turned part the box is larger than it need be.
 const LARGER: f32 = 1.25;
 
-/// A part of a half, and what bounds it in the world: one of four.
+/// A part of a half, and its bounds in the world: one of four.
 #[derive(Debug, Clone, Copy)]
 struct Side<'a> {
     child: Child,
@@ -415,7 +418,7 @@ impl Side<'_> {
 }
 
 impl Trees {
-    /// What carries a lowered half; `seed` did so nearby, and saves time.
+    /// The carrier of a lowered half; `seed`, a carrier nearby, saves time.
     pub(super) fn carried(
         &self,
         pair: &Pair,

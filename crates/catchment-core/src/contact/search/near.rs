@@ -39,7 +39,7 @@ impl Gaps {
     }
 }
 
-/// The search for what is near.
+/// The search for nearby features.
 struct Close<'a> {
     turned: &'a Turned<'a>,
     position: DVec3,
@@ -77,7 +77,7 @@ struct Around<'a, P, F> {
     pairs: PhantomData<P>,
     see: F,
     goes_on: bool,
-    /// How many pairs of parts were looked at.
+    /// Number of pairs of parts tested.
     looked: u64,
 }
 
@@ -103,8 +103,9 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
 }
 
 impl Turned<'_> {
-    /// Shows every pair of features within `reach` of each other that may count within the sieve's turn, and some beyond, until `see` says not to go on.
-    /// How many pairs of parts it looked at, if it saw all.
+    /// Passes every pair of features within `reach` of each other that may count within the sieve's rotation,
+    /// and some beyond, to `see`, until it returns false. Returns the number of pairs of parts tested, if the
+    /// search was complete.
     pub(super) fn near_each_other<P: Pairs>(
         &self,
         reach: f64,

@@ -37,7 +37,7 @@ fn soup(corners: &[[f64; 3]]) -> Pair {
     with_trees(&Connector::from_halves(half(fixed), half(moving)))
 }
 
-/// The pair at one rotation: by the list of all elements, and by its trees.
+/// The pair at a given rotation: by the list of all elements, and by its trees.
 fn both<'a>(pair: &'a Pair, rotation: &DMat3, counts: Counts) -> [Turned<'a>; 2] {
     let mut listed = Turned::new(pair);
     let mut candidates = Candidates::default();
@@ -161,7 +161,7 @@ fn trees_of_a_funnel_find_what_the_list_holds() {
     }
 }
 
-/// Steps of all lengths, forth and back: what is kept for a neighbourhood answers as if nothing were kept.
+/// Steps of all lengths, back and forth: stored results equal those without storage.
 fn walk(pair: &Pair, start: &CorPose, seed: f64) {
     let mut kept = Turned::new(pair);
     let (mut at, mut turn) = (start.lateral.extend(0.0), start.rotation);
