@@ -67,15 +67,15 @@ impl Alignment {
         }
     }
 
-    /// The defect about Euler angles that reach rotations twice, if they do.
+    /// The error for Euler angles that reach rotations twice, if they do.
     pub(super) fn beyond_the_pole(&self) -> Option<DesignDefect> {
         // "90 deg" may round to one unit in the last place above π/2.
         let beyond = self.half_ranges[Dof::Pitch.index()] > FRAC_PI_2 * (1.0 + 4.0 * f64::EPSILON);
         (self.free.rotations() == 3 && beyond).then_some(DesignDefect::PitchBeyondPole)
     }
 
-    /// The yaw nearest to `yaw` at which the pair is aligned: a multiple of 2π/n for an n-fold symmetry, and the yaw itself where it
-    /// does not matter. In radians.
+    /// The yaw nearest to `yaw` at which the pair is aligned: a multiple of 2π/n for an n-fold symmetry, and
+    /// the yaw itself if it is a don't-care rotation. In radians.
     pub fn nearest_yaw(&self, yaw: f64) -> f64 {
         if self.dont_care.contains(Dof::Yaw) {
             return yaw;
@@ -90,8 +90,8 @@ impl Alignment {
         x.hypot(y).hypot(self.rotation_length * roll.hypot(pitch).hypot(yaw))
     }
 
-    /// How far a rotation is from the nearest one that counts as aligned, in radians: the mated one and those of the symmetry;
-    /// a yaw that does not matter is left out.
+    /// Angle between a rotation and the nearest rotation that counts as aligned, in radians: the mated
+    /// rotation and those of the symmetry; a don't-care yaw is ignored.
     pub fn turned_by(&self, rotation: &DMat3) -> f64 {
         if self.dont_care.contains(Dof::Yaw) {
             let tilt = rotation.z_axis;
@@ -105,7 +105,7 @@ impl Alignment {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Half-range of one degree of freedom: 0 when it is not free.
+    /// Half-range of a degree of freedom: 0 if it is not free.
     pub const fn half_range(&self, dof: Dof) -> f64 {
         if self.free.contains(dof) { self.half_ranges[dof.index()] } else { 0.0 }
     }

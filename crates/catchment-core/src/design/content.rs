@@ -76,7 +76,8 @@ pub fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// What the files of both halves held, or the triangles that were given in memory, in their order; nothing of a half without any.
+/// Content of the files of both halves, or description of the triangles given in memory, in order; empty for
+/// a half without files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Contents {
     /// Of the fixed half.
@@ -86,7 +87,7 @@ pub struct Contents {
 }
 
 impl Design {
-    /// This design with what its files held, as known once its halves are built.
+    /// This design with the content of its files, known once its halves are built.
     #[must_use]
     pub fn with_contents(mut self, contents: &Contents) -> Self {
         if let ConnectorSpec::Own(own) = &mut self.connector {

@@ -30,16 +30,16 @@ impl Dimension {
     }
 }
 
-/// One thing that is wrong with a design.
+/// An error in a design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DesignDefect {
     /// Not TOML.
     #[error("{message}")]
     Syntax {
-        /// What the TOML parser says.
+        /// Message of the TOML parser.
         message: String,
-        /// What to write, where a number was meant.
+        /// The correct form, if a number was meant.
         help: Option<String>,
     },
     /// A key that the table does not have.
@@ -47,7 +47,7 @@ pub enum DesignDefect {
     UnknownKey {
         /// The key as written.
         key: String,
-        /// The table, for a person.
+        /// Name of the table, for people.
         table: &'static str,
         /// The key it probably stands for.
         meant: Option<&'static str>,
@@ -61,7 +61,7 @@ pub enum DesignDefect {
     NoSuchKey {
         /// As written.
         name: String,
-        /// What it probably stands for.
+        /// The name that was probably meant.
         meant: Option<String>,
     },
     /// A name that several keys have.
@@ -87,11 +87,11 @@ pub enum DesignDefect {
     OutOfRange {
         /// The key.
         key: String,
-        /// The number as written, and as understood where that differs.
+        /// The number as written, and as interpreted if that differs.
         found: String,
-        /// Where it should lie.
+        /// Its permitted range.
         range: Range,
-        /// What the key means.
+        /// Meaning of the key.
         doc: &'static str,
     },
     /// Infinite or not a number.
@@ -112,7 +112,7 @@ pub enum DesignDefect {
         /// As written.
         text: String,
     },
-    /// A unit nobody knows.
+    /// An unknown unit.
     #[error("unknown unit `{unit}`{}", odd(unit))]
     UnknownUnit {
         /// As written.
@@ -120,15 +120,15 @@ pub enum DesignDefect {
         /// The unit it probably stands for.
         meant: Option<&'static str>,
     },
-    /// A length where an angle belongs, or the other way round.
+    /// A length in place of an angle, or an angle in place of a length.
     #[error("`{text}` is not {}", wanted.name())]
     WrongDimension {
         /// As written.
         text: String,
-        /// What belongs here.
+        /// The expected dimension.
         wanted: Dimension,
     },
-    /// A unit where a plain number belongs.
+    /// A unit in place of a plain number.
     #[error("`{key}` is a plain number, not `{text}`")]
     NotARatio {
         /// The key.
@@ -136,7 +136,7 @@ pub enum DesignDefect {
         /// As written.
         text: String,
     },
-    /// A length with a unit in a design without one.
+    /// A length with a unit in a design without a unit.
     #[error("`{text}` has a unit, but the design is dimensionless")]
     UnitInDimensionlessDesign {
         /// As written.
@@ -185,7 +185,7 @@ pub enum DesignDefect {
     NoShape {
         /// The part.
         key: String,
-        /// What to write.
+        /// The correct form.
         advice: &'static str,
     },
     /// More parts than a half may have.
@@ -196,16 +196,16 @@ pub enum DesignDefect {
         /// How many there are.
         found: usize,
     },
-    /// Three zeros, or too small to tell where they point.
+    /// Three zeros, or values too small to define a direction.
     #[error("`{key}` points nowhere")]
     NoDirection {
         /// The key.
         key: String,
     },
-    /// One of a few words was expected.
+    /// A name outside a fixed set.
     #[error("unknown {what} `{name}`{}", odd(name))]
     UnknownName {
-        /// What is named.
+        /// The named item.
         what: &'static str,
         /// As written.
         name: String,
@@ -219,7 +219,7 @@ pub enum DesignDefect {
     Missing {
         /// The key.
         key: String,
-        /// What to write.
+        /// The correct form.
         advice: &'static str,
     },
     /// An empty list or text.
@@ -227,7 +227,7 @@ pub enum DesignDefect {
     Empty {
         /// The key.
         key: String,
-        /// What to write.
+        /// The correct form.
         advice: &'static str,
     },
     /// A text that is too long or has control characters.
@@ -243,9 +243,9 @@ pub enum DesignDefect {
     Contradiction {
         /// The key complained about.
         key: String,
-        /// The other one.
+        /// The conflicting key.
         other: String,
-        /// What to do.
+        /// Advice.
         advice: &'static str,
     },
     /// A parameter that this connector does not have.
@@ -255,10 +255,10 @@ pub enum DesignDefect {
         key: String,
         /// The family, or own halves.
         owner: &'static str,
-        /// What has it.
+        /// The families that have it.
         belongs_to: String,
     },
-    /// A degree of freedom named twice in one list.
+    /// A degree of freedom named twice in the same list.
     #[error("`{}` is listed twice", dof.name())]
     Repeated {
         /// Which.
@@ -300,7 +300,7 @@ pub enum DesignDefect {
     OtherSchema {
         /// As written.
         found: i64,
-        /// The one that is understood.
+        /// The supported version.
         known: i64,
     },
     /// More text than a design has.
@@ -325,7 +325,7 @@ impl DesignDefect {
         Some(Self::OutOfPlane { dof, family: spec.family().name(), layered: spec.is_layered() })
     }
 
-    /// What to do about it; `None` where the message says it all.
+    /// Advice; `None` if the message is sufficient.
     pub fn help(&self) -> Option<String> {
         let did_you_mean = |meant: Option<&str>| meant.map(|word| format!("did you mean `{word}`?"));
         match self {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Files that a program has in memory, by their paths.
 pub type FilesInMemory = Arc<BTreeMap<PathBuf, Vec<u8>>>;
 
-/// The text of a file that a person wrote, and the name to show it under.
+/// The text of a user's file, with its display name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SourceText {
     /// The file.
@@ -42,14 +42,14 @@ impl SourceText {
     }
 }
 
-/// Something wrong with what a person gave, whichever room found it.
+/// An error in the user's input, from any module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What to do about it.
+    /// Advice.
     pub help: Option<String>,
-    /// The bytes of the text it is about, where there are any.
+    /// Byte range in the text to which it refers, if any.
     pub span: Option<Range<usize>>,
 }
 
@@ -67,12 +67,12 @@ impl Diagnostic {
     }
 }
 
-/// Everything that is wrong with one text, in the order of its places; never empty.
+/// All errors of a text, in the order of their places; never empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostics {
-    /// The text, where what was given has one.
+    /// The text, if the input has one.
     pub source: Option<SourceText>,
-    /// What is wrong with it.
+    /// The errors.
     pub list: Vec<Diagnostic>,
     /// How many more there are.
     pub omitted: usize,
@@ -82,7 +82,7 @@ impl Diagnostics {
     /// Diagnostics that are kept and shown: who has more will not read them.
     pub const MOST: usize = 20;
 
-    /// The file, where there is one.
+    /// The file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.source.as_ref().map(|source| source.path.as_path())
     }
@@ -96,12 +96,12 @@ pub struct DiagnosticCollector {
 }
 
 impl DiagnosticCollector {
-    /// Adds one.
+    /// Adds an error.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.push_with(|| diagnostic);
     }
 
-    /// Adds one, which is spelled out only if it is kept.
+    /// Adds an error, which is constructed only if it is kept.
     pub fn push_with(&mut self, diagnostic: impl FnOnce() -> Diagnostic) {
         if self.list.len() < Diagnostics::MOST {
             self.list.push(diagnostic());
@@ -120,7 +120,7 @@ impl DiagnosticCollector {
         self.len() == 0
     }
 
-    /// What was found in a text, in the order of its places.
+    /// The errors of a text, in the order of their places.
     pub fn of(mut self, source: SourceText) -> Diagnostics {
         self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         Diagnostics { source: Some(source), list: self.list, omitted: self.omitted }

@@ -17,12 +17,12 @@ use super::{ShapeSpec, keys};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
-/// Changes with every change of what follows it.
+/// Changes with every change of the layout below.
 const TAG: &str = "catchment alignment problem 2";
 
 impl Design {
-    /// SHA-256 of everything in this design that changes an answer; `None` while it is unknown what a mesh held, see
-    /// [`Design::with_contents`].
+    /// SHA-256 of all inputs in this design that change a result; `None` while the content of a mesh is
+    /// unknown, see [`Design::with_contents`].
     pub fn digest(&self) -> Option<[u8; 32]> {
         let mut hash = Hash(Sha256::new());
         hash.text(TAG);
@@ -78,7 +78,7 @@ impl Hash {
         }
     }
 
-    /// What moves the halves, where anything does.
+    /// The placement of the halves, if any.
     fn drawn(&mut self, own: &OwnSpec) {
         match own.face_height {
             Some(height) => self.number(height),
@@ -241,7 +241,7 @@ mod tests {
         Design { name: "a".into(), connector: ConnectorSpec::Family(spec), width: 1.0, unit: None, alignment }
     }
 
-    /// Parameters that came later leave the digests of older designs as they were: this one was written down before.
+    /// Parameters added later leave the digests of older designs unchanged: this digest was recorded before.
     #[test]
     fn digests_stay() {
         use crate::design::family::XFace;
@@ -309,7 +309,8 @@ mod tests {
         assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 2.0, Some(b"x")));
     }
 
-    /// Whether repair was allowed changes nothing; that there was one, and how far a simplified surface may move, does.
+    /// The permission to repair changes nothing; an actual repair, and the permitted displacement of a
+    /// simplification, do.
     #[test]
     fn of_a_mesh_counts_how_it_was_treated() {
         let mesh = |treatment, repairs| {

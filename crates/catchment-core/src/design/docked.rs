@@ -28,17 +28,17 @@ impl Default for Docked {
 }
 
 impl Docked {
-    /// Above what drawings are rounded to, below any chamfer.
+    /// Above the rounding of drawings, below any chamfer.
     pub const DEFAULT_DEPTH: f64 = 2e-3;
     /// Without a limit a seat may leave a half this much play before the problem counts as ill posed, in D and radians (5°).
     pub const MOST_PLAY: [f64; 2] = [0.05, 5.0 / 180.0 * std::f64::consts::PI];
 
-    /// The limit of one error, if it has one: D or radians.
+    /// The limit of an error, if it has one: D or radians.
     pub const fn limit(&self, dof: Dof) -> Option<f64> {
         self.limits[dof.index()]
     }
 
-    /// How much play an error may have: its limit, or what goes without one.
+    /// Largest play of an error: its limit, or the default.
     pub fn most_play(&self, dof: Dof) -> f64 {
         self.limit(dof).unwrap_or(Self::MOST_PLAY[usize::from(dof.is_rotation())])
     }

@@ -22,7 +22,7 @@ fn paths_of(table: DesignTable) -> &'static [&'static str] {
     }
 }
 
-/// Keys whose values a person may replace: those that hold one value and change the answer.
+/// Keys whose values a user may replace: those with a single value that changes the result.
 fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
     DesignTable::ALL.into_iter().flat_map(|table| {
         let one_value = |key: &&Key| {
@@ -40,11 +40,11 @@ fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
     })
 }
 
-/// The path of a key, such as `alignment.center_of_rotation`, by that path, by its last word where no other key has it, or by a
-/// short name (`cor`, `rho`).
+/// The path of a key, such as `alignment.center_of_rotation`, from that path, from its last word if that is
+/// unique, or from a short name (`cor`, `rho`).
 ///
 /// # Errors
-/// No key is called so, or several are.
+/// The name belongs to no key, or to several.
 pub fn key_path(name: &str) -> Result<String, DesignDefect> {
     let name = name.trim();
     let full = ALIASES.iter().find(|(short, _)| *short == name).map_or(name, |(_, full)| *full);
@@ -68,10 +68,10 @@ fn value(text: &str) -> Value {
     text.parse::<Value>().unwrap_or_else(|_| Value::from(text))
 }
 
-/// `text` with `path` set to `value`, in the place of what it says now or as a new key of its table.
+/// `text` with `path` set to `value`, replacing its present value or as a new key of its table.
 ///
 /// # Errors
-/// The text is not TOML, or something that is no table stands where the key's table should be.
+/// The text is not TOML, or the key's table has another type.
 pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, DesignDefect> {
     let syntax = |error: toml_edit::TomlError| DesignDefect::Syntax {
         message: error.message().to_owned(),

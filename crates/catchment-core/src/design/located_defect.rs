@@ -9,9 +9,9 @@ use std::ops::Range;
 /// A defect and where it belongs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocatedDefect {
-    /// What is wrong.
+    /// The error.
     pub defect: DesignDefect,
-    /// Bytes of the file it is about; empty at the end of what comes before where something is missing.
+    /// Byte range of the file to which it refers; for a missing item empty, at the end of the preceding item.
     pub span: Range<usize>,
     /// Line of the first of them, from 1.
     pub line: usize,
@@ -56,7 +56,7 @@ impl LocatedDefects {
     /// Problems that are listed.
     pub const MOST: usize = Diagnostics::MOST;
 
-    /// Sorts and shortens a list, of which `omitted` defects were dropped before.
+    /// Sorts and shortens a list, from which `omitted` errors were already dropped.
     pub(super) fn new(mut found: Vec<(DesignDefect, Range<usize>)>, omitted: usize, text: &str) -> Self {
         found.sort_by_key(|(_, span)| (span.start, span.end));
         let omitted = omitted + found.len().saturating_sub(Self::MOST);
@@ -81,7 +81,7 @@ impl fmt::Display for LocatedDefects {
 
 impl std::error::Error for LocatedDefects {}
 
-/// Where each key of a design stands in its file, so that later rooms can point at what they complain about.
+/// Place of each key of a design in its file, so that later modules can refer to it.
 ///
 /// Places are written as in `connector.fixed.pieces[2]`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -34,7 +34,7 @@ const fn yes() -> bool {
 }
 
 impl MeshPreparation {
-    /// Repaired where needed, not simplified.
+    /// Repair if needed, without simplification.
     pub const DEFAULT: Self = Self { repair: true, simplify: None, deflection: None, body: None };
     /// Taken as it is, or refused.
     pub const AS_IT_IS: Self = Self { repair: false, simplify: None, deflection: None, body: None };
@@ -94,7 +94,7 @@ impl Repairs {
             && self.simplified.is_none()
     }
 
-    /// Counts what was done to another body, too.
+    /// Adds the changes to another body.
     pub(crate) fn add(&mut self, other: &Self) {
         self.without_area += other.without_area;
         self.doubled += other.doubled;
@@ -140,7 +140,7 @@ impl Repairs {
 }
 
 impl HalfSpec {
-    /// What was done to its meshes, as a line in the unit of the design; `None` where nothing was.
+    /// The changes to its meshes, as a line in the unit of the design; `None` without changes.
     pub fn repairs_told(&self, design: &Design) -> Option<String> {
         match self {
             Self::Mesh(file) => told(file, design),
@@ -160,7 +160,7 @@ impl HalfSpec {
 }
 
 impl HalfSpec {
-    /// How its STEP files became triangles, as a line in the unit of the design; `None` where there are none.
+    /// The meshing of its STEP files, as a line in the unit of the design; `None` without STEP files.
     pub fn meshing_told(&self, design: &Design) -> Option<String> {
         match self {
             Self::Mesh(file) => meshing(file, design),
@@ -210,13 +210,13 @@ fn rounded_up(value: f64) -> f64 {
     if places >= 0 { up(value * shift) / shift } else { up(value / shift) * shift }
 }
 
-/// What was done to a mesh file.
+/// The changes to a mesh file.
 fn told(file: &FileSpec, design: &Design) -> Option<String> {
     let repairs = &file.content.as_ref()?.repairs;
     (!repairs.is_none()).then(|| repairs.told(|d| moved(d, design)))
 }
 
-/// How far a surface moved, in millimetres where the design has units, rounded up to two digits.
+/// Displacement of a surface, in millimetres if the design has a unit, rounded up to two digits.
 fn moved(d: f64, design: &Design) -> String {
     let up = |value: f64| {
         let digit = 10f64.powf(value.log10().floor() - 1.0);

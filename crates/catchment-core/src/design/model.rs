@@ -50,7 +50,7 @@ impl LengthUnit {
     /// Every unit, small to large but for the inch.
     pub const ALL: [Self; 5] = [Self::Um, Self::Mm, Self::Cm, Self::M, Self::In];
 
-    /// Metres in one of this unit.
+    /// Metres per unit.
     pub const fn metres(self) -> f64 {
         match self {
             Self::Um => 1e-6,
@@ -152,7 +152,7 @@ impl OwnSpec {
         }
     }
 
-    /// Whether where the face centre is has to be found.
+    /// Whether the face centre is still to be determined.
     pub const fn is_face_unknown(&self) -> bool {
         match self.drawn {
             DrawnFrames::Facing => self.face_height.is_none(),
@@ -161,7 +161,7 @@ impl OwnSpec {
     }
 }
 
-/// One of the user's own halves.
+/// A half of the user's own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]

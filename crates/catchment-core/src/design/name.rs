@@ -45,7 +45,7 @@ impl DesignParameter {
         }
     }
 
-    /// Where a part of a name states it: the words before, and those after the value.
+    /// The words before and after a value in a part of a name that states this parameter.
     fn stated(self, part: &str) -> Option<(&str, &str)> {
         self.words().iter().find_map(|word| {
             let (start, _) = part.match_indices(word).find(|(start, _)| {
@@ -59,7 +59,8 @@ impl DesignParameter {
     }
 }
 
-/// What follows a value such as `1/2`, `−½`, `tan 30°` or `5 mm`; `None` if the text does not begin with one.
+/// The text after a value such as `1/2`, `−½`, `tan 30°` or `5 mm`; `None` if the text does not begin with a
+/// value.
 fn after_value(text: &str) -> Option<&str> {
     const UNITS: [&str; 8] = ["um", "mm", "cm", "m", "in", "D", "deg", "°"];
     const SIGNS: [char; 3] = ['-', '−', '+'];
@@ -76,7 +77,7 @@ fn after_value(text: &str) -> Option<&str> {
 }
 
 impl Design {
-    /// The design under the title that states `value` of a parameter, in the place of what its name states.
+    /// The design with a title that states `value` of a parameter, in place of the old statement in its name.
     pub(crate) fn titled(mut self, parameter: DesignParameter, value: &str) -> Self {
         let now = format!("{} {value}", parameter.words()[0]);
         let mut is_stated = false;
@@ -93,7 +94,7 @@ impl Design {
         self
     }
 
-    /// The design under a title that states no value of a parameter, as where many are computed.
+    /// The design with a title without a value of a parameter, for computations of many values.
     #[must_use]
     pub fn untitled(mut self, parameter: DesignParameter) -> Self {
         self.rename(|part| match parameter.stated(part) {
@@ -113,7 +114,7 @@ impl Design {
     }
 }
 
-/// Words with one space between them.
+/// Words separated by single spaces.
 fn joined(words: [&str; 3]) -> String {
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }

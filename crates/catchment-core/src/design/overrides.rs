@@ -12,7 +12,7 @@ use crate::pose::{Dof, DofSet};
 /// The set in a list such as `x,y,yaw`.
 ///
 /// # Errors
-/// An unknown name, one that stands twice, or an empty list.
+/// An unknown name, a repeated name, or an empty list.
 pub fn parse_dofs(text: &str) -> Result<DofSet, DesignDefect> {
     let mut set = DofSet::EMPTY;
     for name in text.split(',').map(str::trim) {
@@ -31,7 +31,7 @@ pub fn parse_dofs(text: &str) -> Result<DofSet, DesignDefect> {
 }
 
 impl Design {
-    /// The built-in family, if it is one.
+    /// The built-in family, if any.
     pub const fn family(&self) -> Option<Family> {
         match &self.connector {
             ConnectorSpec::Family(spec) => Some(spec.family()),
@@ -39,7 +39,7 @@ impl Design {
         }
     }
 
-    /// The built-in family with its parameters, if it is one.
+    /// The built-in family with its parameters, if any.
     pub const fn family_spec(&self) -> Option<&FamilySpec> {
         match &self.connector {
             ConnectorSpec::Family(spec) => Some(spec),
@@ -47,10 +47,10 @@ impl Design {
         }
     }
 
-    /// This design with other free degrees of freedom. One that did not matter and is now free matters.
+    /// This design with other free degrees of freedom. A don't-care rotation that becomes free counts again.
     ///
     /// # Errors
-    /// None are free, or one leaves the plane of a planar family.
+    /// An empty set, or a degree of freedom that leaves the plane of a planar family.
     pub fn with_free(mut self, free: DofSet) -> Result<Self, DesignDefect> {
         if free.is_empty() {
             return Err(DesignDefect::nothing_free("free".to_owned()));
@@ -93,7 +93,7 @@ impl Design {
     /// This design with another H/D.
     ///
     /// # Errors
-    /// Out of the range of the design file, or the halves are the person's own and have a fixed shape.
+    /// Out of the range of the design file, or own halves, whose shape is fixed.
     pub fn with_aspect_ratio(mut self, ratio: f64) -> Result<Self, DesignDefect> {
         let scale = self.scale();
         let ConnectorSpec::Family(spec) = &mut self.connector else {

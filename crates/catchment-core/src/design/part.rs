@@ -39,7 +39,7 @@ pub struct FileSpec {
 }
 
 impl FileSpec {
-    /// A file whose coordinates times `scale` are D, whatever it says itself.
+    /// A file whose coordinates times `scale` are D, whatever unit it states.
     pub fn new(path: impl Into<PathBuf>, scale: f64) -> Self {
         Self {
             path: path.into(),
@@ -51,7 +51,7 @@ impl FileSpec {
         }
     }
 
-    /// Whether files of this name may say their unit themselves.
+    /// Whether files of this type may state their unit.
     pub fn may_say_its_unit(&self) -> bool {
         const SAY: [&str; 5] = ["3mf", "step", "stp", "svg", "dxf"];
         SAY.contains(&self.ending().as_str())
@@ -104,7 +104,7 @@ pub struct PartSpec {
 }
 
 impl PartSpec {
-    /// Largest distance between something round and its facets where nothing is said, in D.
+    /// Default largest distance between a round surface and its facets, in D.
     pub const CHORD_ERROR: f64 = 0.001;
 
     /// A shape with its origin at a place, upright.
@@ -168,7 +168,7 @@ pub enum OutlineSpec {
 }
 
 impl ShapeSpec {
-    /// The file that it comes from, if it comes from one.
+    /// Its file, if it comes from a file.
     pub const fn file(&self) -> Option<&FileSpec> {
         match self {
             Self::Mesh(file) | Self::Profile { outline: OutlineSpec::File(file), .. } => Some(file),
@@ -183,7 +183,7 @@ impl ShapeSpec {
         }
     }
 
-    /// Largest distance between what is round in it and its facets; `None` where nothing is.
+    /// Largest distance between its round surfaces and their facets; `None` without round surfaces.
     pub const fn chord_error(&self) -> Option<f64> {
         match self {
             Self::Sphere { chord_error, .. }

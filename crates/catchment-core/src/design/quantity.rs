@@ -9,7 +9,7 @@ use crate::suggest::nearest;
 use std::fmt;
 use std::str::FromStr;
 
-/// What a number is measured in.
+/// Unit of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum QuantityUnit {
     /// Nothing written: D for lengths, radians for angles.
@@ -24,7 +24,7 @@ pub enum QuantityUnit {
     Radians,
 }
 
-/// Every unit with the ways to write it; the first is the one in messages.
+/// Every unit with its spellings; messages use the first.
 const UNITS: [(QuantityUnit, &[&str]); 8] = [
     (QuantityUnit::D, &["D"]),
     (QuantityUnit::Length(LengthUnit::Um), &["um", "µm", "μm"]),
@@ -46,7 +46,7 @@ impl QuantityUnit {
     }
 }
 
-/// A finite number and its unit, as a person wrote it.
+/// A finite number and its unit, as written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     /// The number.
@@ -102,7 +102,7 @@ pub fn shortened(text: &str) -> String {
     short
 }
 
-/// What turns lengths into D.
+/// Conversion of lengths to D.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LengthScale {
     /// D in `unit`, or in the nameless unit that a dimensionless design is drawn in.
@@ -115,7 +115,7 @@ impl Quantity {
     /// The length in D; bare numbers are D.
     ///
     /// # Errors
-    /// An angle, or a unit in a design that has none.
+    /// An angle, or a unit in a dimensionless design.
     pub fn length_d(self, scale: &LengthScale) -> Result<f64, DesignDefect> {
         match (self.unit, scale.unit) {
             (QuantityUnit::Bare | QuantityUnit::D, _) => Ok(self.value),
@@ -134,7 +134,7 @@ impl Quantity {
     /// The width of a design whose unit is `unit`, in that unit.
     ///
     /// # Errors
-    /// An angle, a length in D, or a unit in a design that has none.
+    /// An angle, a length in D, or a unit in a dimensionless design.
     pub fn width(self, unit: Option<LengthUnit>) -> Result<f64, DesignDefect> {
         match self.unit {
             QuantityUnit::D => Err(DesignDefect::WidthInD),
@@ -169,7 +169,7 @@ impl Quantity {
 }
 
 impl Design {
-    /// What turns lengths into D in this design.
+    /// Conversion of lengths to D in this design.
     pub const fn scale(&self) -> LengthScale {
         LengthScale { width: self.width, unit: self.unit }
     }

@@ -19,9 +19,9 @@ pub const LARGEST_FILE: usize = 4 << 20;
 /// A design and the places of its keys.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignFile {
-    /// What the file says.
+    /// The design.
     pub design: Design,
-    /// Where it says it.
+    /// The places of its values.
     pub sources: Sources,
 }
 
@@ -34,13 +34,13 @@ pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, LocatedDefects> {
     read_as(text, base_dir, Width::Written).map(|(file, _)| file)
 }
 
-/// What is known of D where the file does not say it of own halves in a unit.
+/// State of D for own halves with a unit, if the file does not state it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Width {
-    /// The file has to say it.
+    /// The file must state it.
     Written,
-    /// It is measured later: until then lengths are in this, and may be out of range. Without it in the unit itself, and what is round
-    /// is drawn roughly.
+    /// D is measured later: until then lengths are in this provisional D, and may be out of range. Without a
+    /// provisional D lengths are in the unit itself, and round surfaces are drawn coarsely.
     Provisional(Option<f64>),
     /// It was measured.
     Measured(f64, WidthFrom),
@@ -120,7 +120,7 @@ impl<'t> Walk<'t> {
         Some(Design { name, connector, width, unit, alignment })
     }
 
-    /// Family or own halves; complains about both, neither, and parameters of the wrong one.
+    /// Family or own halves; reports an error for both, for neither, and for parameters of the wrong kind.
     fn owner(&mut self, section: &Section<'t>) -> Owner {
         self.reader.refuse_unknown_keys(section, DesignTable::Connector);
         let halves = [keys::FIXED, keys::MOVING];
@@ -160,7 +160,7 @@ impl<'t> Walk<'t> {
         owner
     }
 
-    /// Width and unit; `None` when one of them is wrong.
+    /// Width and unit; `None` if either is wrong.
     fn scale(&mut self, section: &Section<'t>, owner: Owner) -> Option<LengthScale> {
         let unit = self.reader.unit(section, &keys::UNIT);
         if section.has(&keys::UNIT) && unit.is_none() {
@@ -188,7 +188,7 @@ impl<'t> Walk<'t> {
         Some(LengthScale { width, unit })
     }
 
-    /// Whether what is round is drawn roughly, because nobody knows yet how large D is.
+    /// Whether round surfaces are drawn coarsely, because D is not known yet.
     pub(super) fn is_rough(&self) -> bool {
         self.reader.measures_width && self.width == Width::Provisional(None)
     }

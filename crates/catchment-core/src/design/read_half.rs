@@ -9,10 +9,10 @@ use super::{FileSpec, FileUnit, HalfSpec, MeshPreparation, OutlineSpec, PartPlac
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// What gives a half its shape.
+/// Advice on the shape of a half.
 const HALF_ADVICE: &str =
     "give convex pieces = [[[x, y, z], …], …], mesh = \"half.stl\", or parts = [{ … }, …]";
-/// What gives a part its shape.
+/// Advice on the shape of a part.
 const PART_ADVICE: &str = "give one of mesh = \"part.stl\", pieces, sphere = { radius }, cylinder = { radius, height }, \
                            cone = { radius, height }, box = [x, y, z], or profile = [[x, y], …] with height";
 /// Keys that give a part its shape.
@@ -25,7 +25,7 @@ const SHAPES: [Key; 7] = [
     keys::PART_BOX,
     keys::PART_PROFILE,
 ];
-/// Chord error of what is round, as a share of its size, while D is not known.
+/// Chord error of round surfaces, as a share of their size, while D is not known.
 const ROUGH: f64 = 0.02;
 /// Endings of files with outlines.
 const DRAWINGS: [&str; 2] = ["svg", "dxf"];
@@ -297,7 +297,7 @@ impl<'t> Walk<'t> {
         corners.into_iter().collect::<Option<Vec<_>>>().map(OutlineSpec::Corners)
     }
 
-    /// A file and what leads from its coordinates to D.
+    /// A file and the conversion of its coordinates to D.
     fn file(
         &mut self,
         section: &Section<'t>,

@@ -36,9 +36,9 @@ pub(super) struct Reader<'t> {
     omitted: usize,
     broken: Vec<Range<usize>>,
     pub sources: Sources,
-    /// Whether D is measured from the halves, so that what they are drawn with cannot be in D.
+    /// Whether D is measured from the halves, so that the lengths that draw them cannot be in D.
     pub measures_width: bool,
-    /// Whether D is not known yet: what is in range shows when it is.
+    /// Whether D is not known yet: ranges are checked when it is.
     pub is_provisional: bool,
 }
 
@@ -264,8 +264,8 @@ impl<'t> Reader<'t> {
         None
     }
 
-    /// The number of a key in the unit of its range (D, radians or none). `scale` is `None` when the width or
-    /// the unit of the design is wrong: what needs them is then let pass.
+    /// The number of a key in the unit of its range (D, radians or without a unit). `scale` is `None` if the
+    /// width or the unit of the design is wrong: values that need them are then not checked.
     pub(super) fn number(
         &mut self,
         section: &Section<'t>,
@@ -388,7 +388,7 @@ impl<'t> Reader<'t> {
         })
     }
 
-    /// A list of three, each read by `one`; every one is looked at, also behind a wrong one.
+    /// A list of three, each read by `one`; all are checked, even after an error.
     pub(super) fn three<T>(
         &mut self,
         place: &str,

@@ -6,8 +6,9 @@ use super::{Family, LengthUnit};
 use crate::pose::Dof;
 use serde_json::{Map, Value, json};
 
-/// The schema (JSON Schema 2020-12), pretty-printed. It is generated from [`keys`], like the reader; what a
-/// schema cannot say (files that exist, keys that exclude each other) only the reader checks.
+/// The schema (JSON Schema 2020-12), pretty-printed. It is generated from [`keys`], like the reader;
+/// conditions that a schema cannot express (files that exist, keys that exclude each other) are checked only
+/// by the reader.
 pub fn json_schema() -> String {
     let mut schema = Map::new();
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
@@ -116,7 +117,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    /// The schema beside the example designs is the one this program generates. To renew it:
+    /// The schema beside the example designs is the schema that this program generates. To renew it:
     /// `catchment schema -o designs/schema.json --force`.
     #[test]
     fn the_committed_schema_is_current() {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-/// One table of the document.
+/// A table of the document.
 #[derive(Clone)]
 pub(super) struct Section<'t> {
     /// As in `connector.fixed`; empty for the file itself.
@@ -24,12 +24,12 @@ impl<'t> Section<'t> {
         self.table.get_key_value(name)
     }
 
-    /// Place of one of its keys.
+    /// Place of a key of this table.
     pub(super) fn place(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Where a key is written, if it is.
+    /// Byte range of a key, if it is present.
     pub(super) fn key_span(&self, key: &Key) -> Option<Range<usize>> {
         self.entry(key.name).map(|(name, _)| name.span())
     }

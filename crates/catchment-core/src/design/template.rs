@@ -6,7 +6,7 @@ use super::{Alignment, Docked, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
 use std::fmt::Write;
 
-/// A design file of this family with every key it may have: what is commented out shows the default.
+/// A design file of this family with every key that it may have: the comments show the defaults.
 pub fn template(family: Family) -> String {
     let mut text = String::from(
         "#:schema schema.json\n\
@@ -36,7 +36,7 @@ pub fn template(family: Family) -> String {
     text
 }
 
-/// What a newcomer is likely to change first, and what the answer depends on most.
+/// Keys that a new user is likely to change first, and those with the largest effect on the result.
 fn is_active(key: &Key, family: Family) -> bool {
     let free = Alignment::default_for(Some(family)).free;
     match key.table {
@@ -141,8 +141,8 @@ mod tests {
         }
     }
 
-    /// What a comment shows is what holds: written out, nothing changes but the unit, the base thickness and the limits of
-    /// [docked], which have no value by default.
+    /// The values in comments are the defaults: writing them out changes nothing except the unit, the base
+    /// thickness and the limits of [docked], which have no default value.
     #[test]
     fn commented_out_defaults_are_the_defaults() {
         // These say something by being there.

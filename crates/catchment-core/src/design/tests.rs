@@ -295,7 +295,7 @@ proptest::proptest! {
     }
 }
 
-/// Every design of the repository reads and names the schema for editors; every family has one.
+/// Every design of the repository is valid and names the schema for editors; every family has a design.
 #[test]
 fn the_example_designs_are_good() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");

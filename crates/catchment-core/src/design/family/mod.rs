@@ -26,11 +26,11 @@ pub use saddle::{XFace3d, XFace3dLocking};
 use super::keys::{self, Key};
 use serde::{Deserialize, Serialize};
 
-/// The key `family`, for a person: every name of the table below.
+/// Description of the key `family`: every name of the table below.
 pub(super) const NAMES: &str =
     "Built-in family: v-face, s-face, x-face, pyramid, cone, x-face-3d, x-face-3d-locking or pin-hole.";
 
-/// Which errors matter to a family unless a design says otherwise.
+/// Default free errors of a family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freedom {
     /// A profile in the x–z plane, extruded along y: x and pitch.
@@ -55,7 +55,7 @@ pub enum Value {
 /// A parameter's place in its struct.
 enum Field<'a> {
     Number(&'a mut f64),
-    /// `None`: what the family has where the design says nothing.
+    /// `None`: the family's default.
     Optional(&'a mut Option<f64>),
     Whole(&'a mut u32),
     Flag(&'a mut bool),
@@ -146,21 +146,20 @@ macro_rules! families {
                 match self { $(Self::$name => $text,)* }
             }
 
-            /// What it is, in a few words.
+            /// Short description.
             pub const fn summary(self) -> &'static str {
                 match self { $(Self::$name => $summary,)* }
             }
 
-            /// Which errors matter to it unless a design says otherwise.
+            /// Default free errors.
             pub const fn freedom(self) -> Freedom {
                 match self { $(Self::$name => $freedom,)* }
             }
         }
 
         /// A family and its parameters; all lengths in D, angles in radians.
-        ///
-        /// As JSON one object: the family's name under `family`, then its parameters. Other keys are ignored, so that
-        /// objects with the parameters of all families still read.
+        /// In JSON it is an object: the family's name under `family`, then its parameters. Other keys are
+        /// ignored, so that objects with the parameters of all families are still valid.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[serde(tag = "family")]
@@ -184,7 +183,8 @@ macro_rules! families {
                 match self { $(Self::$name(parameters) => parameters.aspect_ratio,)* }
             }
 
-            /// Material behind the mating surface, in D, where the family's default is not wanted.
+            /// Thickness of the material behind the mating surface, in D, if it differs from the family's
+            /// default.
             pub const fn base_thickness(&self) -> Option<f64> {
                 match self { $(Self::$name(parameters) => parameters.base_thickness,)* }
             }
@@ -236,29 +236,31 @@ impl Family {
 }
 
 impl FamilySpec {
-    /// Every parameter with its key and value, in the order of the documentation; `None` where the family's default
-    /// holds.
+    /// Every parameter with its key and value, in the order of the documentation; `None` for the family's
+    /// default.
     pub fn parameters(mut self) -> Vec<(&'static Key, Option<Value>)> {
         self.fields().into_iter().map(|(key, field)| (key, field.value())).collect()
     }
 
-    /// The value of a parameter; `None` where the family does not have it, or has its default.
+    /// The value of a parameter; `None` if the family does not have it, or has its default.
     pub fn get(self, key: &Key) -> Option<Value> {
         self.parameters().into_iter().find(|(has, _)| has.name == key.name)?.1
     }
 
-    /// Gives a parameter another value. False where the family does not have the parameter, or it is of another type.
+    /// Sets a parameter. False if the family does not have the parameter, or it has another type.
     pub fn set(&mut self, key: &Key, value: Value) -> bool {
         let field = self.fields().into_iter().find(|(has, _)| has.name == key.name);
         field.is_some_and(|(_, field)| field.set(value))
     }
 
-    /// Whether its halves come in layers, each of which belongs to one layer of the other half: surfaces of the same number.
+    /// Whether its halves have layers, each of which belongs to the layer of the other half with the same
+    /// number.
     pub fn is_layered(&self) -> bool {
         keys::LAYER_GAP.applies.to(Some(self.family()))
     }
 
-    /// Whether errors out of the plane have a meaning: a profile has none, unless its layers are given a size along y.
+    /// Whether errors out of the plane have a meaning: not for a profile, unless its layers have a size along
+    /// y.
     pub fn has_depth(&self) -> bool {
         let written = |key| self.get(key).is_some();
         !self.family().is_planar() || written(&keys::LAYER_THICKNESS) || written(&keys::LAYER_GAP)
@@ -272,7 +274,7 @@ impl FamilySpec {
         }
     }
 
-    /// The same with another chord error, in D. A family without circles has none and stays as it is.
+    /// The same with another chord error, in D. A family without circles stays unchanged.
     #[must_use]
     pub fn with_chord_error(mut self, chord_error: f64) -> Self {
         self.set(&keys::CHORD_ERROR, Value::Number(chord_error));

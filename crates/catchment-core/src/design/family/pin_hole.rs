@@ -13,7 +13,7 @@ parameters! {
         chord_error: f64 = 0.001 => CHORD_ERROR;
         /// Pins per half.
         pins: u32 = 2 => PINS;
-        /// Pins and holes alternate on both halves instead of all pins on one.
+        /// Pins and holes alternate on both halves instead of all pins on a single half.
         hermaphroditic: bool = false => HERMAPHRODITIC;
         /// Radius of a pin, in D.
         pin_radius: f64 = 0.05 => PIN_RADIUS;

@@ -23,9 +23,9 @@ parameters! {
 }
 
 impl XFace {
-    /// Thickness of a layer along y where a design names none, in D: with the gap the halves are one D deep.
+    /// Default thickness of a layer along y, in D: with the gap the halves are 1 D deep.
     pub const DEFAULT_LAYER_THICKNESS: f64 = 0.45;
-    /// Gap between the layers where a design names none, in D.
+    /// Default gap between the layers, in D.
     pub const DEFAULT_LAYER_GAP: f64 = 0.1;
 }
 

@@ -26,7 +26,7 @@ parameters! {
         lip_height: f64 = 0.1 => LIP_HEIGHT;
         /// Inclination of the lip's mating faces from the vertical, radians.
         draft_angle: f64 = 0.0 => DRAFT_ANGLE;
-        /// Play between vertical lips, in D; lips with a draft have none.
+        /// Play between vertical lips, in D; lips with a draft have no play.
         clearance: f64 = 0.005 => CLEARANCE;
     }
 }

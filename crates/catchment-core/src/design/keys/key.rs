@@ -13,7 +13,7 @@ pub struct Range {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// What it is in: `""`, `"D"`, `"rad"`.
+    /// Its unit: `""`, `"D"`, `"rad"`.
     pub unit: &'static str,
 }
 
@@ -40,7 +40,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// What a value may be.
+/// Type of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ValueKind {
     /// A line of text for people.
@@ -134,7 +134,7 @@ impl DesignTable {
         Self::Docked,
     ];
 
-    /// For a person.
+    /// Name for people.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Root => "the top of the file",
@@ -201,16 +201,16 @@ pub struct Key {
     pub table: DesignTable,
     /// Its name.
     pub name: &'static str,
-    /// What its value may be.
+    /// Type of its value.
     pub kind: ValueKind,
     /// Who has it.
     pub applies: Applies,
-    /// What it means, for a person.
+    /// Its meaning, for people.
     pub doc: &'static str,
 }
 
 impl Key {
-    /// The key that each of the three values of this one is checked by.
+    /// The key for the check of each of the three values of this key.
     #[must_use]
     pub const fn element(self) -> Self {
         let kind = match self.kind {
@@ -221,7 +221,7 @@ impl Key {
         Self { kind, ..self }
     }
 
-    /// Whether what a quantity means for this key depends on D.
+    /// Whether the meaning of a quantity for this key depends on D.
     pub(in crate::design) const fn depends_on_width(&self, quantity: Quantity) -> bool {
         match self.kind {
             ValueKind::Length(_) => !matches!(quantity.unit, QuantityUnit::Bare | QuantityUnit::D),
@@ -230,7 +230,7 @@ impl Key {
         }
     }
 
-    /// The length in D, whatever the range; `None` of what is none.
+    /// The length in D, whatever the range; `None` for other quantities.
     pub(in crate::design) fn unchecked(
         &self,
         quantity: Quantity,
@@ -243,8 +243,8 @@ impl Key {
         }
     }
 
-    /// The quantity in the unit of this key's range (D, radians or none), if it lies in the range. `None` when
-    /// that takes a `scale` and there is none.
+    /// The quantity in the unit of this key's range (D, radians or without a unit), if it lies in the range.
+    /// `None` if a `scale` is needed and missing.
     ///
     /// # Errors
     /// Out of range, a unit of the wrong dimension, or a unit in a dimensionless design.

@@ -291,7 +291,7 @@ keys! {
 pub const ERROR_KEYS: [Key; 5] = [ERROR_X, ERROR_Y, ERROR_ROLL, ERROR_PITCH, ERROR_YAW];
 /// The limits at rest in the order of [`crate::pose::Dof::ALL`], and their places in the file.
 pub const DOCKED_KEYS: [Key; 5] = [DOCKED_X, DOCKED_Y, DOCKED_ROLL, DOCKED_PITCH, DOCKED_YAW];
-/// Where they stand.
+/// Their places in the file.
 pub const DOCKED_PLACES: [&str; 5] = ["docked.x", "docked.y", "docked.roll", "docked.pitch", "docked.yaw"];
 
 /// A coordinate of a drawn point: 1000 widths away is a wrong unit.
@@ -302,7 +302,7 @@ pub const COORDINATE: Key = key(
     "A coordinate of a convex piece, in the unit of the design. Is `connector.width` in the same unit?",
 );
 
-/// Most parts of a half: beyond it a mesh says the same with less.
+/// Largest number of parts of a half: beyond it use a mesh.
 pub const MOST_PARTS: usize = 256;
 
 /// Longest name, in characters.
