@@ -8,7 +8,7 @@ use std::fmt;
 pub enum Advice {
     /// So many cells per axis would fit.
     AtMostResolution(usize),
-    /// So many random poses would fit.
+    /// Largest number of sampled poses that fits.
     AtMostSamples(u64),
     /// A coarser grid.
     CoarserGrid,
@@ -20,7 +20,7 @@ pub enum Advice {
     FewerSlices,
     /// Fewer threads.
     FewerThreads,
-    /// A magnet, a pin, a stop: what belongs to a half beside its file.
+    /// A magnet, a pin, a stop: a part that belongs to a half and is not in its file.
     MissingPart,
     /// This method instead.
     Method(&'static str),
@@ -28,7 +28,7 @@ pub enum Advice {
     MoreMemory,
     /// Parts that are each drawn in a frame of their own, instead of as an assembly.
     OwnFrames,
-    /// Random poses, followed exactly.
+    /// Sampled poses, followed exactly.
     Samples,
 }
 
@@ -51,7 +51,7 @@ impl fmt::Display for Advice {
     }
 }
 
-/// What helps against an error, one or the other: the `source()` of an error that has advice, however deep that lies.
+/// Advice for an error, as alternatives: the `source()` of an error with advice, at any depth.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join(", or "))]
 pub struct Advised(pub Vec<Advice>);

@@ -13,14 +13,14 @@
 
 use std::fmt;
 
-/// The most that one input may have of something.
+/// Limit on a resource of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limit {
     /// How many it may have.
     pub most: u64,
-    /// Of what: a plural noun.
+    /// Name of the resource: a plural noun.
     pub of: &'static str,
-    /// What the author of the input can do about it.
+    /// Advice for the author of the input.
     pub remedy: &'static str,
 }
 
@@ -28,7 +28,7 @@ impl Limit {
     /// Accepts a count that is within the limit.
     ///
     /// # Errors
-    /// [`Overspent`] where `count` is larger.
+    /// [`Overspent`] if `count` is larger.
     pub const fn allows(self, count: u64) -> Result<(), Overspent> {
         if count > self.most { Err(Overspent { limit: self }) } else { Ok(()) }
     }
@@ -50,7 +50,7 @@ impl Budget {
     /// Charges `count` more; a sum beyond 64 bits is beyond every limit.
     ///
     /// # Errors
-    /// [`Overspent`] where the sum would exceed the limit. Nothing is charged then.
+    /// [`Overspent`] if the sum would exceed the limit. Nothing is charged then.
     pub const fn spend(&mut self, count: u64) -> Result<(), Overspent> {
         let sum = self.spent.saturating_add(count);
         match self.limit.allows(sum) {
@@ -68,7 +68,7 @@ impl Budget {
     }
 }
 
-/// An input asks for more than a limit.
+/// An input exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Overspent {
     /// The limit.

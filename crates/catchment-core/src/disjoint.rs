@@ -26,7 +26,8 @@ impl DisjointSets {
         member
     }
 
-    /// Makes the sets of two members one: the leader that stays and the one that goes, or nothing if they are one already.
+    /// Merges the sets of two members: returns the leader that stays and the leader that is removed, or
+    /// nothing if they are already in the same set.
     pub fn join(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
         let (a, b) = (self.find(a), self.find(b));
         if a == b {

@@ -69,7 +69,7 @@ pub enum FailureReason {
 }
 
 impl FailureReason {
-    /// Why a motion that ended with this outcome at this pose error did not dock, if that can be told.
+    /// Reason why a motion with this outcome and this last pose error did not dock, if it can be determined.
     pub fn of(problem: &Problem, outcome: Outcome, end: &PoseError) -> Option<Self> {
         let crossed = outcome == Outcome::Jammed && problem.may_cross() && problem.pair().crosses(end);
         crossed.then_some(Self::Crossed)
@@ -127,8 +127,8 @@ impl Domain {
         }
     }
 
-    /// `count` poses drawn independently and uniformly from the error box of `alignment`. Pose k depends on `seed`
-    /// and k alone: a longer list starts with the shorter one.
+    /// `count` poses sampled independently and uniformly from the error box of `alignment`. Pose k depends
+    /// only on `seed` and k: a longer list starts with the shorter list.
     pub fn random(alignment: &Alignment, count: usize, seed: u64) -> Self {
         let stream = Stream::new(seed);
         let pose = |k: usize| {
@@ -167,7 +167,7 @@ pub enum Warning {
     },
     /// The method's direction is quantised by the grid, so its border does not converge to the true one.
     FloodingBias,
-    /// Accepted cells lie on level ground, such as the rim of a hole, where nothing slides.
+    /// Accepted cells lie on level ground, such as the rim of a hole, on which nothing slides.
     LevelGround {
         /// Number of such cells.
         cells: usize,
@@ -218,7 +218,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// What helps against it, where something does.
+    /// Advice for the warning, if there is any.
     pub const fn advice(&self) -> Option<Advice> {
         match self {
             Self::TouchesBorder { .. } => Some(Advice::EnlargeErrors),
@@ -306,11 +306,11 @@ impl fmt::Display for Warning {
 pub struct Acceptance {
     /// Name of the method that decided.
     pub method: &'static str,
-    /// What was tried.
+    /// The decided poses.
     pub domain: Domain,
-    /// One outcome per cell or pose, in the order of the domain.
+    /// The outcome of each cell or pose, in the order of the domain.
     pub outcomes: Vec<Outcome>,
-    /// Doubts.
+    /// Warnings.
     pub warnings: Vec<Warning>,
 }
 

@@ -25,7 +25,7 @@ impl Stream {
         Self { start: mix(seed.wrapping_add(STEP)) }
     }
 
-    /// Another sequence, for part `part` of what the seed is for.
+    /// A separate sequence for part `part` of the task.
     #[must_use]
     pub const fn branch(self, part: u64) -> Self {
         Self::new(self.start ^ mix(part.wrapping_add(STEP)))

@@ -55,7 +55,7 @@ pub struct Document {
 /// Parts that belong together.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
-    /// Its heading, where it has one.
+    /// Its heading, if any.
     pub title: Option<String>,
     /// Its parts, from top to bottom.
     pub parts: Vec<SectionPart>,
@@ -141,7 +141,7 @@ impl Document {
         self
     }
 
-    /// The table that programs read as CSV: the first one whose columns have keys.
+    /// The table for programs as CSV: the first table whose columns have keys.
     pub fn records(&self) -> Option<&Table> {
         let parts = self.sections.iter().flat_map(|section| &section.parts);
         parts
@@ -183,7 +183,7 @@ pub(crate) fn shares_by_outcome(generator: &mut schemars::SchemaGenerator) -> sc
     schemars::json_schema!({ "type": "object", "properties": properties })
 }
 
-/// The same where there may be none.
+/// The same for an optional map.
 #[cfg(feature = "schema")]
 pub(crate) fn shares_or_null(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
     let mut schema = shares_by_outcome(generator);

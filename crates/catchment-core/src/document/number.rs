@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-/// A length in the design's unit, `width` being D in it: to a thousandth of D, of parts in metres too; without a minus before what is nothing.
+/// A length in the design's unit, in which D is `width`: to a thousandth of D, also for parts in metres;
+/// without a minus sign before zero.
 pub fn length(value: f64, width: f64) -> String {
     fixed(value, decimals(width))
 }
@@ -37,7 +38,7 @@ pub fn tenths_between(share: f64, [low, high]: [f64; 2]) -> String {
     format!("{} ({} … {})", tenths(share), tenths(low), tenths(high))
 }
 
-/// A number as a person writes it: up to four decimals, no trailing zeros.
+/// A number in short form: up to four decimals, no trailing zeros.
 pub fn rounded(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -55,7 +56,7 @@ pub fn significant(value: f64) -> String {
     format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
 }
 
-/// Four significant digits of a number from 0 on, rounded towards 0: what is at least.
+/// Four significant digits of a non-negative number, rounded towards 0: for lower bounds.
 pub fn rounded_down(value: f64) -> String {
     let digits = 10f64.powf(3.0 - value.log10().floor());
     significant(if value > 0.0 { (value * digits).floor() / digits } else { 0.0 })
@@ -103,7 +104,7 @@ pub fn number(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// A peg of 8 mm whose file is in metres, a part in millimetres, and one in D.
+    /// A peg of 8 mm whose file is in metres, a part in millimetres, and a part in D.
     #[test]
     fn lengths_show_a_thousandth_of_the_width_in_any_unit() {
         assert_eq!(length(0.006_612, 0.007_964), "0.006612");

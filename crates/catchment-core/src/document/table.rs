@@ -27,9 +27,10 @@ pub enum ColumnFormat {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Column {
-    /// Its heading; a column without one is for programs alone.
+    /// Its heading; a column without a heading is only for programs.
     pub title: Option<String>,
-    /// The names of its values for programs: one, three for intervals (value, lower end, upper end), none for people alone.
+    /// The names of its values for programs: one, three for intervals (value, lower end, upper end), or an
+    /// empty list for a column only for people.
     pub keys: Vec<String>,
     /// How its numbers are shown.
     pub format: ColumnFormat,
@@ -105,7 +106,7 @@ impl Column {
         self
     }
 
-    /// What people see of a cell.
+    /// Text of a cell for people.
     pub fn shown(&self, cell: &Cell) -> String {
         match cell {
             Cell::Empty => String::new(),
@@ -142,7 +143,7 @@ impl Cell {
         Self::Shown(text.into(), Box::new(value.into()))
     }
 
-    /// What programs read of it, in as many fields as its column has keys.
+    /// Values of a cell for programs, in as many fields as its column has keys.
     fn records(&self, fields: usize) -> Vec<String> {
         let mut values = match self {
             Self::Empty => Vec::new(),

@@ -7,7 +7,7 @@ use crate::pose::{Dof, PoseError};
 /// Lengths below this are 0, in D: rounding.
 const NOTHING: f64 = 1e-8;
 
-/// The unit of a design: its own, or D where it has none.
+/// The unit of a design: its own, or D without one.
 #[derive(Debug, Clone, Copy)]
 pub struct DesignUnits<'a> {
     design: &'a Design,

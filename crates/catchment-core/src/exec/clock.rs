@@ -49,7 +49,7 @@ impl Stopwatch {
         Self(moment::Moment::now())
     }
 
-    /// Time since the start; zero where the system has no clock.
+    /// Time since the start; zero on a system without a clock.
     pub fn elapsed(&self) -> Duration {
         self.0.elapsed()
     }

@@ -10,7 +10,7 @@ thread_local! {
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What `work` gives, which changes nothing outside and stays on this thread; none where it panics.
+/// Result of `work`, which must have no side effects and stay on this thread; `None` if it panics.
 pub(crate) fn attempt<T>(work: impl FnOnce() -> T) -> Option<T> {
     let before = EXPECTED.replace(true);
     // Nothing of the work is used after a panic.

@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 use threads::Threads;
 
-/// The computation was asked to stop.
+/// The computation was cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
@@ -53,17 +53,17 @@ impl fmt::Debug for Exec {
 }
 
 impl Exec {
-    /// A thread per core, or as many as the environment variable `RAYON_NUM_THREADS` says (fewer where the system refuses them), no
-    /// progress, three quarters of the available memory.
+    /// A thread per core, or the number in the environment variable `RAYON_NUM_THREADS` (fewer if the system
+    /// refuses them), no progress, three quarters of the available memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Uses exactly `threads` worker threads of its own; 0 means as many as [`Exec::new`].
+    /// Uses exactly `threads` worker threads of its own; 0 means as many as in [`Exec::new`].
     ///
     /// # Errors
-    /// The system refuses to start that many threads; or none are asked for, and the environment variable `RAYON_NUM_THREADS` is not a
-    /// number from 0 to 1024.
+    /// The system refuses to start that many threads; or `threads` is 0, and the environment variable
+    /// `RAYON_NUM_THREADS` is not a number from 0 to 1024.
     pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
         self.threads = if threads == 0 { Threads::shared()? } else { Threads::exactly(threads)? };
         Ok(self)
@@ -89,8 +89,8 @@ impl Exec {
         self
     }
 
-    /// Stops when `limit` from now is over, or an earlier limit, as if a stop had been asked for: the result is whole or
-    /// there is none. Where the system has no clock, never.
+    /// Cancels the computation after `limit` from now, or after an earlier limit: the result is then complete
+    /// or absent. Has no effect on a system without a clock.
     #[must_use]
     pub fn with_time_limit(mut self, limit: Duration) -> Self {
         let left = self.deadline.map_or(limit, |earlier| earlier.left().min(limit));
@@ -103,25 +103,26 @@ impl Exec {
         Arc::clone(&self.cancel)
     }
 
-    /// Whether a stop was asked for, or the time limit is over.
+    /// Whether a stop was requested, or the time limit has passed.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed) || self.deadline.is_some_and(|deadline| deadline.is_over())
     }
 
-    /// `Err` once a stop was asked for. Rooms call this at least once per rotation or per pose.
+    /// `Err` once a stop was requested. Modules call this at least once per rotation or per pose.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Reports `fraction` of `stage` as done. What another thread has overtaken is not passed on.
+    /// Reports `fraction` of `stage` as done. Values below an earlier report from another thread are not
+    /// passed on.
     pub fn report(&self, fraction: f64, stage: &'static str) {
         if let Some(progress) = &self.progress {
             progress.report(fraction, stage);
         }
     }
 
-    /// The same for a part of a stage: what it reports as [0, 1] is passed on as `span` of `stage`, and if this is a
-    /// part itself, as that span of its own.
+    /// The same for a part of a stage: its reports in [0, 1] are passed on as `span` of `stage`, and if this
+    /// is a part itself, as that span of its own.
     #[must_use]
     pub fn part(&self, span: [f64; 2], stage: &'static str) -> Self {
         Self { progress: self.progress.as_ref().map(|whole| whole.part(span, stage)), ..self.clone() }
@@ -137,9 +138,9 @@ impl Exec {
         self.threads.install(work)
     }
 
-    /// Does `count` pieces of work, and returns what they give in order. At most `side_by_side` run at once, each on one thread that works for
-    /// it alone and reports no progress of its own: good for many small pieces of different size. The share that is done is
-    /// reported as `stage`.
+    /// Runs `count` pieces of work, and returns their results in order. At most `side_by_side` run at once,
+    /// each on its own thread and without progress reports of its own: suitable for many small pieces of
+    /// different size. The finished share is reported as `stage`.
     pub fn each<T: Send>(
         &self,
         count: usize,
@@ -163,8 +164,9 @@ impl Exec {
         threads::side_by_side(count, lanes, |k| finished(work(k, &lane)))
     }
 
-    /// Bytes one result may use: the set budget, else three quarters of the memory the system says is free. Never more
-    /// than the limits of this process leave (its address space, its control group): beyond them it would be ended.
+    /// Bytes that a result may use: the set budget, else three quarters of the free memory of the system.
+    /// Never more than the limits of this process leave (its address space, its control group): beyond them
+    /// it would be ended.
     pub fn memory_budget(&self) -> u64 {
         match self.memory_budget {
             Some(bytes) => bytes.min(memory::limit()),
@@ -175,7 +177,7 @@ impl Exec {
     /// Compares what a result needs with the budget, *before* anything is allocated.
     ///
     /// # Errors
-    /// When it needs more; `advice(budget)` says what would fit.
+    /// If it needs more; `advice(budget)` gives the sizes that fit.
     pub fn ensure_fits(
         &self,
         what: &'static str,

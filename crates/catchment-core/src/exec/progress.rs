@@ -2,22 +2,22 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Called with the fraction done, in [0, 1], and the stage's name. Within a run a stage's fractions never decrease,
-/// whatever the threads and parts that report; calls come one at a time. It must not report by itself.
+/// Called with the finished fraction, in [0, 1], and the stage's name. Within a run a stage's fractions never
+/// decrease, whatever threads and parts report; calls are sequential. It must not report by itself.
 pub type Progress = Arc<dyn Fn(f64, &'static str) + Send + Sync>;
 
-/// One run's reports, shared by its clones and parts.
+/// The reports of a run, shared by its clones and parts.
 struct Run {
     consumer: Progress,
-    /// The greatest fraction told of every stage.
+    /// The greatest fraction reported for every stage.
     told: Mutex<Vec<(&'static str, f64)>>,
 }
 
-/// Where reports go: to the run, or to a part of one of its stages.
+/// Target of reports: the run, or a part of one of its stages.
 #[derive(Clone)]
 pub(super) struct Reporter {
     run: Arc<Run>,
-    /// What [0, 1] is within the stage of the run.
+    /// The span of [0, 1] within the stage of the run.
     span: [f64; 2],
     /// The stage that this is a part of.
     stage: Option<&'static str>,

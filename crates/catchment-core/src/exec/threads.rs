@@ -29,31 +29,31 @@ pub enum ThreadsError {
         "the system does not start {threads} threads ({reason}): ask for fewer, or for as many as it gives"
     )]
     Refused {
-        /// How many were asked for.
+        /// The requested number.
         threads: usize,
-        /// What the system says.
+        /// Error of the system.
         reason: String,
     },
-    /// The environment asks for a number of threads that is none, or that nothing needs.
+    /// The environment variable is not a valid number of threads.
     #[error(
         "the environment variable {VARIABLE} is \"{}\", not a number of threads from 0 to {MOST}: set it to one, or unset it",
         escaped(value)
     )]
     Environment {
-        /// What it says, cut off where it is long.
+        /// Its value, shortened if it is long.
         value: String,
     },
 }
 
-/// The environment variable that says how many threads runs have that do not ask: that of `rayon`.
+/// The environment variable with the number of threads for runs without an explicit number: that of `rayon`.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
-/// More threads are not started, whatever the environment says.
+/// Upper limit on the number of threads, whatever the environment.
 const MOST: usize = 1024;
 
-/// How many threads the environment asks for; 0 where it does not say.
+/// Number of threads in the environment variable; 0 if it is not set.
 ///
 /// # Errors
-/// It says something else than 0 to 1024.
+/// Its value is not a number from 0 to 1024.
 fn wanted(value: Option<OsString>) -> Result<usize, ThreadsError> {
     /// Longest value that a message repeats, in characters.
     const LONGEST: usize = 40;
@@ -63,15 +63,15 @@ fn wanted(value: Option<OsString>) -> Result<usize, ThreadsError> {
     number.ok_or_else(|| ThreadsError::Environment { value: value.chars().take(LONGEST).collect() })
 }
 
-/// What the environment says of threads.
+/// Value of the environment variable.
 fn environment() -> Option<OsString> {
     std::env::var_os(VARIABLE)
 }
 
-/// Where work runs.
+/// Place of execution.
 #[derive(Clone, Default)]
 pub(super) enum Threads {
-    /// In the pool of all runs that did not ask for one.
+    /// In the pool of all runs without their own threads.
     #[default]
     Shared,
     /// In a pool of its own.
@@ -81,7 +81,7 @@ pub(super) enum Threads {
 }
 
 impl Threads {
-    /// Those of all runs that did not ask for some.
+    /// The threads of all runs without their own.
     pub(super) fn shared() -> Result<Self, ThreadsError> {
         wanted(environment()).map(|_| Self::Shared)
     }
@@ -115,10 +115,10 @@ impl Threads {
 
 /// The stack of a thread, in bytes.
 const STACK: usize = 2 << 20;
-/// One in so many parts of what the limits of this process leave is the most that stacks take of it.
+/// Stacks may take at most one in this many parts of the memory that the limits of this process leave.
 const STACKS_PART: u64 = 2;
 
-/// Why there is no room for the stacks of so many threads in what the limits of this process leave.
+/// Error if the limits of this process leave no room for the stacks of this many threads.
 fn ensure_room(threads: usize, left: u64) -> Result<(), String> {
     let stacks = (threads as u64).saturating_mul(STACK as u64);
     if stacks <= left / STACKS_PART {
@@ -131,8 +131,9 @@ fn ensure_room(threads: usize, left: u64) -> Result<(), String> {
     ))
 }
 
-/// Hands the numbers below `count` to `work`, on `lanes` threads that share nothing: a pool would let a thread that waits in one
-/// piece begin another, and hold both in memory. Without threads everything happens here.
+/// Passes the numbers below `count` to `work`, on `lanes` independent threads: in a pool, a thread that waits
+/// in one piece could begin another, and hold both in memory. Without threads everything runs on the caller's
+/// thread.
 pub(super) fn side_by_side<T: Send>(count: usize, lanes: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let done: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
@@ -153,7 +154,7 @@ pub(super) fn side_by_side<T: Send>(count: usize, lanes: usize, work: impl Fn(us
     done.into_iter().filter_map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
 }
 
-/// The pool of all runs that did not ask for one, if the system gives a thread at all.
+/// The pool of all runs without their own, if the system provides a thread at all.
 fn shared() -> Option<&'static ThreadPool> {
     static SHARED: OnceLock<Option<ThreadPool>> = OnceLock::new();
     SHARED
@@ -169,7 +170,7 @@ fn shared() -> Option<&'static ThreadPool> {
         .as_ref()
 }
 
-/// What `start` makes of the largest of `most`, half of it, … 1 that it accepts.
+/// Result of `start` for the largest of `most`, half of it, … 1 that it accepts.
 fn most<T>(most: usize, start: impl FnMut(usize) -> Option<T>) -> Option<T> {
     std::iter::successors(Some(most.max(1)), |n| (*n > 1).then_some(n / 2)).find_map(start)
 }

@@ -13,16 +13,16 @@ use std::ops::Range;
 
 /// Computes heights of first contact over rotations of an error grid.
 pub trait Backend: Sync {
-    /// Heights over a range of the grid's rotations, in grid order: z of the COR at first contact at every cell's
-    /// centre, in D, rounded to single precision; −∞ where the halves pass each other by.
+    /// Heights over a range of the grid's rotations, in grid order: z of the COR at first contact at every
+    /// cell's centre, in D, rounded to single precision; −∞ if the halves pass each other by.
     ///
-    /// `out` has the cells of those rotations, x fastest, and is overwritten. An error without an axis is 0; a
-    /// translation that the pair locks stays at the COR. What is written for a rotation depends on that rotation alone.
-    /// The grid samples no locked translation.
+    /// `out` has the cells of those rotations, x fastest, and is overwritten. An error without an axis is 0;
+    /// a translation that the pair locks stays at the COR. The results for a rotation depend on that rotation
+    /// alone. The grid samples no locked translation.
     fn heights(&self, pair: &Pair, grid: &Grid, rotations: Range<usize>, out: &mut [f32]);
 }
 
-/// The fast path: the upper envelope of all that can touch, one rotation at a time.
+/// The fast path: the upper envelope of all possible contacts, one rotation at a time.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Fast;
 
@@ -49,7 +49,7 @@ impl Backend for Fast {
     }
 }
 
-/// The judge: the definition in plain loops, cell by cell.
+/// The reference: the definition in plain loops, cell by cell.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Brute;
 
@@ -69,7 +69,7 @@ pub(super) fn slab(grid: &Grid) -> usize {
     grid.axes.iter().filter(|a| !a.dof.is_rotation()).map(|a| a.cells).product()
 }
 
-/// COR positions along x and y at one rotation, for the grid's face centres.
+/// COR positions along x and y at a given rotation, for the grid's face centres.
 pub(super) fn lateral_lattices(pair: &Pair, grid: &Grid, rotation: &DMat3) -> [Lattice; 2] {
     let face = face_from_cor(rotation, pair.alignment.center_of_rotation);
     [(Dof::X, face.x), (Dof::Y, face.y)].map(|(dof, face)| match grid.axis(dof) {
@@ -84,7 +84,7 @@ pub(super) fn lateral([x, y]: [Lattice; 2], kx: f64, ky: f64) -> DVec2 {
     DVec2::new(x.first + kx * x.step, y.first + ky * y.step)
 }
 
-/// What every backend must do, written once.
+/// The requirements on every backend.
 #[cfg(test)]
 mod conformance {
     use super::*;

@@ -14,7 +14,7 @@ use crate::pose::Dof;
 /// The lateral axes and the rotations of a grid, folded by the mirror symmetries of a pair.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fold {
-    /// Cells per lateral axis, x and y; 1 where the axis is not sampled.
+    /// Cells per lateral axis, x and y; 1 for an axis that is not sampled.
     lateral: [usize; 2],
     /// Per rotation, in grid order: number of its representative, twice a bit above: whether x and y are reflected.
     images: Vec<u32>,
@@ -22,7 +22,7 @@ pub struct Fold {
     representatives: Vec<u32>,
 }
 
-/// Where the cells of one rotation are kept.
+/// Storage of the cells of a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Image {
     /// Number of the representative.
@@ -84,7 +84,7 @@ impl Fold {
         self.lateral[0] * self.lateral[1]
     }
 
-    /// Where a rotation is kept.
+    /// Storage of a rotation.
     pub fn image(&self, rotation: usize) -> Image {
         let image = self.images[rotation];
         let mirror = Mirror { x: image & 1 != 0, y: image & 2 != 0 };

@@ -24,11 +24,11 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Five numbers of a gradient: ∂h/∂x and ∂h/∂y at the COR (D/D), ∂h/∂ω about the COR in world axes (D/rad); or
-/// what a method makes of them.
+/// Five numbers of a gradient: ∂h/∂x and ∂h/∂y at the COR (D/D), ∂h/∂ω about the COR in world axes (D/rad);
+/// or a linear function of them, chosen by a method.
 pub type Gradient = [f64; 5];
 
-/// A gradient over one patch, affine in the cell numbers along x and y. Single precision: relative error 10⁻⁶.
+/// A gradient over a patch, affine in the cell numbers along x and y. Single precision: relative error 10⁻⁶.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     base: [f32; 5],
@@ -64,7 +64,7 @@ pub struct GradientField {
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
-    /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
+    /// z of the COR at first contact at every stored cell, in D; −∞ if the halves pass each other by.
     pub heights: Vec<f32>,
     /// Per kept cell: number of its patch within its rotation; [`GradientField::NOTHING`] without contact.
     pub carriers: Vec<u16>,
@@ -84,8 +84,8 @@ impl GradientField {
     /// uses it to keep what it needs of them.
     ///
     /// # Errors
-    /// When the grid samples a locked translation or has no cell, does not fit into the memory budget, has too many
-    /// patches to number, or when the computation is cancelled.
+    /// If the grid samples a locked translation or has no cell, does not fit into the memory budget, has too
+    /// many patches to number, or the computation is cancelled.
     pub fn compute<L>(
         pair: &Pair,
         grid: &Grid,
@@ -157,7 +157,7 @@ pub struct DescentDirections {
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
-    /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
+    /// z of the COR at first contact at every stored cell, in D; −∞ if the halves pass each other by.
     pub heights: Vec<f32>,
     /// Per kept cell: bit k where entry k of its gradient is negative; [`DescentDirections::NOTHING`] without contact.
     pub below: Vec<u8>,
@@ -203,7 +203,8 @@ impl DescentDirections {
     }
 }
 
-/// Heights, and what `keep` makes of the carriers and patches of every rotation: a value per cell, and one for all of them.
+/// Heights, and the results of `keep` for the carriers and patches of every rotation: a value for each cell,
+/// and a value for each rotation.
 #[expect(clippy::too_many_arguments, reason = "two callers, side by side")]
 #[expect(clippy::type_complexity, reason = "what two callers take apart at once")]
 fn slabs<L, C: Clone + Default + Send, P: Send>(
@@ -252,7 +253,7 @@ where
     Ok((heights, values, all))
 }
 
-/// What one thread needs to fill slabs.
+/// Buffers of a thread that fills slabs.
 struct Slab<'a> {
     pair: &'a Pair,
     envelope: HeightEnvelope<'a>,
@@ -373,7 +374,7 @@ mod tests {
         }
     }
 
-    /// A byte per cell says which entries of the gradient are negative.
+    /// A byte for each cell stores which entries of the gradient are negative.
     #[test]
     fn falls_are_the_signs_of_the_gradients() {
         for family in [Family::Pyramid, Family::XFace3d, Family::VFace, Family::SFace, Family::Cone] {

@@ -4,7 +4,7 @@ use crate::design::Alignment;
 use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
 
-/// One sampled axis of the error grid: `cells` equal cells over [lo, hi], sampled at their centres.
+/// A sampled axis of the error grid: `cells` equal cells over [lo, hi], sampled at their centres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridAxis {
@@ -82,7 +82,7 @@ impl Grid {
         self.axes.iter().find(|a| a.dof == dof)
     }
 
-    /// Measure of one cell, Dᵃ·radᵇ.
+    /// Measure of a cell, Dᵃ·radᵇ.
     pub fn cell_measure(&self) -> f64 {
         self.axes.iter().map(GridAxis::step).product()
     }

@@ -12,13 +12,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The height of first contact at every cell of an error grid.
 ///
-/// The grid is over pose *errors* (offsets of the face centre); the heights are those of the centre of rotation,
-/// which is where the approach force acts.
+/// The grid is over pose *errors* (offsets of the face centre); the heights are those of the centre of
+/// rotation, through which the approach force acts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Landscape {
-    /// Where the heights were taken: at the cells' centres.
+    /// Grid of the heights, sampled at the cells' centres.
     pub grid: Grid,
-    /// z of the COR at first contact, in D, one per cell, rounded to single precision; −∞ where the halves pass
+    /// z of the COR at first contact, in D, for each cell, rounded to single precision; −∞ if the halves pass
     /// each other by.
     pub heights: Vec<f32>,
 }
@@ -38,7 +38,7 @@ pub enum LandscapeError {
         /// Cells per axis.
         shape: Vec<usize>,
     },
-    /// At one rotation more pairs of features carry the moving half than can be numbered.
+    /// At some rotation more pairs of features carry the moving half than can be numbered.
     #[error(
         "more than {most} features touch at one rotation; use coarser halves, a coarser grid, or descent, which follows single poses"
     )]
@@ -49,7 +49,7 @@ pub enum LandscapeError {
     /// A part beyond the grid.
     #[error("there are no rotations {} to {} in a grid of {of}", .range.start, .range.end)]
     NoSuchRotations {
-        /// Which were asked for.
+        /// The requested rotations.
         range: Range<usize>,
         /// How many there are.
         of: usize,
@@ -57,7 +57,7 @@ pub enum LandscapeError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -78,8 +78,8 @@ impl Landscape {
     /// An error without an axis is 0; a translation that the design locks stays at the COR.
     ///
     /// # Errors
-    /// When the grid samples a locked translation or has no cell, does not fit into the memory budget, or when
-    /// the computation is cancelled.
+    /// If the grid samples a locked translation or has no cell, does not fit into the memory budget, or the
+    /// computation is cancelled.
     pub fn compute(pair: &Pair, grid: &Grid, exec: &Exec) -> Result<Self, LandscapeError> {
         Self::compute_by(&Fast, pair, grid, exec)
     }
@@ -158,7 +158,8 @@ pub(super) fn usable(pair: &Pair, grid: &Grid) -> Result<usize, LandscapeError> 
         .ok_or_else(|| LandscapeError::Unusable { shape: grid.shape() })
 }
 
-/// Rotations that a thread does in one go: enough to use what it prepares again, few enough to share them evenly.
+/// Number of consecutive rotations per thread: enough to reuse prepared data, few enough to share the work
+/// evenly.
 const AT_ONCE: usize = 8;
 
 /// Fills the slabs of lateral positions of a range of rotations. Slabs do not depend on each other, so neither does any

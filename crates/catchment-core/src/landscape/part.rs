@@ -34,7 +34,7 @@ pub struct GradientFieldPart {
 /// Why parts do not make a whole.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// There is none.
+    /// No parts were given.
     #[error("there is no part to put together")]
     Nothing,
     /// Parts of different wholes.
@@ -83,10 +83,10 @@ impl Landscape {
 }
 
 impl GradientField {
-    /// The whole that these parts, in any order, are all of.
+    /// Merges parts, in any order, into the whole.
     ///
     /// # Errors
-    /// When rotations are missing or there twice, or the grids or what is kept of them differ.
+    /// If rotations are missing or repeated, or the grids or the stored data differ.
     pub fn merge(parts: impl IntoIterator<Item = GradientFieldPart>) -> Result<Self, MergeError> {
         let mut parts: Vec<GradientFieldPart> = parts.into_iter().collect();
         parts.sort_by_key(|part| (part.representatives.start, part.representatives.end));

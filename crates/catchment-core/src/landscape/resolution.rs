@@ -25,13 +25,13 @@ pub enum ResolutionError {
     /// Not a whole number.
     #[error("`{text}` is not a number of cells; write a whole number such as 30, or x=40,yaw=24")]
     NotANumber {
-        /// What was written.
+        /// The text as written.
         text: String,
     },
-    /// Too few cells to tell anything, or more than any axis can use.
+    /// Too few cells for a meaningful result, or more than any axis can use.
     #[error("{cells} cells per axis is out of range; choose {} to {}", Resolution::LEAST, Resolution::MOST)]
     OutOfRange {
-        /// The number asked for.
+        /// The requested number.
         cells: usize,
     },
     /// No such axis.
@@ -57,15 +57,18 @@ impl Resolution {
     /// Most cells per axis: beyond any memory in two dimensions.
     pub const MOST: usize = 1_000_000;
 
-    /// Cells per axis when nothing was said, for one to five axes, where a cell costs microseconds. Odd, so that a
-    /// cell is centred on the mated pose; see [`Resolution::is_centred_on`] for which odd numbers.
+    /// Default cells per axis, for one to five axes, for a cost of microseconds per cell. Odd, so that a cell
+    /// is centred on the mated pose; [`Resolution::is_centred_on`] gives the choice of odd numbers.
     pub const DEFAULT_CELLS: [usize; 5] = [1001, 101, 41, 23, 13];
 
-    /// Whether an axis of so many cells has a centre at a fraction of its half range whose denominator is `denominator`, in lowest terms.
+    /// Whether an axis with this number of cells has a centre at a fraction of its half range whose
+    /// denominator is `denominator`, in lowest terms.
     ///
-    /// Acceptance often ends at such a fraction (½ D, 45° of 90°). Where the outermost accepted centres lie exactly there, rounding decides about them, and the set comes out a
-    /// whole cell too wide or too narrow: with 30 cells over ±1 D, which have centres at ±½, a cube of ±½ D is 14 % off. Defaults keep clear of fractions with small
-    /// denominators. Centres are at j/cells of the half range, j even for an odd number of cells and odd for an even one.
+    /// The accepted set often ends at such a fraction (½ D, 45° of 90°). If the outermost accepted centres
+    /// lie exactly there, rounding decides about them, and the set becomes a whole cell too wide or too
+    /// narrow: with 30 cells over ±1 D, which have centres at ±½, a cube of ±½ D is 14 % off. Defaults avoid
+    /// fractions with small denominators. Centres are at j/cells of the half range, j even for an odd number
+    /// of cells and odd for an even number.
     pub fn is_centred_on(cells: usize, denominator: usize) -> bool {
         let is_center = |j: usize| j % 2 != cells % 2;
         let in_lowest_terms = |numerator: usize| {
@@ -95,8 +98,8 @@ impl Resolution {
         resolution
     }
 
-    /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5); `defaults` are those of the method for one to
-    /// five axes.
+    /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5); `defaults` are those of the method for
+    /// one to five axes.
     pub fn cells(&self, dof: Dof, axes: usize, defaults: &[usize; 5]) -> usize {
         let default = defaults[axes.clamp(1, 5) - 1];
         self.named[dof.index()].or(self.every).unwrap_or(default)

@@ -3,8 +3,9 @@
 
 use crate::landscape::Grid;
 
-/// How many accepted cells have no rejected neighbour, and how many cells are accepted or have an accepted neighbour,
-/// among the 3ⁿ − 1 around each that lie in the grid. `accepted` has one flag per cell.
+/// Number of accepted cells without a rejected neighbour, and number of cells that are accepted or have an
+/// accepted neighbour, among the 3ⁿ − 1 around each that lie in the grid. `accepted` has a flag for each
+/// cell.
 pub fn inner_and_outer(grid: &Grid, accepted: &[bool]) -> [usize; 2] {
     let shape = grid.shape();
     let around = |index: usize| {
@@ -29,8 +30,8 @@ pub fn inner_and_outer(grid: &Grid, accepted: &[bool]) -> [usize; 2] {
 /// Edge, in cells, of the largest cube of accepted cells: dynamic programming in O(2ⁿ · cells) time and two
 /// slabs of memory.
 ///
-/// `shape` is the number of cells per axis, `accepted` one flag per cell, first axis fastest; their lengths must
-/// agree.
+/// `shape` is the number of cells per axis, `accepted` has a flag for each cell, first axis fastest; their
+/// lengths must agree.
 pub fn largest_cube(shape: &[usize], accepted: &[bool]) -> usize {
     let Some((&slabs, face)) = shape.split_last() else { return 0 };
     let slab: usize = face.iter().product();
@@ -78,8 +79,8 @@ pub fn largest_cube(shape: &[usize], accepted: &[bool]) -> usize {
     largest
 }
 
-/// Squared distance from every cell's centre to the nearest marked cell's, by comparing all; infinite where none is
-/// marked. `spacing` is the distance of neighbours along each axis.
+/// Squared distance from every cell's centre to that of the nearest marked cell, by comparing all; infinite
+/// if no cell is marked. `spacing` is the distance of neighbours along each axis.
 pub fn squared_distances(grid: &Grid, spacing: &[f64], marked: &[bool]) -> Vec<f64> {
     let between = |a: usize, b: usize| -> f64 {
         let steps = grid.cell(a).into_iter().zip(grid.cell(b));

@@ -30,7 +30,7 @@ pub struct CenteredBox {
     pub half_widths: Vec<(Dof, f64)>,
     /// The border of the error box stopped it: it may be larger.
     pub reaches_border: bool,
-    /// How many random poses of it were followed, all of which dock; `None` where it rests on cells.
+    /// Number of sampled poses of it, all of which dock; `None` if it rests on cells.
     pub sampled: Option<usize>,
 }
 
@@ -46,8 +46,8 @@ pub fn centered_cube(acceptance: &Acceptance, exec: &Exec) -> Result<CenteredBox
 /// The largest centred box with the given proportions: half-widths in D and radians (0: no error there).
 ///
 /// # Errors
-/// If the outcomes are of listed poses, a proportion is negative, one is given for an axis that was not sampled, or
-/// it is cancelled.
+/// If the outcomes are of listed poses, a proportion is negative or given for an axis that was not sampled,
+/// or the computation is cancelled.
 pub fn centered_box(
     acceptance: &Acceptance,
     proportions: &PoseError,
@@ -137,7 +137,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Odd and even counts alike: every cell that the box meets is accepted, and no larger box can say so.
+        /// For odd and even counts alike: every cell that the box meets is accepted, and no larger box has
+        /// this property.
         #[test]
         fn the_box_holds_only_accepted_cells_and_a_larger_one_does_not(
             shape in proptest::collection::vec(1usize..6, 1..4),

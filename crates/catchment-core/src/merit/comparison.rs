@@ -99,7 +99,7 @@ pub struct Quantiles {
 /// Why two acceptances cannot be compared.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ComparisonError {
-    /// One is over a grid, the other over listed poses.
+    /// One acceptance is over a grid, the other over listed poses.
     #[error("one result is over a grid, the other over listed poses; decide both for the same poses")]
     Kinds,
     /// The poses differ.
@@ -108,7 +108,7 @@ pub enum ComparisonError {
         first_difference.map_or_else(|| " in length".to_owned(), |k| format!(" from pose {} on", k + 1))
     )]
     Poses {
-        /// The first pose that differs; `None` where one list is the beginning of the other.
+        /// The first pose that differs; `None` if one list is the beginning of the other.
         first_difference: Option<usize>,
     },
     /// The grids have different axes.
@@ -116,9 +116,9 @@ pub enum ComparisonError {
         "the errors tried differ: the first over {first}, the second over {second}; free the same errors in both"
     )]
     Axes {
-        /// Names of the first one's axes.
+        /// Names of the axes of the first.
         first: String,
-        /// Names of the second one's.
+        /// Names of the axes of the second.
         second: String,
     },
     /// The error boxes differ.
@@ -129,12 +129,12 @@ pub enum ComparisonError {
     Range {
         /// Along which axis.
         axis: Dof,
-        /// The first one's borders, D or radians.
+        /// Borders of the first, D or radians.
         first: [f64; 2],
-        /// The second one's.
+        /// Borders of the second.
         second: [f64; 2],
     },
-    /// The centres of the coarse cells are not centres of the fine ones.
+    /// The centres of the coarse cells are not centres of the fine cells.
     #[error(
         "the grids differ along {}: {first} and {second} cells do not share their centres; compute both with {first} cells along {}, or \
          one with an odd multiple of the other",
@@ -143,9 +143,9 @@ pub enum ComparisonError {
     Cells {
         /// Along which axis.
         axis: Dof,
-        /// The first one's cells.
+        /// Number of cells of the first.
         first: usize,
-        /// The second one's.
+        /// Number of cells of the second.
         second: usize,
     },
     /// A figure of merit is not to be had.
@@ -161,10 +161,10 @@ const fn unit(dof: Dof) -> &'static str {
 const SAME_BORDER: f64 = 1e-9;
 
 impl<'a> Paired<'a> {
-    /// Brings two acceptances to the poses that they share.
+    /// Restricts two acceptances to their common poses.
     ///
     /// # Errors
-    /// When they share none, or only some: see [`ComparisonError`].
+    /// If they share no pose, or only some: see [`ComparisonError`].
     pub fn of(first: &'a Acceptance, second: &'a Acceptance) -> Result<Self, ComparisonError> {
         match (&first.domain, &second.domain) {
             (Domain::Grid(a), Domain::Grid(b)) => {
@@ -205,7 +205,7 @@ fn common_grid(a: &Grid, b: &Grid) -> Result<Grid, ComparisonError> {
     Ok(Grid { axes: a.axes.iter().zip(&b.axes).map(axis).collect::<Result<_, _>>()? })
 }
 
-/// An acceptance over `grid` at the centres of a coarser one.
+/// An acceptance over `grid` at the centres of a coarser grid.
 fn on<'a>(acceptance: &'a Acceptance, grid: &Grid, coarse: &Grid) -> Cow<'a, Acceptance> {
     if grid.shape() == coarse.shape() {
         return Cow::Borrowed(acceptance);
@@ -250,7 +250,7 @@ impl Comparison {
     }
 }
 
-/// Second over first, where there is a first.
+/// The second divided by the first, if the first is not zero.
 fn ratio([first, second]: [f64; 2]) -> Option<f64> {
     (first != 0.0).then(|| second / first)
 }
@@ -264,7 +264,7 @@ pub fn confusion(
     second: &Acceptance,
     exec: &Exec,
 ) -> Result<[[usize; 4]; 4], MeritError> {
-    /// Poses between two looks at the cancel flag: about a millisecond.
+    /// Poses between two checks of the cancel flag: about a millisecond.
     const PIECE: usize = 1 << 20;
     let mut counts = [[0; 4]; 4];
     for (first, second) in first.outcomes.chunks(PIECE).zip(second.outcomes.chunks(PIECE)) {
@@ -285,7 +285,7 @@ pub struct AcceptanceOverlap {
     pub only_first: usize,
     /// The second alone.
     pub only_second: usize,
-    /// None.
+    /// Poses that neither accepts.
     pub neither: usize,
 }
 
@@ -305,13 +305,14 @@ impl AcceptanceOverlap {
         }
     }
 
-    /// Accepted by both over accepted by any; 1 where nothing is accepted.
+    /// Jaccard index: poses accepted by both, divided by poses accepted by either; 1 if neither accepts a
+    /// pose.
     pub fn jaccard(&self) -> f64 {
         let any = self.both + self.only_first + self.only_second;
         if any == 0 { 1.0 } else { self.both as f64 / any as f64 }
     }
 
-    /// Share of the poses that both accept or both reject; 1 where there are none.
+    /// Share of the poses that both accept or both reject; 1 without poses.
     pub fn agreement(&self) -> f64 {
         let same = self.both + self.neither;
         let all = same + self.only_first + self.only_second;
@@ -319,7 +320,7 @@ impl AcceptanceOverlap {
     }
 }
 
-/// How far from the border of the first set the two differ.
+/// Distances of the differing cells from the border of the first set.
 fn distances(first: &Acceptance, second: &Acceptance, exec: &Exec) -> Result<Option<Distances>, MeritError> {
     let grid = grid_of(first)?;
     let accepted = |of: &Acceptance, cell: usize| of.outcomes[cell] == Outcome::Aligned;
@@ -375,8 +376,8 @@ mod tests {
         Comparison::of(&Paired::of(first, second).unwrap(), &alignment(), &Exec::new()).unwrap()
     }
 
-    /// A ball in a larger one: Jaccard is the ratio of their areas, and a cell that differs is at most r₂ − r₁ from the
-    /// border, and a cell's diagonal more.
+    /// A ball in a larger ball: Jaccard is the ratio of their areas, and a differing cell is at most r₂ − r₁
+    /// plus a cell's diagonal from the border.
     #[test]
     fn concentric_balls_have_their_closed_form() {
         let g = grid(&[200, 200], &[1.0, 1.0]);

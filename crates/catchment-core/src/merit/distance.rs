@@ -18,15 +18,15 @@ use rayon::prelude::*;
 struct Parabola {
     at: f64,
     height: f64,
-    /// From where on it is the lowest.
+    /// Start of the interval on which it is the lowest.
     from: f64,
 }
 
-/// Squared distances to the cells that `marked` names; infinite where there are none. `shape` is the number of cells
-/// per axis, the first one fastest.
+/// Squared distances to the cells that `marked` lists; infinite if there are none. `shape` is the number of
+/// cells per axis, the first axis fastest.
 ///
 /// # Errors
-/// When it does not fit into memory, or is cancelled.
+/// If it does not fit into memory, or is cancelled.
 pub(super) fn squared_distances(
     shape: &[usize],
     spacing: &[f64],

@@ -25,7 +25,7 @@ const PIECE: usize = 1 << 14;
 /// Marked cells of a grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Mask {
-    /// Cells per axis; at least one axis.
+    /// Cells per axis; at least 1 axis.
     shape: Vec<usize>,
     /// Words between neighbours along each axis; for axis 0, which runs inside the words, 0.
     strides: Vec<usize>,
@@ -33,10 +33,11 @@ pub(super) struct Mask {
 }
 
 impl Mask {
-    /// Marks the cells whose outcome is wanted. `shape` is the number of cells per axis, the first one fastest.
+    /// Marks the cells with the wanted outcomes. `shape` is the number of cells per axis, the first axis
+    /// fastest.
     ///
     /// # Errors
-    /// When it does not fit into memory, or is cancelled.
+    /// If it does not fit into memory, or is cancelled.
     pub(super) fn of(
         shape: &[usize],
         outcomes: &[Outcome],
@@ -104,7 +105,7 @@ impl Mask {
         self.words.chunks_exact(self.row().max(1))
     }
 
-    /// Marks what was not marked, and the other way round.
+    /// Inverts all marks.
     pub(super) fn invert(&mut self) {
         let (row, valid) = (self.row(), self.valid());
         for words in self.words.chunks_exact_mut(row.max(1)) {
@@ -138,8 +139,8 @@ impl Mask {
         })
     }
 
-    /// Where every marked cell was the *first* corner of a box of `from[axis]` cells, leaves those that are so of a
-    /// box of `to[axis]` cells. `from` must not be 0 anywhere, and `to` not less.
+    /// If every marked cell was the *first* corner of a box of `from[axis]` cells, keeps those that are the
+    /// first corner of a box of `to[axis]` cells. `from` must not be 0 anywhere, and `to` not smaller.
     pub(super) fn widen_boxes(&mut self, from: &[usize], to: &[usize], exec: &Exec) -> Result<(), Cancelled> {
         let (strides, shape) = (self.strides.clone(), self.shape.clone());
         self.sweep(exec, |axis, block| {
@@ -177,8 +178,8 @@ impl Mask {
         }
     }
 
-    /// Does `work(axis, block)` for every axis, the first one first, on blocks that hold whole lines along it: for
-    /// axis 0 the block is one row.
+    /// Runs `work(axis, block)` for every axis, in order, on blocks that hold whole lines along it: for axis
+    /// 0 the block is a row.
     fn sweep(
         &mut self,
         exec: &Exec,
@@ -204,7 +205,7 @@ impl Mask {
     }
 }
 
-/// One bit per cell, the first one lowest.
+/// A bit for each cell, the first lowest.
 fn pack(cells: &[Outcome], wanted: impl Fn(Outcome) -> bool) -> u64 {
     // Moves the lowest bits of eight bytes into the highest byte: byte k meets the factor's bit 56 − 7k.
     const GATHER: u64 = 0x0102_0408_1020_4080;
@@ -229,7 +230,7 @@ pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Combines two rows word by word, in parallel where they are long.
+/// Combines two rows word by word, in parallel if they are long.
 fn combine(
     into: &mut [u64],
     from: &[u64],
@@ -263,7 +264,7 @@ fn grow_row(row: &mut [u64], valid: u64) {
     }
 }
 
-/// Keeps the cells of a row that have a marked one `step` cells further on.
+/// Keeps the cells of a row whose `step`-th next cell is marked.
 fn keep_if_ahead(row: &mut [u64], step: usize) {
     let (words, bits) = (step / WORD, step % WORD);
     for k in 0..row.len() {

@@ -44,7 +44,7 @@ pub enum MeritError {
     /// The figure needs an axis that the grid does not have.
     #[error("{} is not an axis of the grid; its axes are {axes}", dof.name())]
     NoAxis {
-        /// The axis asked for.
+        /// The requested axis.
         dof: Dof,
         /// Names of the axes there are.
         axes: String,
@@ -70,7 +70,7 @@ pub enum MeritError {
     /// A number that must be finite and not negative is not.
     #[error("{what} must be finite and not negative, not {value}")]
     Negative {
-        /// What the number is.
+        /// Name of the number.
         what: &'static str,
         /// The number.
         value: f64,
@@ -78,13 +78,13 @@ pub enum MeritError {
     /// A covariance matrix is not symmetric positive semidefinite.
     #[error("the covariance matrix is not symmetric and positive semidefinite (row {row})")]
     NotACovariance {
-        /// The first row where it shows, from 1.
+        /// The first affected row, from 1.
         row: usize,
     },
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -100,9 +100,9 @@ pub struct Merits {
     pub onaa: Option<onaa::Onaa>,
     /// The largest cube around zero; `None` for listed poses.
     pub centered: Option<centered::CenteredBox>,
-    /// How far each error may go alone; empty for listed poses.
+    /// Single-axis limits of each error; empty for listed poses.
     pub tolerances: Vec<tolerance::Tolerance>,
-    /// The doubts of the method, and those that the accepted set itself raises.
+    /// Warnings of the method, and of the accepted set itself.
     pub warnings: Vec<Warning>,
 }
 
@@ -160,11 +160,11 @@ fn gap(axis: &GridAxis, k: usize) -> f64 {
     if distance <= 1e-6 * step { 0.0 } else { distance }
 }
 
-/// Doubts that the accepted set itself raises: it reaches the border of the error box, it does not hold the
-/// mated pose, some poses are undecided.
+/// Warnings that follow from the accepted set itself: it reaches the border of the error box, it does not
+/// contain the mated pose, some poses are undecided.
 ///
 /// # Errors
-/// When asked to stop.
+/// If the computation is cancelled.
 pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Cancelled> {
     let mut warnings = Vec::new();
     if let Some(grid) = acceptance.grid() {

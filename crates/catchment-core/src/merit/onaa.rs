@@ -28,8 +28,8 @@ use std::f64::consts::PI;
 pub struct Onaa {
     /// Its edge, in [0, 1]: 1 is the whole error box.
     pub edge: f64,
-    /// Where it lies: `(axis, lower border, upper border)` in D and radians, in the order of the grid's axes. Of
-    /// several, the one whose centre is nearest to zero. Empty if the edge is 0.
+    /// Bounds of the cube: `(axis, lower border, upper border)` in D and radians, in the order of the grid's
+    /// axes. Of several cubes, the one with its centre nearest to zero. Empty if the edge is 0.
     pub bounds: Vec<(Dof, f64, f64)>,
     /// Whether its size was found by following poses, so that it does not rest on cells.
     pub is_followed: bool,
@@ -72,7 +72,7 @@ impl Edge {
     }
 }
 
-/// The boxes of accepted cells that hold a cube of one edge.
+/// The boxes of accepted cells that contain a cube of a given edge.
 #[derive(Debug, Clone)]
 struct Fitting {
     edge: Edge,
@@ -110,7 +110,7 @@ impl Fitting {
         Ok(best)
     }
 
-    /// The place of the cube nearest to zero: of the nearest ones, the first in memory.
+    /// The position of the cube nearest to zero: among equals, the first in memory.
     fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<(Dof, f64, f64)> {
         // Symmetric places are equally far but for rounding of numbers of order 1.
         const EQUALLY_FAR: f64 = 1e-12;
@@ -195,7 +195,7 @@ mod tests {
         })
     }
 
-    /// One outcome per flag over [−1, 1] along each axis.
+    /// Outcomes for each flag over [−1, 1] along each axis.
     fn accepting(shape: &[usize], accepted: &[bool]) -> Acceptance {
         let mut acceptance = accept(&grid(shape, &vec![1.0; shape.len()]), |_| true);
         for (outcome, _) in acceptance.outcomes.iter_mut().zip(accepted).filter(|(_, accepted)| !**accepted) {
@@ -214,7 +214,8 @@ mod tests {
             }
         }
 
-        /// Every cell that the cube meets is accepted; what it touches within rounding it does not meet.
+        /// Every cell that the cube meets is accepted; a cell that it touches within rounding does not count
+        /// as met.
         #[test]
         fn the_cube_lies_in_the_accepted_cells((shape, accepted) in masks()) {
             let acceptance = accepting(&shape, &accepted);

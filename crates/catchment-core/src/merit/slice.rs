@@ -17,7 +17,7 @@ use crate::pose::{Dof, PoseError};
 /// A slice: which cells of the grid it shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridSlice {
-    /// The kept axes in the order asked for; the first runs fastest.
+    /// The varying axes in the requested order; the first runs fastest.
     pub axes: Vec<GridAxis>,
     /// The fixed axes and the cell centres used, in D and radians.
     pub at: Vec<(Dof, f64)>,
@@ -71,7 +71,7 @@ impl GridSlice {
     }
 }
 
-/// All pairs of axes of the grid, in its order: what there is to draw.
+/// All pairs of axes of the grid, in its order.
 pub fn pairs(grid: &Grid) -> Vec<[Dof; 2]> {
     let dofs: Vec<Dof> = grid.axes.iter().map(|a| a.dof).collect();
     (0..dofs.len()).flat_map(|j| (0..j).map(move |i| (i, j))).map(|(i, j)| [dofs[i], dofs[j]]).collect()

@@ -31,7 +31,7 @@ pub struct SuccessProbability {
     pub probability: f64,
     /// The probability with all cells at the border of the accepted set counted as failures, and as successes.
     pub bracket: [f64; 2],
-    /// Wilson's 95 % interval of `probability` where it was sampled; the exact sums have none.
+    /// Wilson's 95 % interval of `probability` if it was sampled; the exact sums have no interval.
     pub ci95: Option<[f64; 2]>,
     /// Probability of an error outside the error box, which counts as failure.
     pub outside: f64,
@@ -144,7 +144,7 @@ impl Masks {
     }
 }
 
-/// Random poses between two looks at whether to stop: well below a millisecond.
+/// Number of samples between two checks for cancellation: well below a millisecond.
 const SAMPLES_BETWEEN_CHECKS: u32 = 4096;
 
 /// Sums the product weights of the marked cells: rows first, then slabs of the last axis, then their sums in order, so
@@ -296,7 +296,7 @@ mod tests {
         assert!((found.probability - within(0.3, 0.3)).abs() < 1e-13, "{}", found.probability);
     }
 
-    /// The sample agrees with the exact sum to four standard errors (one test in 16 000 seeds would fail; this
+    /// The sample agrees with the exact sum to four standard errors (one in 16 000 seeds would fail; this
     /// seed does not), and a rotated covariance with the closed form of the disc.
     #[test]
     fn samples_agree_with_exact_sums() {

@@ -34,9 +34,10 @@ pub struct Sum {
     pub angles: usize,
     /// Cells or poses tried.
     pub tried: usize,
-    /// How many met each outcome, in the order of `Outcome::ALL`; undecided ones are not in `sum`.
+    /// Number of poses or cells with each outcome, in the order of `Outcome::ALL`; undecided ones are not in
+    /// `sum`.
     pub counts: [usize; 4],
-    /// Over random poses: the 95 % interval of `sum`.
+    /// For sampled poses: the 95 % interval of `sum`.
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -67,7 +68,7 @@ impl Sum {
         Self { sum: fraction * measure, fraction, lengths: dofs.len() - angles, angles, tried, counts, ci95 }
     }
 
-    /// The unit of the measure, like `D²·rad³`; `1` where there is no axis.
+    /// The unit of the measure, like `D²·rad³`; `1` without axes.
     pub fn unit(&self) -> String {
         let power = |base: &str, n: usize| match n {
             0 => None,

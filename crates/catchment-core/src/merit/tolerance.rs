@@ -19,14 +19,14 @@ use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
 use crate::pose::{Dof, PoseError};
 
-/// Tolerance along one axis, in D or radians.
+/// Single-axis limits of an error, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// Which error.
     pub dof: Dof,
-    /// How far it may go below zero; not negative.
+    /// Limit below zero; not negative.
     pub minus: f64,
-    /// How far it may go above zero; not negative.
+    /// Limit above zero; not negative.
     pub plus: f64,
     /// The border of the error box stopped `minus`: it may be larger.
     pub minus_reaches_border: bool,
@@ -40,7 +40,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// The smaller side: what holds for both signs.
+    /// The smaller side: the limit for both signs.
     pub const fn symmetric(&self) -> f64 {
         self.minus.min(self.plus)
     }
@@ -86,20 +86,21 @@ fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Toleranc
     })
 }
 
-/// Bisections of the step between a pose that docks and one that does not.
+/// Number of bisections of the step between a success and a failure.
 pub(crate) const BISECTIONS: i32 = 7;
 
-/// One side of an axis while it is looked at.
+/// A side of an axis during the search.
 struct Side {
     dof: Dof,
-    /// Where the error box ends.
+    /// Border of the error box.
     border: f64,
     /// As far as poses were seen to dock, and the first that does not; in steps.
     between: [f64; 2],
 }
 
-/// The tolerance along every axis whose range holds zero, in the order of `grid`, which says no more than the error box: `steps` poses on either
-/// side and some bisections are decided by `decide`, which gives one outcome per pose. A gap narrower than a step is not seen.
+/// Single-axis limits along every axis whose range contains zero, in the order of `grid`, of which only the
+/// error box is used: `decide` returns the outcomes of `steps` poses on either side and of some bisections. A
+/// gap narrower than a step is missed.
 ///
 /// # Errors
 /// Those of `decide`.
@@ -155,8 +156,8 @@ pub fn followed<E>(
         .collect())
 }
 
-/// The cells that hold zero or have it on their border: one, or two per axis with an even number of cells. Empty if
-/// zero lies outside the grid. In memory order.
+/// The cells that contain zero or have it on their border: one, or two per axis with an even number of cells.
+/// Empty if zero lies outside the grid. In memory order.
 pub(super) fn around_zero(grid: &Grid) -> Vec<usize> {
     let mut cells = vec![0usize];
     let mut stride = 1;

@@ -8,15 +8,15 @@ use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::pose::PoseError;
 
-/// Seconds of one descent between simple halves, on one core: what cost estimates count in.
+/// Seconds of a motion between simple halves, on one core: the unit of cost estimates.
 pub(super) const DESCENT_SECONDS: f64 = 1e-4;
 
-/// Bytes per pose while poses are decided one by one: the end and the outcome of each, and the ends once more while the
-/// parts of the threads are put together.
+/// Bytes per pose while poses are decided singly: the end and the outcome of each, and the ends once more
+/// while the parts of the threads are merged.
 pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 
-/// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
-/// number of facets, and where trees are searched it is counted on a few motions.
+/// Affordable number of motions, as a share of that for simple halves: the time of a motion grows with about
+/// the cube of the number of facets; for halves with trees it is measured on a few motions.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
     if pair.asks_trees() {
@@ -27,18 +27,19 @@ pub fn affordable(pair: &Pair) -> f64 {
     (SIMPLE / facets.max(SIMPLE)).powi(3)
 }
 
-/// Seconds that a motion takes about, on one core.
+/// Estimated seconds for a motion, on one core.
 pub fn seconds_per_motion(pair: &Pair) -> f64 {
     DESCENT_SECONDS / affordable(pair)
 }
 
-/// How many motions take this time on one core, and no fewer than ten.
+/// Number of motions in this time on one core, at least ten.
 pub fn motions_in(seconds: f64, pair: &Pair) -> usize {
     const FEWEST: f64 = 10.0;
     (seconds / seconds_per_motion(pair)).max(FEWEST) as usize
 }
 
-/// Cells per axis that can be afforded of so many of simple halves with as many free errors, each a descent; in all no fewer than `poses`, where those are as many.
+/// Affordable cells per axis, from the number for simple halves with as many free errors, each a motion; in
+/// total at least `poses`, if those for simple halves are as many.
 pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) -> [usize; 5] {
     let (share, poses) = (affordable(pair), poses as f64);
     let mut axes = 0.0;
@@ -49,13 +50,14 @@ pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) ->
     })
 }
 
-/// Seconds of a motion between halves that are searched by trees: what is looked at is counted for a few random poses of the error box, and for what docks in
-/// the same directions, each time at a quarter of the pose before. The larger mean counts; the same on every machine.
+/// Seconds of a motion between halves with trees: the cost is counted for a few sampled poses of the error
+/// box, and for docking poses in the same directions, each at a quarter of the pose before. The larger mean
+/// counts; the same on every machine.
 fn counted(pair: &Pair) -> f64 {
     const POSES: usize = 3;
     const SMALLER: [f64; 5] = [1.0, 0.25, 0.0625, 0.016, 0.004];
     const SEED: u64 = 0xc057;
-    /// After so many seconds what was seen is enough.
+    /// After this many seconds the measurement ends.
     const ENOUGH: f64 = 2.0;
     let Domain::Poses(poses) = Domain::random(&pair.alignment, POSES, SEED) else { return DESCENT_SECONDS };
     let settings = DescentSettings::default();
@@ -81,7 +83,7 @@ fn counted(pair: &Pair) -> f64 {
     (f64::max(random, docking) / followed).max(DESCENT_SECONDS)
 }
 
-/// Refuses what would not fit into memory, with the resolution that would.
+/// Rejects results that do not fit into memory, with a resolution that would.
 pub fn ensure_fits(
     what: &'static str,
     needed: u64,

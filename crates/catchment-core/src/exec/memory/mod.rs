@@ -7,18 +7,18 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what} needs {} of memory, more than the {} allowed; {advice}", Bytes(*needed), Bytes(*budget))]
 pub struct OutOfBudget {
-    /// What would have been allocated.
+    /// The allocation.
     pub what: &'static str,
     /// Bytes it needs.
     pub needed: u64,
     /// Bytes it may use.
     pub budget: u64,
-    /// What to do about it.
+    /// Advice.
     #[source]
     pub advice: Advised,
 }
 
-/// A byte count that prints in the unit a person would choose.
+/// A byte count that prints in a suitable unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bytes(pub u64);
 
@@ -35,14 +35,16 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Memory the system can hand out without swapping, and that this process may still take; 4 GiB where it does not say.
+/// Memory that the system can provide without swapping, within the limits of this process; 4 GiB if the
+/// system does not report it.
 pub(super) fn available() -> u64 {
     const FALLBACK: u64 = 4 << 30;
     let limit = limit();
     system::free(system::ROOT).unwrap_or(FALLBACK).min(limit)
 }
 
-/// What this process may still take before the system refuses it or ends it; as good as no limit where there is none.
+/// Memory that this process may still use before the system refuses or ends it; practically infinite without
+/// a limit.
 pub(super) fn limit() -> u64 {
     system::limit(system::ROOT).unwrap_or(u64::MAX)
 }

@@ -13,7 +13,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Where the files lie; tests have their own.
+/// Root of the files; tests have their own.
 pub(super) const ROOT: &str = "/";
 
 /// Bytes free on the machine.
@@ -31,13 +31,13 @@ fn text(path: &Path) -> Option<String> {
     std::fs::read_to_string(path).ok()
 }
 
-/// The number behind a name, where it is in kB.
+/// The number after a name, if it is in kB.
 fn kib(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// What is left of the address space.
+/// Remaining address space.
 fn address_space(root: &Path) -> Option<u64> {
     let limits = text(&root.join("proc/self/limits"))?;
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
@@ -47,7 +47,7 @@ fn address_space(root: &Path) -> Option<u64> {
     Some(limit.saturating_sub(taken.unwrap_or(0)))
 }
 
-/// What the control groups leave: the least of those that this process is in.
+/// Memory remaining in the control groups: the minimum over those of this process.
 fn groups(root: &Path) -> Option<u64> {
     let mounted = root.join("sys/fs/cgroup");
     let groups = text(&root.join("proc/self/cgroup"))?;
@@ -86,16 +86,16 @@ impl Names {
     };
 }
 
-/// The least that a group and those above it leave. In a container the path may be that of the world outside, where
-/// nothing lies: then the top is what counts.
+/// The minimum remaining in a group and its ancestors. In a container the path may belong to the host, and
+/// not exist here: then the top group counts.
 fn least(top: &Path, path: &str, names: &Names) -> Option<u64> {
     let group: PathBuf = top.join(path);
     group.ancestors().take_while(|above| above.starts_with(top)).filter_map(|above| left(above, names)).min()
 }
 
-/// What one group leaves.
+/// Memory remaining in a group.
 fn left(group: &Path, names: &Names) -> Option<u64> {
-    /// Version 1 says this much, rounded to pages, where there is no limit.
+    /// Value in version 1 for no limit, rounded to pages.
     const NO_LIMIT: u64 = 1 << 62;
     let number = |name: &str| text(&group.join(name))?.trim().parse::<u64>().ok();
     let limit = number(names.limit).filter(|limit| *limit < NO_LIMIT)?;
@@ -109,7 +109,7 @@ fn left(group: &Path, names: &Names) -> Option<u64> {
 mod tests {
     use super::*;
 
-    /// A system that says what these files hold.
+    /// A system with these file contents.
     fn system(files: &[(&str, &str)]) -> tempfile::TempDir {
         let home = tempfile::tempdir().unwrap();
         for (path, text) in files {

@@ -32,7 +32,7 @@ pub(super) struct Arc {
 }
 
 impl Arc {
-    /// Between the facets of a ridge; nothing where they lie back to back.
+    /// Between the facets of a ridge; `None` if they lie back to back.
     pub(super) fn of(own: &Ridge) -> Option<Self> {
         let [first, last] = own.normals;
         let (cosine, across) = (first.dot(last), last - first * first.dot(last));
@@ -44,7 +44,7 @@ impl Arc {
         })
     }
 
-    /// All normals of the arc that a moving ridge may support; nothing where it supports none.
+    /// All normals of the arc that a moving ridge may support; `None` if it supports none of them.
     pub(super) fn normal(&self, its: &Ridge, at: &Placed) -> Option<Vector> {
         let [left, right] = its.normals;
         let leads = [left.cross(its.along), its.along.cross(right)].map(|s: DVec3| {

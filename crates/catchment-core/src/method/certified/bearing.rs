@@ -22,7 +22,7 @@ pub(super) struct Bearings(Vec<[f64; 5]>);
 pub(super) type Rising = u64;
 
 impl Bearings {
-    /// For some free errors; `units` is what a unit of each counts, in D.
+    /// For given free errors; `units` is the length of a unit of each in the ρ-metric, in D.
     pub(super) fn of(axes: &[Dof], units: &[f64; 5]) -> Self {
         let steps: &[f64] = if axes.len() <= 2 { &[0.0, 1.0, -1.0, 0.5, -0.5] } else { &[0.0, 1.0, -1.0] };
         // Pairs of errors alone where there are too many otherwise.
@@ -56,7 +56,7 @@ impl Bearings {
         self.0.len()
     }
 
-    /// Which of them none of the pushes goes back along.
+    /// The bearings along which no push goes back.
     pub(super) fn rising(&self, pushes: &[PoseBox]) -> Rising {
         let rises = |bearing: &[f64; 5]| {
             pushes.iter().all(|push| {
@@ -66,7 +66,7 @@ impl Bearings {
         self.0.iter().enumerate().filter(|(_, bearing)| rises(bearing)).fold(0, |set, (k, _)| set | 1 << k)
     }
 
-    /// How far along a bearing a box reaches: from and to.
+    /// Extent of a box along a bearing: lower and upper end.
     pub(super) fn range(&self, bearing: usize, poses: &PoseBox) -> [f64; 2] {
         let direction = &self.0[bearing];
         let (mut from, mut to) = (0.0, 0.0);

@@ -36,7 +36,7 @@ pub(super) struct Corner {
 /// A side of a facet at a corner.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
-    /// Where it leads, unit.
+    /// Its direction, unit.
     pub(super) along: DVec3,
     /// Outward normal of the facet.
     pub(super) normal: DVec3,
@@ -117,7 +117,7 @@ impl Body {
 }
 
 impl Body {
-    /// Whether no facet faces up (1) or down (−1) but those of one flat back.
+    /// Whether no facet faces up (1) or down (−1) except those of a single flat back.
     pub(super) fn is_over_flat_back(&self, side: f64) -> bool {
         let level = |vertex: u32| side * self.at(vertex).z;
         let back = (0..self.vertices.len() as u32).map(level).fold(f64::NEG_INFINITY, f64::max);
@@ -143,11 +143,12 @@ pub(super) enum Meeting {
     FacetCorner(u32, u32),
     /// A fixed corner under a moving facet.
     CornerFacet(u32, u32),
-    /// A fixed ridge under a moving one.
+    /// A fixed ridge under a moving ridge.
     RidgeRidge(u32, u32),
 }
 
-/// Every meeting of two bodies of which the upper does not lie upside down for certain; each once where both move in the x–z plane alone (`planar`).
+/// Every possible meeting of features of two bodies, except for features that certainly face away; each
+/// occurs once if both bodies move only in the x–z plane (`planar`).
 pub(super) fn meetings(fixed: &Body, moving: &Body, planar: bool) -> Vec<Meeting> {
     let count = |list: usize| 0..list as u32;
     let up = |k: &u32| fixed.facets[*k as usize].normal.z > 0.0;
@@ -191,8 +192,8 @@ fn is_first(
     near - SEAM <= at.y && at.y <= far + SEAM && (oblique || is_new(at.x.to_bits(), at.z.to_bits()))
 }
 
-/// Whether a ridge along y, where a ridge across y meets it in the x–z plane, does so with its end: that corner lies on the facet of the other, which
-/// has the same normal.
+/// Whether a ridge along y meets a ridge across y in the x–z plane with its end: that corner lies on the
+/// facet of the other, which has the same normal.
 fn ends_on(body: &Body, along: u32, other: &Body, across: u32) -> bool {
     let (along, across) = (&body.ridges[along as usize], &other.ridges[across as usize]);
     let level = |ridge: &Ridge, body: &Body| ridge.ends.map(|end| body.at(end).y);
@@ -201,5 +202,5 @@ fn ends_on(body: &Body, along: u32, other: &Body, across: u32) -> bool {
     is_along && c == d && (c == a || c == b) && across.normals.iter().any(|n| n.y == 0.0)
 }
 
-/// What counts as beside a facet, as a multiple of lengths.
+/// Largest distance that counts as on a facet, as a multiple of lengths.
 const SEAM: f64 = tolerance::ROUNDING;

@@ -22,12 +22,12 @@ use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
 
-/// A box that can be come to at a height; the lowest is the greatest, then the smaller number.
+/// A box that can be reached at a height; ordered by the lowest height, then by the smaller number.
 #[derive(PartialEq)]
 struct Reached {
     height: f64,
     number: usize,
-    /// The box it was come to from; itself for a source.
+    /// The box from which it was reached; itself for a source.
     from: usize,
 }
 
@@ -45,8 +45,8 @@ impl PartialOrd for Reached {
     }
 }
 
-/// Takes boxes in the order of the lowest way to them from `sources`: told each with the height of its way, `visit` says whether to go on
-/// from it, or to end.
+/// Visits boxes in the order of their lowest path from `sources`: `visit` receives each with the height of
+/// its path, and returns whether to continue from it, or to end.
 fn walk(
     tree: &Tree,
     exec: &Exec,
@@ -83,10 +83,11 @@ fn walk(
     Ok(())
 }
 
-/// Boxes that are taken between two looks at whether to stop.
+/// Number of boxes between two checks for cancellation.
 const BETWEEN: usize = 1024;
 
-/// By how much heights along a path may exceed the seat's level where [`crate::contact::Seat`] tries whether a pose is connected with it, in D.
+/// Amount by which heights along a path may exceed the seat's level in the connection test of
+/// [`crate::contact::Seat`], in D.
 const OVER_A_PATH: f64 = 1e-6;
 
 /// Whether to go on from a box.
@@ -95,17 +96,17 @@ enum Onward {
     End,
 }
 
-/// Where all that rests is docked, and what belongs to the seat.
+/// The seat: the region in which every rest is docked, and the poses that belong to it.
 #[derive(Clone, Copy)]
 pub(super) struct Seat<'a> {
     /// Deepest that anything rests that is docked, and the level of the seat, in D.
     pub(super) mated: f64,
     pub(super) level: f64,
-    /// Whether a box is one in which every rest at the seat's level or below is docked.
+    /// Whether every rest in a box, at the seat's level or below, is docked.
     pub(super) holds: &'a dyn Fn(&PoseBox) -> bool,
-    /// Where nothing rests but in the seat, as far as that is certain.
+    /// The certified neighbourhood of the mated pose without rests outside the seat.
     pub(super) home: Option<Home>,
-    /// Whether a box may be part of what counts as connected with a mated pose.
+    /// Whether a box may contain poses that count as connected with a mated pose.
     pub(super) meets: &'a dyn Fn(&PoseBox) -> bool,
 }
 
@@ -115,10 +116,11 @@ impl Seat<'_> {
         tree.leaves().filter(|(_, cell)| (self.meets)(&cell.poses)).map(|(number, _)| number).collect()
     }
 
-    /// Of every box whether it may be part of the seat: connected with a mated pose at the seat's level or below.
+    /// For every box whether it may be part of the seat: connected with a mated pose at the seat's level or
+    /// below.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(super) fn reach(&self, tree: &Tree, exec: &Exec) -> Result<Vec<bool>, Cancelled> {
         let mut in_seat = vec![false; tree.cells.len()];
         walk(tree, exec, self.boxes(tree).into_iter(), floor, |&Reached { number, height, .. }| {
@@ -167,34 +169,35 @@ impl Seat<'_> {
     }
 }
 
-/// Whether a motion may get out of a box by more than a slope: over an end of h, under a wall, or out of all that was looked at.
+/// Whether a motion may leave a box other than by a slope: over an end of h, under a wall, or out of the
+/// examined region.
 fn leaks(tree: &Tree, cell: &Cell) -> bool {
     cell.sudden || cell.walled || tree.is_at_border(cell)
 }
 
-/// The first way out of the seat's part, by floors.
+/// The first exit of the seat's part, by floors.
 #[derive(Debug, Clone)]
 pub(super) struct EscapeRoute {
     /// Below it the seat's part docks, in D.
     pub(super) level: f64,
-    /// The boxes that were come to before, each with the height of its way.
+    /// The boxes that were reached before, each with the height of its path.
     inside: Vec<(usize, f64)>,
-    /// Boxes that may let rest or out below the lowest certain exit: smaller ones may not.
+    /// Boxes that may contain a rest or an exit below the lowest certain exit: smaller boxes may not.
     blocking: Vec<usize>,
-    /// From which box each was come to.
+    /// For each box the box from which it was reached.
     came_from: Vec<usize>,
 }
 
-/// Boxes in the way that are told at once: where the way is out for certain, and at most; of many boxes more, as a part of all.
+/// Number of blocking boxes that are returned at once: the minimum, and the maximum as a part of all.
 const LEAST_BLOCKING: usize = 32;
 const MOST_BLOCKING: usize = 256;
 const PART_BLOCKING: usize = 256;
 
 impl EscapeRoute {
-    /// Looks for it.
+    /// Searches for the exit.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(super) fn find(tree: &Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Self, Cancelled> {
         let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
         let mut came_from = vec![usize::MAX; tree.cells.len()];
@@ -217,7 +220,8 @@ impl EscapeRoute {
         Ok(Self { level: level.unwrap_or(f64::INFINITY), inside, blocking, came_from })
     }
 
-    /// What is in the way and may be halved: each blocking box or, where it may not, the last that may on the way to it, whose floor may be too low.
+    /// The blocking boxes that may be halved: each blocking box or, if it may not, the last box that may on
+    /// the path to it, whose floor may be too low.
     pub(super) fn in_the_way(&self, may: impl Fn(usize) -> bool) -> Vec<usize> {
         let mut found = Vec::new();
         let mut seen = BTreeSet::new();
@@ -234,15 +238,15 @@ impl EscapeRoute {
     }
 }
 
-/// The floor of a box, where something touches.
+/// The floor of a box, if it contains contacts.
 fn floor(cell: &Cell) -> Option<f64> {
     cell.height.map(|height| height.lo)
 }
 
-/// Labels what heights decide, and says what is in the way.
+/// Labels the boxes that heights decide, and returns the blocking boxes.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<EscapeRoute, Cancelled> {
     let way_out = EscapeRoute::find(tree, seat, exec)?;
     let level = way_out.level;
@@ -280,10 +284,11 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Esc
     Ok(way_out)
 }
 
-/// How high a half that is in the seat must be lifted before it can leave, above the mated height: at least and at most, in D.
+/// Lower and upper bound on the retention: the height above the mated height that a half in the seat must
+/// reach before it can leave, in D.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub(super) fn retention(
     tree: &Tree,
     seat: &Seat<'_>,

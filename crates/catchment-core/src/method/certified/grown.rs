@@ -26,24 +26,24 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::Dof;
 use rayon::prelude::*;
 
-/// By what a neighbourhood grows at once.
+/// Growth factor of a neighbourhood per step.
 const GROWTH: f64 = 1.25;
 /// Pieces are no smaller than this part of the neighbourhood.
 const FINEST: f64 = 1.0 / 128.0;
-/// The level is known well enough where its bounds differ by this part of it.
+/// The level is sufficiently accurate if its bounds differ by this part of it.
 const NEAR: f64 = 0.1;
 /// A window stays this part within a neighbourhood, so that rounding does not lead out of it.
 const INSIDE: f64 = 1.0 - 1e-9;
-/// How often the window is halved between one that is known and one that is not.
+/// Number of bisections of the window between a certified size and an uncertified size.
 const HALVINGS: usize = 8;
 
-/// Grows a neighbourhood, and looks at pieces of it.
+/// Grows a neighbourhood, by examining pieces of it.
 pub(super) struct Growth<'a> {
     pub(super) pair: &'a Pair,
     pub(super) bodies: &'a Bodies,
     /// The error box.
     pub(super) errors: PoseBox,
-    /// Pieces that are looked at at most.
+    /// Largest number of pieces that are examined.
     pub(super) pieces: usize,
     pub(super) exec: &'a Exec,
 }
@@ -54,21 +54,21 @@ struct Piece {
     among: Box<[u32]>,
 }
 
-/// What a look at a piece tells.
+/// Result of examining a piece.
 enum Look {
-    /// What is asked holds all over it.
+    /// The condition holds all over it.
     Holds,
-    /// Halves of it may tell.
+    /// Its halves may decide.
     Open(Box<[u32]>),
     /// It does not hold.
     Fails,
 }
 
 impl Growth<'_> {
-    /// The largest neighbourhood that is found, and how many pieces that took.
+    /// The largest neighbourhood found, and the number of pieces examined.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(super) fn of(&self, home: Home) -> Result<(Home, usize), Cancelled> {
         let (mut found, mut spent) = (home, 0);
         let mut poses = home.poses;
@@ -103,10 +103,11 @@ impl Growth<'_> {
         })
     }
 
-    /// The scale of the largest box about zero, in the proportions of the error box, that is certain to lie in a neighbourhood and below its level.
+    /// The scale of the largest box about zero, in the proportions of the error box, that certainly lies in a
+    /// neighbourhood and below its level.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(super) fn window(&self, home: &Home) -> Result<f64, Cancelled> {
         let mut free = self.bodies.free.iter();
         let Some(most) = free.next().map(|dof| home.poses[dof.index()].up / self.errors[dof.index()].up)
@@ -157,7 +158,8 @@ impl Growth<'_> {
         Ok((least, spent))
     }
 
-    /// Whether something holds over all pieces of a neighbourhood, or their halves, and how many were looked at.
+    /// Whether a condition holds over all pieces of a neighbourhood, or their halves, and the number of
+    /// pieces examined.
     fn all(
         &self,
         mut open: Vec<Piece>,
@@ -194,7 +196,7 @@ impl Growth<'_> {
         Ok((true, spent))
     }
 
-    /// Looks at pieces, in their order.
+    /// Examines pieces, in their order.
     fn look<T: Send>(
         &self,
         pieces: &[Piece],
@@ -212,7 +214,7 @@ impl Growth<'_> {
     }
 }
 
-/// What lies between a box and a larger one: two slabs per free error.
+/// The region between a box and a larger box: two slabs per free error.
 fn shell(inner: &PoseBox, outer: &PoseBox, bodies: &Bodies) -> Vec<Piece> {
     let among: Box<[u32]> = (0..bodies.meetings.len() as u32).collect();
     let mut slab = *outer;

@@ -25,7 +25,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, ROTATIONS};
 use glam::DVec3;
 
-/// What is certain about the mated pose.
+/// Certified facts about the mated pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Home {
     /// Nothing rests in it but in the seat.
@@ -36,11 +36,13 @@ pub(super) struct Home {
 
 /// How often the error box is halved before and at most.
 const HALVINGS: std::ops::RangeInclusive<i32> = 2..=8;
-/// What the height must rise by on the border beyond what slopes may change by, in D. What heights are rounded by is so much less that the argument
-/// holds to within a ten-thousandth of the way to the mated pose: there everything is in the seat.
+/// Amount by which the height must rise on the border beyond the possible change of the slopes, in D. The
+/// rounding of heights is so much smaller that the argument holds to within a ten-thousandth of the distance
+/// to the mated pose: there everything is in the seat.
 const LEAST: f64 = 1e5 * ROUNDING;
-/// Points that lie over facets are taken so far from their corners, as parts of the way to their middle: the farther off, the larger the neighbourhood
-/// over which they are sure to, and the less they say of turns.
+/// Distances of test points over facets from their corners, as parts of the distance to the middle: the
+/// larger, the larger the neighbourhood over which they certainly lie over the facet, and the weaker their
+/// bounds on rotations.
 const INSETS: [f64; 3] = [0.06, 0.15, 0.35];
 /// Facets that lie flush: cosine.
 const FLUSH: f64 = 1.0 - 1e-9;
@@ -48,10 +50,11 @@ const FLUSH: f64 = 1.0 - 1e-9;
 const PIECES: usize = 100_000;
 
 impl Home {
-    /// The largest one that is found about the mated pose, whose height is `mated`; part of the error box by halves.
+    /// The largest neighbourhood found around the mated pose, whose height is `mated`; sizes are the error
+    /// box repeatedly halved.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(super) fn find(
         bodies: &Bodies,
         errors: &PoseBox,
@@ -96,8 +99,8 @@ impl Home {
     }
 }
 
-/// By how much the slopes of what carries may change over a neighbourhood, each error in units of its reach; nothing where a plane may lie
-/// above the mated pose.
+/// Largest change of the slopes of the carrying contacts over a neighbourhood, each error in units of its
+/// extent; `None` if a plane may lie above the mated pose.
 fn changes(bodies: &Bodies, poses: &PoseBox, mated: f64, touches: &[Touch]) -> Option<[f64; 5]> {
     let at = Placed::new(bodies, poses);
     let mut most = [0.0f64; 5];
@@ -125,8 +128,8 @@ fn changes(bodies: &Bodies, poses: &PoseBox, mated: f64, touches: &[Touch]) -> O
     Some(most)
 }
 
-/// Whether a moving ridge lies on the line of a fixed one in the mated pose: whichever of its points touches, and by whichever normal, its plane
-/// goes through that line.
+/// Whether a moving ridge lies on the line of a fixed ridge in the mated pose: for each of its contact
+/// points, and each normal, the plane then contains that line.
 fn lies_along(bodies: &Bodies, own: &Ridge, its: &Ridge, mated: f64) -> bool {
     let start = bodies.fixed.at(own.ends[0]);
     its.ends.iter().all(|end| {
@@ -135,8 +138,8 @@ fn lies_along(bodies: &Bodies, own: &Ridge, its: &Ridge, mated: f64) -> bool {
     })
 }
 
-/// By how much the slopes of a point of a moving ridge change over a neighbourhood that touches a fixed line by one normal: intervals as wide as
-/// that.
+/// Change of the slopes of a point of a moving ridge over a neighbourhood that touches a fixed line with a
+/// common normal: intervals of that width.
 fn along(bodies: &Bodies, at: &Placed, its: &Ridge, touch: &Touch) -> Option<PoseBox> {
     let change = |range: Interval| {
         Interval::new(-0.5 * range.width(), 0.5 * range.width()).widened(ROUNDING * ROUNDING)
@@ -222,10 +225,10 @@ fn rises(bodies: &Bodies, poses: &PoseBox, mated: f64) -> Vec<PoseBox> {
     rises
 }
 
-/// The least that the height rises by over the border; nothing where it may be no more than what slopes change by.
+/// Smallest rise of the height over the border; `None` if it may be no larger than the change of the slopes.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 fn least(
     bodies: &Bodies,
     rises: &[PoseBox],

@@ -34,7 +34,7 @@ impl Interval {
         Self { lo, up }
     }
 
-    /// One number.
+    /// A single number.
     pub(super) const fn thin(value: f64) -> Self {
         Self { lo: value, up: value }
     }
@@ -72,13 +72,13 @@ impl Interval {
         Self { lo: (self.lo - by).next_down(), up: (self.up + by).next_up() }
     }
 
-    /// Over a number above 0; `None` where it may be 0 or below.
+    /// Division by a number above 0; `None` if the divisor may be 0 or below.
     pub(super) fn over(self, divisor: Self) -> Option<Self> {
         (divisor.lo > 0.0)
             .then(|| self * Self { lo: (1.0 / divisor.up).next_down(), up: (1.0 / divisor.lo).next_up() })
     }
 
-    /// Over a number that is not 0; `None` where it may be.
+    /// Division by a nonzero number; `None` if the divisor may be 0.
     pub(super) fn over_signed(self, divisor: Self) -> Option<Self> {
         if divisor.up < 0.0 { (-self).over(-divisor) } else { self.over(divisor) }
     }

@@ -59,7 +59,7 @@ use std::collections::BTreeSet;
 use tree::{Cell, Label, Tree};
 use tube::Tube;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -85,19 +85,19 @@ pub enum CertifiedError {
     /// No share of a box.
     #[error("an undecided share of {gap} is none: give a number from 0 to 1")]
     Gap {
-        /// What was given.
+        /// The given value.
         gap: f64,
     },
     /// Too few boxes to begin with.
     #[error("{boxes} boxes are too few to begin with: give at least {LEAST_BOXES}")]
     Boxes {
-        /// What was given.
+        /// The given value.
         boxes: usize,
     },
     /// No time.
     #[error("a budget of {seconds} s is none: give a number of seconds above 0")]
     Budget {
-        /// What was given.
+        /// The given value.
         seconds: f64,
     },
     /// So many features that all their meetings cannot be listed.
@@ -108,14 +108,14 @@ pub enum CertifiedError {
         /// How many.
         meetings: usize,
     },
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 /// Boxes at least.
 pub const LEAST_BOXES: usize = 64;
-/// Pairs of features at most: each is looked at over the largest boxes.
+/// Largest number of pairs of features: each is examined over the largest boxes.
 pub const MOST_MEETINGS: usize = 200_000;
 
 /// Certified shares of an error box.
@@ -148,22 +148,24 @@ pub(crate) struct Certified {
     pub(crate) certificate: BoxCertificate,
 }
 
-/// Levels of boxes that are looked at anyway, for one to five free errors.
+/// Number of levels of boxes that are always examined, for one to five free errors.
 const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
 const FINEST: f64 = 3e-4;
 /// How often a window is halved.
 const WINDOW_HALVINGS: usize = 24;
-/// The part that is spent at last on what is in the way of the seat's part, and at most so many: as many again hardly raise it.
+/// Part of the budget that is spent finally on the blocking boxes of the seat's part, and its upper limit:
+/// doubling it hardly improves the bound.
 const AT_LAST: usize = 8;
 const MOST_AT_LAST: usize = 4000;
 /// Boxes about the mated pose that are halved at once.
 const AT_HOME: usize = 64;
 /// With more free errors than so many, boxes about the mated pose come before those in the way of its part: there are too many of those.
 const MOST_IN_THE_WAY: usize = 3;
-/// The part of all boxes that is spent first on the seat, at most, for one to five free errors: of many there is little else that so few boxes tell.
+/// Largest part of the budget that is spent first on the seat, for one to five free errors: with many errors
+/// so few boxes decide little else.
 const AT_SEAT: [usize; 5] = [8, 8, 8, 2, 1];
-/// Motions of a box are followed once more in a bundle where there are so many times as many boxes.
+/// Growth factor of the number of boxes after which the motions of a box are followed again in a bundle.
 const AGAIN: usize = 2;
 /// Boxes that are halved at once, at least, and as a part of all.
 const AT_ONCE: usize = 1024;
@@ -266,7 +268,7 @@ pub(crate) fn certify(
     }
 }
 
-/// The boxes that are looked at anyway.
+/// The boxes that are always examined.
 fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
     let mut tree = Tree::over(&pair.alignment, bodies);
     for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
@@ -276,7 +278,7 @@ fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
     Ok(tree)
 }
 
-/// What is in the way of the seat's part and not as small as it gets.
+/// The blocking boxes of the seat's part that can still be halved.
 fn coarse(tree: &Tree, way_out: &EscapeRoute) -> Vec<usize> {
     way_out.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
 }
@@ -345,7 +347,7 @@ fn divide(
     tree.join(numbers, exec)
 }
 
-/// Labels the boxes all of whose motions lead to labelled ones.
+/// Labels the boxes all of whose motions lead to labelled boxes.
 fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
     // Once more where there are many more labels to come to.
     let boxes = tree.cells.len();
@@ -369,7 +371,7 @@ fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Ex
     Ok(())
 }
 
-/// Poses of one box are about so near each other: lists of what may touch are kept so long.
+/// Approximate distance of the poses of a box: range of the lists of possible contacts.
 const REACH: f64 = 0.02;
 
 /// Which boxes belong to the seat.
@@ -389,7 +391,7 @@ impl SeatBoxes<'_> {
         off
     }
 
-    /// Whether all poses of a box are so near a mated one that they count as connected with it.
+    /// Whether all poses of a box are so close to a mated pose that they count as connected with it.
     fn holds(&self, poses: &PoseBox) -> bool {
         let square = |part: Interval| part.lo.abs().max(part.up.abs()).powi(2);
         self.off(poses).into_iter().map(square).sum::<f64>() <= (SEAT_CORE * (1.0 - 1e-9)).powi(2)

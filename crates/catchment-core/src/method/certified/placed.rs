@@ -22,7 +22,7 @@ pub(super) fn middle(poses: &PoseBox) -> PoseError {
     PoseError::from_array(poses.map(Interval::middle))
 }
 
-/// The two halves, and what of the alignment problem bounds depend on.
+/// The two halves, with the parts of the alignment problem that determine bounds.
 #[derive(Debug, Clone)]
 pub(super) struct Bodies {
     pub(super) fixed: Body,
@@ -32,7 +32,8 @@ pub(super) struct Bodies {
     pub(super) rho: f64,
     /// All that may meet at all.
     pub(super) meetings: Vec<Meeting>,
-    /// Whether nothing can slide under anything: both halves are columns over a flat back, and neither tilts. What meets a wall stays on h then.
+    /// Whether sliding under features is impossible: both halves are columns over a flat back, and neither
+    /// tilts. A half that meets a wall then stays on h.
     pub(super) upright: bool,
 }
 
@@ -48,7 +49,7 @@ impl Bodies {
         Self { fixed, moving, free: alignment.free, cor, rho, meetings, upright }
     }
 
-    /// Whether x (0) or y (1) of the face centre is what is free, not 0 at the centre of rotation.
+    /// Whether x (0) or y (1) of the face centre is free, instead of 0 at the centre of rotation.
     pub(super) fn slides(&self, axis: usize) -> bool {
         self.free.contains([Dof::X, Dof::Y][axis])
     }
@@ -63,7 +64,7 @@ pub(super) struct Placed {
     /// The face centre seen from the centre of rotation.
     pub(super) face: Vector,
     pub(super) offset: [Interval; 2],
-    /// Of every vertex: where it is in plan view, and where it is seen from the centre of rotation.
+    /// For every vertex: its position in plan view, and its position relative to the centre of rotation.
     pub(super) lateral: Vec<[Interval; 2]>,
     pub(super) turned: Vec<Vector>,
 }
@@ -113,7 +114,7 @@ impl Placed {
         [lateral[0], lateral[1], point[2] - height]
     }
 
-    /// How fast roll, pitch and yaw change where the half turns by `spin`, about axes of the world.
+    /// Rates of roll, pitch and yaw for a rotation of the half by `spin`, about world axes.
     pub(super) fn angle_rates(&self, spin: &Vector) -> [Interval; 3] {
         let [_, [minus_sine, cosine, _], _] = self.axes;
         let sine = -minus_sine;
@@ -125,8 +126,8 @@ impl Placed {
         [roll, pitch, spin[2] - roll * self.axes[0][2]]
     }
 
-    /// What the gap of a contact changes by, per unit of each error, with the height of the centre of rotation held: `normal` at
-    /// `arm` from it.
+    /// Change of the gap of a contact per unit of each error, at constant height of the centre of rotation:
+    /// `normal` at `arm` from it.
     ///
     /// ```text
     ///   a_x = n_x     a_y = n_y     a_k = axis_k·(arm × n) − (n_x, n_y)·(axis_k × face)
@@ -150,5 +151,5 @@ impl Placed {
     }
 }
 
-/// What coordinates of a vertex may be rounded by, in D.
+/// Rounding of vertex coordinates, in D.
 pub(super) const ROUNDING: f64 = 1e-14;

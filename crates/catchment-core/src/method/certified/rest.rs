@@ -23,16 +23,18 @@ use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
 use std::f64::consts::TAU;
 
-/// What is this near to a rest counts as the same place, in the ρ-metric, in D: far above where motions end.
+/// Poses within this distance of a rest count as the same place, in the ρ-metric, in D: far above the
+/// accuracy of motion ends.
 const CORE: f64 = 0.005;
 /// Boxes for each rest, beyond those that all share: some seconds in the plane.
 const BOXES: usize = 20_000;
 
-/// How far above each rest (a pose error, and z of the centre of rotation) a half must be lifted at least, in D, before it may come to rest elsewhere or leave;
-/// none of a rest that is beyond all that is looked at, or that nothing is known to lead away from.
+/// Lower bounds on the height above each rest (a pose error, and z of the centre of rotation) that a half
+/// must reach, in D, before it can come to rest elsewhere or leave; `None` for a rest outside the examined
+/// region, or without a known exit.
 ///
 /// # Errors
-/// [`CertifiedError::Large`], and [`CertifiedError::Cancelled`] when asked to stop.
+/// [`CertifiedError::Large`], and [`CertifiedError::Cancelled`] if a stop is requested.
 pub(crate) fn depths(
     pair: &Pair,
     rests: &[(PoseError, f64)],
@@ -91,7 +93,7 @@ fn depth(
     }
 }
 
-/// What is near a rest.
+/// The neighbourhood of a rest.
 struct About {
     rest: [f64; 5],
     free: DofSet,

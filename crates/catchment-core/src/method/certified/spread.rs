@@ -24,13 +24,13 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Boxes that are taken between two looks at whether to stop.
+/// Number of boxes between two checks for cancellation.
 const BETWEEN: usize = 1024;
 
 /// Labels all boxes that faces decide.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<(), Cancelled> {
     let in_seat = seat.reach(tree, exec)?;
     let is = |cell: &Cell, yes: bool| cell.label.is_some_and(|label| (label == Label::Yes) == yes);
@@ -93,7 +93,8 @@ struct Way<'a> {
     leads: &'a [bool],
 }
 
-/// A leaf from which a source may be come to, and from how far along a bearing; the farthest is the greatest, then the smaller number.
+/// A leaf that a source may reach, and the distance reached along a bearing; ordered by the farthest, then by
+/// the smaller number.
 #[derive(PartialEq)]
 struct Far {
     farthest: f64,
@@ -114,13 +115,15 @@ impl PartialOrd for Far {
     }
 }
 
-/// What places along a bearing are rounded by, in D.
+/// Rounding of positions along a bearing, in D.
 const ROUNDING: f64 = 1e-9;
 
 impl Way<'_> {
-    /// The leaves all of whose chains would have to go back along a bearing: farthest along it of what may lead on stays behind all of the leaf.
+    /// The leaves all of whose chains would have to go back along a bearing: the farthest reach along it of
+    /// all leaves that may lead on stays behind the whole leaf.
     ///
-    /// The farthest of a leaf in which nothing goes back is that of the faces by which it leads on, cut at the farthest of what lies behind them.
+    /// The reach of a leaf in which no motion goes back is that of its outgoing faces, limited by the reach
+    /// of the leaves behind them.
     fn ruled_out(&self, bearing: usize, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
         let Self { tree, sources, leads } = *self;
         let rises = |cell: &Cell| cell.rising >> bearing & 1 == 1;
@@ -169,10 +172,11 @@ impl Way<'_> {
     }
 }
 
-/// The undecided leaves to which a chain of such may lead from the error box, itself among them: what they do not tell apart, smaller ones may.
+/// The undecided leaves to which a chain of undecided leaves may lead from the error box, itself included:
+/// smaller boxes may decide them.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub(super) fn ahead(tree: &Tree, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
     let asked = tree.leaves().filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell));
     let sources: Vec<usize> = asked.map(|(number, _)| number).collect();
@@ -182,7 +186,8 @@ pub(super) fn ahead(tree: &Tree, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
     Ok((0..seen.len()).filter(|number| seen[*number]).collect())
 }
 
-/// Of every box whether it is one of `sources` or a chain of faces leads to it from them; `leads_on` says whether a face does, from a box to the next one.
+/// For every box whether it is in `sources` or a chain of faces leads to it from them; `leads_on` decides
+/// whether a face leads from a box to the next.
 fn chained(
     tree: &Tree,
     sources: &[usize],

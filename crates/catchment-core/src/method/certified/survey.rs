@@ -24,33 +24,35 @@ use crate::contact::Nearby;
 use crate::pose::{Dof, ROTATIONS};
 use glam::DVec3;
 
-/// What an exact height may be wrong by, in D: rounding, and features that support within 4·10⁻⁶.
+/// Largest error of an exact height, in D: rounding, and features that support within 4·10⁻⁶.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// How often what cannot carry is left out, and the bounds taken anew.
+/// Number of rounds in which contacts that cannot carry are removed, and the bounds recomputed.
 const LOOKS: usize = 2;
 
-/// What is certain over a box.
+/// Certified facts over a box.
 #[derive(Debug, Clone)]
 pub(super) struct Survey {
     /// All that may carry.
     pub(super) touches: Vec<Touch>,
-    /// Where each pushes alone.
+    /// The push of each contact by itself.
     pub(super) pushes: Vec<PoseBox>,
-    /// No pose of the box at which the halves touch is lower than `lo` or higher than `up`, in D. Nothing touches where this is `None`.
+    /// Bounds on the height at any pose of the box at which the halves touch, in D. `None` if nothing
+    /// touches.
     pub(super) height: Option<Interval>,
     /// Whether h may jump in the box, or end.
     pub(super) sudden: bool,
-    /// Whether a rim may be come to from outside by a motion in the box: it may meet a wall, or slide under something.
+    /// Whether a motion in the box may reach a rim from outside: it may meet a wall, or slide under
+    /// something.
     pub(super) walled: bool,
     /// Whether it may end: at some pose of the box the halves may pass by each other.
     pub(super) ends: bool,
-    /// A direction, in errors, that opens all touches; `None` where the half may rest.
+    /// A direction, in errors, that opens all contacts; `None` if the half may rest.
     pub(super) downhill: Option<[f64; 5]>,
 }
 
 impl Survey {
-    /// Looks at a box; only the meetings `among` may carry in it.
+    /// Examines a box; only the meetings `among` may carry in it.
     pub(super) fn of(bodies: &Bodies, poses: &PoseBox, among: &[u32], nearby: &mut Nearby<'_>) -> Self {
         let touching = Touching::new(bodies, poses);
         let mut touches: Vec<Touch> = among.iter().filter_map(|number| touching.touch(*number)).collect();
@@ -169,7 +171,7 @@ impl Ways {
         Self { down: may(-1.0), up: may(1.0) }
     }
 
-    /// Whether one way only.
+    /// Whether motion passes in only one direction.
     const fn is_along(self) -> bool {
         self.down != self.up
     }
@@ -188,7 +190,8 @@ fn span(touches: &[Touch]) -> Option<Interval> {
     touches.iter().map(|touch| touch.height).reduce(Interval::hull)
 }
 
-/// Heights of a continuous h from that in the middle: along the way to any pose its slope is one of the touches', or between some.
+/// Bounds on a continuous h from its value at the centre: along the line to any pose its slope is that of a
+/// contact, or between those of several.
 fn mean_value(bodies: &Bodies, poses: &PoseBox, mid: Interval, touches: &[Touch]) -> Option<Interval> {
     let mut change: Option<Interval> = None;
     for touch in touches {
@@ -206,9 +209,9 @@ fn mean_value(bodies: &Bodies, poses: &PoseBox, mid: Interval, touches: &[Touch]
 struct Meet {
     /// At this height of the centre of rotation.
     lift: Interval,
-    /// What the distance between them in plan view, outwards, changes by per unit of each error.
+    /// Change of their outward distance in plan view, per unit of each error.
     apart: PoseBox,
-    /// The facet that ends at the rim, of the fixed half or the moving one.
+    /// The facet that ends at the rim, of the fixed half or the moving half.
     facet: u32,
     of_fixed: bool,
     /// Facets about the corner that lead nowhere but outwards. While the corner is outside nothing of them touches anything of the other facet.
@@ -222,7 +225,7 @@ impl Meet {
         rate.lo < 0.0
     }
 
-    /// Whether a meeting is one of features that lie apart in plan view while the corner is outside.
+    /// Whether a meeting is between features that lie apart in plan view while the corner is outside.
     fn parts(&self, bodies: &Bodies, meeting: Meeting) -> bool {
         let (rim, other) =
             if self.of_fixed { (&bodies.fixed, &bodies.moving) } else { (&bodies.moving, &bodies.fixed) };
@@ -245,7 +248,7 @@ impl Meet {
     }
 }
 
-/// Rims: the edges at which what faces the other half ends in plan view.
+/// Rims: the edges at which the surface that faces the other half ends in plan view.
 struct Rims;
 
 /// A rim in plan view.
@@ -256,15 +259,16 @@ struct Rim<'a> {
     levels: [Interval; 2],
     /// From its first end to its second, unit in space.
     along: [Interval; 2],
-    /// The normals out of it, where outside may be to its right and where to its left, with the facet that ends there.
+    /// The outward normals, for an outside to its right and to its left, with the facet that ends there.
     outward: [Option<([Interval; 2], u32)>; 2],
 }
 
-/// What counts as facing neither up nor down, and as nearer in plan view than rounding.
+/// Largest z-component that counts as facing neither up nor down, and largest distance in plan view that
+/// counts as rounding.
 const LEVEL: f64 = 1e-9;
 
 impl Rims {
-    /// All corners that may come to a rim from outside.
+    /// All corners that may reach a rim from outside.
     fn meeting(bodies: &Bodies, at: &Placed) -> Vec<Meet> {
         let Bodies { fixed, moving, .. } = bodies;
         // How far a facet with this normal faces the other half.
@@ -338,8 +342,9 @@ impl Rim<'_> {
         low + share.unwrap_or(Interval::new(0.0, 1.0)) * (high - low)
     }
 
-    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways, how high it is there, the
-    /// facet that ends there, and those facets of the corner that lead nowhere but outwards.
+    /// Passes the outward normals by which a corner with facets in these directions may reach this rim from
+    /// outside, its height there, the facet that ends there, and the facets of the corner that lead only
+    /// outwards.
     fn meet(
         &self,
         corner: [Interval; 2],
@@ -369,8 +374,9 @@ impl Rim<'_> {
     }
 }
 
-/// The normals, in plan view, out of a rim to its right and to its left, whose facets to the left and to the right, as seen from where the
-/// half is looked at, have these normals: across it, or, of a facet that is a wall for certain, its own. A rim may stand upright.
+/// The normals, in plan view, out of a rim to its right and to its left, for the facets with these normals to
+/// the left and right, as seen from the viewing side: across the rim, or, for a facet that is certainly a
+/// wall, its own. A rim may be upright.
 fn ending(along: [Interval; 2], [left, right]: [Vector; 2]) -> [[Interval; 2]; 2] {
     let across = [along[1], -along[0]];
     let is_wall = |n: &Vector| n[2].lo >= -LEVEL && n[2].up <= LEVEL;
@@ -379,8 +385,8 @@ fn ending(along: [Interval; 2], [left, right]: [Vector; 2]) -> [[Interval; 2]; 2
     [to_right, if is_wall(&left) { plan(left) } else { across.map(|x| -x) }]
 }
 
-/// On which sides, right and left, the outside of a ridge may be whose facets, left and right, face the other half by so much; nothing
-/// where it is no rim.
+/// Sides, right and left, on which the outside of a ridge may be if its facets, left and right, face the
+/// other half by these amounts; `None` if it is not a rim.
 fn sides([left, right]: [Interval; 2]) -> Option<[bool; 2]> {
     let ends = |facing: Interval, other: Interval| facing.up > LEVEL && other.lo <= LEVEL;
     let sides = [ends(left, right), ends(right, left)];
@@ -391,12 +397,12 @@ fn is_on_rim(corner: &Corner, sides: &[Option<[bool; 2]>]) -> bool {
     corner.ridges.iter().any(|ridge| sides[*ridge as usize].is_some())
 }
 
-/// Where the facets around a corner lead that face the other half for certain.
+/// Directions of the facets around a corner that certainly face the other half.
 fn sheet(corner: &Corner, facing: impl Fn(DVec3) -> Interval + Clone) -> impl Iterator<Item = Side> + Clone {
     corner.sides.iter().filter(move |side| facing(side.normal).lo > LEVEL).copied()
 }
 
-/// What a moving vertex goes outward by, per unit of each error.
+/// Outward motion of a moving vertex, per unit of each error.
 fn moved(bodies: &Bodies, at: &Placed, vertex: usize, outward: [Interval; 2]) -> PoseBox {
     let normal = [outward[0], outward[1], Interval::ZERO];
     let torque = super::interval::cross(&at.turned[vertex], &normal);
@@ -425,7 +431,7 @@ fn downhill(bodies: &Bodies, touches: &[Touch]) -> Option<[f64; 5]> {
 
 /// The shortest vector of the convex hull of some (Gilbert 1966), nearly.
 pub(super) fn shortest(vectors: &[[f64; 5]]) -> Option<[f64; 5]> {
-    /// Steps of the search: what rests on it is tried.
+    /// Number of steps of the search for a common direction.
     const STEPS: usize = 100;
     let inner = |a: &[f64; 5], b: &[f64; 5]| (0..5).map(|k| a[k] * b[k]).sum::<f64>();
     let mut at = *vectors.first()?;

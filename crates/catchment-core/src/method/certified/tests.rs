@@ -24,7 +24,7 @@ fn pair_of(family: Family, free: &[Dof], cor: f64) -> Pair {
     Pair::new(&connector, &alignment)
 }
 
-/// Random numbers in [0, 1), one after another.
+/// Random numbers in [0, 1), in sequence.
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let (stream, mut next) = (Stream::new(seed), 0);
     move || {
@@ -46,7 +46,8 @@ fn random_box(pair: &Pair, most: f64, number: &mut impl FnMut() -> f64) -> (Pose
     (poses, PoseError::from_array(error))
 }
 
-/// Heights lie between floor and roof, and what carries is among the touches with a height, a slope and a push within its bounds.
+/// Heights lie between floor and roof, and the carrying contacts are among the recorded contacts, with
+/// height, slope and push within their bounds.
 fn holds_what_is(pair: &Pair, boxes: usize, most: f64) {
     let bodies = Bodies::of(pair);
     let all: Vec<u32> = (0..bodies.meetings.len() as u32).collect();
@@ -105,7 +106,7 @@ fn bounds_hold_exact_heights_and_slopes() {
 }
 
 impl Certified {
-    /// Whether all motions of the box that holds a pose dock, or none; nothing where that is open.
+    /// Whether all motions of the box around a pose dock, or none; `None` if undecided.
     fn label_at(&self, error: &PoseError) -> Option<bool> {
         self.whole_label_at(error).map(|label| label == Label::Yes)
     }
@@ -120,15 +121,17 @@ fn certified(pair: &Pair, boxes: usize) -> Certified {
     certify(pair, &CertifiedSettings { boxes, ..CertifiedSettings::default() }, &Exec::new()).unwrap()
 }
 
-/// As many random motions per planar design as this variable says, or a few: `docs/certified.md` tells of 100 000.
+/// Number of random motions per planar design in this variable, or a small default: `docs/certified.md`
+/// mentions 100 000.
 fn motions() -> usize {
     std::env::var("CATCHMENT_MOTIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(600)
 }
 
-/// No exact motion from a random pose contradicts its label; how many were labelled. Where a step of a motion ends on the other side of a ridge that falls to
-/// either, one of a sixteenth decides: rarely.
+/// No exact motion from a random pose contradicts its label; returns the number of labelled poses. If a step
+/// of a motion ends on the other side of a ridge that falls to either side, a step of a sixteenth decides:
+/// rarely.
 fn contradicts_nothing(pair: &Pair, found: &Certified, poses: usize) -> usize {
-    /// Motions that finer steps may have to decide, at most: one in so many.
+    /// Largest share of motions that finer steps may have to decide: one in this many.
     const FINER: usize = 20_000;
     let (settings, mut number) = (descent::DescentSettings::default(), numbers(5));
     let finer = descent::DescentSettings { step: settings.step / 16.0, ..settings };
@@ -174,7 +177,8 @@ fn no_motion_contradicts_a_planar_certificate() {
     }
 }
 
-/// The other designs whose shares the guide tells: other slopes, another centre, spatial halves over two errors and three, a dock of the gallery.
+/// The other designs whose shares are in the guide: other slopes, another centre, spatial halves over two
+/// errors and three, a dock of the gallery.
 #[test]
 fn no_motion_contradicts_the_other_certificates() {
     let planar = |aspect_ratio: f64, cor: f64| {
@@ -204,7 +208,7 @@ fn no_motion_contradicts_the_other_certificates() {
     }
 }
 
-/// What a budget leaves undecided is undecided, and nothing of what it says is wrong.
+/// Poses left open by the budget are undecided, and no label is wrong.
 #[test]
 fn a_budget_ends_it() {
     let pair = pair_of(Family::VFace, &[], 0.0);
@@ -214,7 +218,7 @@ fn a_budget_ends_it() {
     contradicts_nothing(&pair, &found, 300);
 }
 
-/// What slides off beside its seat, out of the error box, is no jam.
+/// A half that slides off beside its seat, out of the error box, is not jammed.
 #[test]
 fn nothing_jams_where_all_slides_off() {
     for (family, free) in [(Family::VFace, &[Dof::X][..]), (Family::Pyramid, &[Dof::X, Dof::Y])] {
@@ -266,7 +270,8 @@ fn all_of_a_box_of_three_errors_docks() {
     assert!(contradicts_nothing(&pair, &found, 300) > 280);
 }
 
-/// A border through a box of three errors: what slides off along it is told by where it goes across the errors.
+/// A border through a box of three errors: motions that slide off along it are decided by their progress
+/// across the errors.
 #[test]
 fn a_border_in_three_errors_is_told() {
     let pair = narrow(Family::Pyramid, 0.0, &[(Dof::X, 0.6), (Dof::Y, 0.6), (Dof::Yaw, 0.35)]);
@@ -277,7 +282,7 @@ fn a_border_in_three_errors_is_told() {
     assert!(contradicts_nothing(&pair, &found, motions) > motions * 8 / 10);
 }
 
-/// Beyond that nothing touches, wherever the half turns about: so nobody comes back from there.
+/// Beyond this distance nothing touches, for any centre of rotation: no motion returns from there.
 #[test]
 fn halves_pass_each_other_by_where_it_is_said() {
     for cor in [-1.5, -0.5, 0.0, 0.5, 1.5] {
@@ -295,7 +300,7 @@ fn halves_pass_each_other_by_where_it_is_said() {
     }
 }
 
-/// No exact motion goes back along a bearing while it is in a box that says so.
+/// No exact motion goes back along a bearing while it is in a box that excludes it.
 #[test]
 fn motions_never_go_back_along_a_bearing() {
     // Of a step, for what it bends.
@@ -334,7 +339,7 @@ fn motions_never_go_back_along_a_bearing() {
     }
 }
 
-/// An independent engine's trials end as their boxes say, wherever these say anything.
+/// Trials of an independent engine end in agreement with the labels of their boxes.
 #[test]
 fn no_trial_of_an_engine_contradicts() {
     for (file, labelled) in [("x-face-3d-cor0-xy.json", 150), ("pyramid-ar1-cor0-xyyaw.json", 10)] {
@@ -362,7 +367,8 @@ fn no_trial_of_an_engine_contradicts() {
     }
 }
 
-/// What heights on a grid say of the lowest way out of the seat lies between what is certain of it, up to what heights change by from cell to cell.
+/// The lowest exit from the seat on a grid lies between its certified bounds, up to the height difference
+/// between cells.
 #[test]
 fn the_merge_tree_lets_the_seat_go_as_high() {
     let translations = [Dof::X, Dof::Y];

@@ -24,7 +24,7 @@ use glam::DVec3;
 
 /// Sine by which normals of facets, which are rounded, may fail to be supported.
 pub(super) const SLACK: f64 = tolerance::PARALLEL;
-/// What counts as within a border in plan view, as a multiple of lengths.
+/// Distance that counts as within a border in plan view, as a multiple of lengths.
 const SEAM: f64 = tolerance::ROUNDING;
 /// Below this part of its own length a normal's rise gives no mean value form.
 const STEEP: f64 = 1e-6;
@@ -46,23 +46,24 @@ pub(super) struct Touch {
     pub(super) normal: Vector,
     /// Its moment about the centre of rotation.
     pub(super) torque: Vector,
-    /// What its gap changes by, per unit of each error.
+    /// Change of its gap, per unit of each error.
     pub(super) rates: PoseBox,
-    /// Of its plane all over the box, also where the features do not meet; where it has one.
+    /// Bounds on its plane all over the box, including poses at which the features do not meet; `None`
+    /// without such bounds.
     pub(super) plane: Option<Whole>,
 }
 
-/// The plane of a meeting: where its features, produced, close.
+/// The plane of a meeting: the closing of its extended features.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Whole {
     /// The height in the middle of the box at which they do, in D.
     pub(super) middle: Interval,
-    /// What the gap between them changes by, per unit of each error.
+    /// Change of the gap between them, per unit of each error.
     pub(super) rates: PoseBox,
 }
 
 impl Touch {
-    /// ∂z/∂q, where the normal rises for certain.
+    /// ∂z/∂q, if the normal certainly points up.
     pub(super) fn slope(&self, dof: Dof) -> Option<Interval> {
         (-self.rates[dof.index()]).over(self.rise)
     }
@@ -84,7 +85,7 @@ impl Plane {
 }
 
 impl Placed {
-    /// Height of the centre of rotation at which a moving vertex comes to a plane through a fixed point.
+    /// Height of the centre of rotation at which a moving vertex reaches a plane through a fixed point.
     pub(super) fn closing(&self, [x, y, z]: &Vector, point: DVec3, vertex: usize) -> Option<Interval> {
         let lateral = self.lateral[vertex];
         let across =
@@ -95,7 +96,7 @@ impl Placed {
     }
 }
 
-/// The moving half over a box and in its middle, asked for meetings.
+/// The moving half over a box and at its centre, for queries about meetings.
 pub(super) struct Touching<'a> {
     pub(super) bodies: &'a Bodies,
     pub(super) poses: &'a PoseBox,
@@ -109,7 +110,8 @@ impl<'a> Touching<'a> {
         Self { bodies, poses, over: Placed::new(bodies, poses), middle: Placed::new(bodies, &middle) }
     }
 
-    /// Whether the halves overlap in plan view at every pose of the box for certain: a vertex of one lies over a facet of the other.
+    /// Whether the halves certainly overlap in plan view at every pose of the box: a vertex of one lies over
+    /// a facet of the other.
     pub(super) fn overlaps(&self) -> bool {
         let Bodies { fixed, moving, .. } = self.bodies;
         let over =
@@ -236,7 +238,7 @@ impl<'a> Touching<'a> {
         })
     }
 
-    /// The normal of two ridges where they support it, or what it lies in; upwards.
+    /// The normal of two ridges if they support it, or bounds on it; upwards.
     fn normal_of(&self, own: &Ridge, its: &Ridge) -> Option<Vector> {
         let w = self.over.turn(its.along);
         let u = thin(own.along);
@@ -264,8 +266,9 @@ impl<'a> Touching<'a> {
         }
     }
 
-    /// A touch by a plane that is known at any pose: its heights are those `among` which the features are and those of the plane. `arm` leads
-    /// to where the features meet, `beyond` to where their planes and lines do.
+    /// A contact whose plane is known at any pose: its heights are the intersection of those `among` the
+    /// features and those of the plane. `arm` leads to the meeting of the features, `beyond` to that of their
+    /// planes and lines.
     fn touch_by(
         &self,
         number: u32,
@@ -366,7 +369,7 @@ pub(super) fn plan(point: DVec3) -> [Interval; 2] {
     [Interval::thin(point.x), Interval::thin(point.y)]
 }
 
-/// From one to the other in plan view.
+/// From one point to another in plan view.
 fn from(a: [Interval; 2], b: [Interval; 2]) -> [Interval; 2] {
     [b[0] - a[0], b[1] - a[1]]
 }
@@ -391,8 +394,8 @@ pub(super) fn holds(polygon: &[[Interval; 2]], point: [Interval; 2]) -> bool {
     (0..n).all(|k| beside(k).lo > SEAM) || (0..n).all(|k| beside(k).up < -SEAM)
 }
 
-/// Heights at which two ridges may touch that are nearly parallel in plan view, where what they share of their common direction is known.
-/// At any pose the height is linear along it.
+/// Heights at which two nearly parallel ridges may touch in plan view, if their common extent along their
+/// direction is known. At any pose the height is linear along it.
 fn beside([a, b]: [DVec3; 2], p: [Interval; 2], level: Interval, w: &Vector) -> Option<Interval> {
     let u = b - a;
     let length = u.truncate().length();
@@ -432,7 +435,7 @@ fn range(mut numbers: impl Iterator<Item = Interval>) -> Option<Interval> {
     Some(numbers.fold(first, Interval::hull))
 }
 
-/// All unit normals between two: the chord, and what the arc bulges beyond it.
+/// All unit normals between two: the chord, and the bulge of the arc beyond it.
 fn between([a, b]: [Vector; 2]) -> Vector {
     let cosine = dot(&a, &b).lo;
     if cosine < OPPOSED {

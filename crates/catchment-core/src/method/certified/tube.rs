@@ -53,7 +53,7 @@ struct Frame {
 type Bundle = Vec<Interval>;
 
 impl Frame {
-    /// About the middle of a box, its first coordinate along the descent of what touches there.
+    /// Coordinates about the centre of a box, with the first along the descent of its contacts.
     fn new(bodies: &Bodies, axes: &[Dof], poses: &PoseBox, touches: &[Touch]) -> Option<Self> {
         let origin = middle(poses);
         let metric = Metric::at(bodies, origin.pitch);
@@ -93,7 +93,7 @@ impl Frame {
         Some(Self { origin: origin.to_array(), rows, columns })
     }
 
-    /// Along one of the errors, up it or down it.
+    /// Coordinates along an error, upwards or downwards.
     fn along(axes: &[Dof], poses: &PoseBox, first: usize, up: bool) -> Self {
         let unit = |k: usize, size: f64| {
             let mut unit = [0.0; 5];
@@ -144,7 +144,8 @@ impl Frame {
     }
 }
 
-/// The metric of motion about a pose as a linear map: x − s·θ, y − s·θ, ρθ with s what the face centre swings by per turn θ.
+/// The metric of motion about a pose as a linear map: x − s·θ, y − s·θ, ρθ with s the displacement of the
+/// face centre per rotation θ.
 struct Metric {
     rho: f64,
     turn: Option<usize>,
@@ -164,7 +165,7 @@ impl Metric {
         Self { rho: bodies.rho, turn, swing }
     }
 
-    /// A linear function of the metric's coordinates as one of the errors.
+    /// A linear function of the metric's coordinates in terms of the errors.
     fn row(&self, own: &[f64; 5]) -> [f64; 5] {
         let mut row = *own;
         if let Some(k) = self.turn {
@@ -173,7 +174,7 @@ impl Metric {
         row
     }
 
-    /// A step in the metric's coordinates as one in the errors.
+    /// A step in the metric's coordinates in terms of the errors.
     fn column(&self, own: &[f64; 5]) -> [f64; 5] {
         let mut column = *own;
         if let Some(k) = self.turn {
@@ -184,7 +185,7 @@ impl Metric {
         column
     }
 
-    /// A gradient in the errors as one in the metric's coordinates.
+    /// A gradient in the errors in terms of the metric's coordinates.
     fn covector(&self, rates: [f64; 5]) -> [f64; 5] {
         let mut own = rates;
         if let Some(k) = self.turn {
@@ -206,7 +207,7 @@ pub(super) struct Tube<'a> {
 }
 
 impl Tube<'_> {
-    /// What becomes of all motions that begin in a box, if that is certain.
+    /// Certified label of all motions that begin in a box, if any.
     pub(super) fn follow(&self, cell: &Cell, nearby: &mut Nearby<'_>) -> Option<Label> {
         let poses = cell.poses;
         let first = self.look(&poses, nearby)?;
@@ -326,7 +327,7 @@ impl Tube<'_> {
         None
     }
 
-    /// What is certain over a box within the root; nothing where a wall may be met.
+    /// Certified facts over a box within the root; `None` if a wall may be met.
     fn look(&self, poses: &PoseBox, nearby: &mut Nearby<'_>) -> Option<Survey> {
         let span = self.tree.places(poses)?;
         let mut among: Vec<u32> = Vec::new();
@@ -347,14 +348,15 @@ impl Tube<'_> {
     }
 }
 
-/// What of a bundle is between two places of its first coordinate.
+/// The part of a bundle between two values of its first coordinate.
 fn section(bundle: &[Interval], from: f64, to: f64) -> Bundle {
     let mut section = bundle.to_vec();
     section[0] = Interval::new(from, to.next_up());
     section
 }
 
-/// Slopes of all coordinates but the first per unit of it, between all pushes; nothing where one of them may not push along, or none is.
+/// Slopes of all coordinates but the first per unit of it, between all pushes; `None` if a push may not point
+/// along it, or if there are no pushes.
 fn slopes(frame: &Frame, pushes: &[PoseBox]) -> Option<Vec<Interval>> {
     let mut slopes: Option<Vec<Interval>> = None;
     for push in pushes {

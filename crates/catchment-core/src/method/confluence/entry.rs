@@ -53,8 +53,8 @@ impl DecisionMethod for ConfluenceSettings {
         Some(Method::new(Self { budget_s: Some(budget_s), ..self.clone() }))
     }
 
-    /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long, but in all about as many as
-    /// random poses are followed beside them.
+    /// Even, so that no cell lies exactly on a mirror plane, at which two contacts carry the half at once;
+    /// fewer for slow motions, but in total about as many as the number of sampled poses.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1000, 200, 32, 24, 24];
         let cells = affordable_cells(pair, SIMPLE, descent::default_samples(pair));

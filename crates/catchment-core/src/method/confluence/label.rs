@@ -2,7 +2,7 @@
 
 use crate::acceptance::Outcome;
 
-/// What is known of a cell.
+/// State of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Label(u8);
 
@@ -10,9 +10,9 @@ impl Label {
     pub(super) const UNKNOWN: Self = Self(0);
     /// The bits of the outcome's code.
     const OUTCOME: u8 = 7;
-    /// Set where a cell joined others.
+    /// Set if a cell inherited its label.
     const JOINED: u8 = 8;
-    /// Set where it joined them beyond the border of the box.
+    /// Set if it inherited its label beyond the border of the box.
     const BEYOND: u8 = 16;
 
     /// As its own motion shows.
@@ -20,7 +20,7 @@ impl Label {
         Self(outcome as u8)
     }
 
-    /// As that of others around the motion, or nearest to it where it has left the box.
+    /// Inherited from the centres around the motion, or from the nearest ones if it has left the box.
     pub(super) const fn joined(outcome: Outcome, is_beyond: bool) -> Self {
         Self(outcome as u8 | Self::JOINED | if is_beyond { Self::BEYOND } else { 0 })
     }
@@ -37,7 +37,7 @@ impl Label {
         self.0 & Self::BEYOND != 0
     }
 
-    /// Undecided where unknown.
+    /// Undecided if unknown.
     pub(super) const fn outcome(self) -> Outcome {
         match self.0 & Self::OUTCOME {
             1 => Outcome::Aligned,

@@ -18,23 +18,24 @@ use crate::method::correction::wilson95;
 use crate::method::descent::Follower;
 use rayon::prelude::*;
 
-/// What labels the kept cells.
+/// Labels the stored cells.
 pub(super) struct Labeller<'a> {
     pub(super) pair: &'a Pair,
     /// Its gradients are velocities.
     pub(super) falls: &'a DescentDirections,
     pub(super) settings: &'a ConfluenceSettings,
-    /// When it began: what a budget of time counts from.
+    /// Its start, for the time limit.
     pub(super) started: Stopwatch,
 }
 
-/// Cells per batch at most, and how many batches there are at least where each has enough cells for the threads.
+/// Largest number of cells per batch, and smallest number of batches if each has enough cells for the
+/// threads.
 const BATCH: usize = 4096;
 const BATCHES: usize = 256;
 const LEAST_BATCH: usize = 32;
 
-/// Share of the cells below which jams are rare: what touches them is a fraction of what was followed before. The jams of the 3-D X-Face are 0.1 to
-/// 0.3 % of the cells, those of the pyramid 10 %.
+/// Share of the cells below which jams are rare: the cells that touch them are few compared with the motions
+/// before. The jams of the 3-D X-Face are 0.1 to 0.3 % of the cells, those of the pyramid 10 %.
 const RARE: f64 = 0.01;
 
 /// Cells of the box of simple halves that are drawn to be tried, and of any halves; and their seed.
@@ -105,7 +106,8 @@ impl Labeller<'_> {
         })
     }
 
-    /// Whether the time is over: nothing is followed any more, but what tells how far labels are wrong.
+    /// Whether the time is over: then only the motions that measure the error rate of the labels are
+    /// followed.
     fn is_late(&self) -> bool {
         self.settings.budget_s.is_some_and(|most| self.started.seconds() >= most)
     }
@@ -152,10 +154,11 @@ impl Labeller<'_> {
         (joined.unwrap_or(Label::own(outcome)), true)
     }
 
-    /// Follows the neighbours of thin jams to their end, where they joined others, until nothing more jams; returns how many. Thin is what has
-    /// no neighbour that jams on either side along some axis: it may be thinner than a cell elsewhere. Where jams are rare they are threads, which touch
-    /// by corners alone: all is followed that touches them. Beyond the border of the box, where less is known, neighbours of neighbours are
-    /// followed too.
+    /// Follows the neighbours of thin jams to their end, if their labels were inherited, until no further
+    /// cell jams; returns the number of motions. A jam is thin if it has no jammed neighbour on either side
+    /// along some axis: it may be thinner than a cell elsewhere. Rare jams are threads, which touch by
+    /// corners alone: all cells that touch them are followed. Beyond the border of the box, with fewer
+    /// decided centres, neighbours of neighbours are followed too.
     fn mend(&self, labels: &mut [Label], exec: &Exec) -> Result<usize, Cancelled> {
         let mut jammed: Vec<u32> =
             (0..labels.len() as u32).filter(|cell| labels[*cell as usize].jams()).collect();
@@ -189,7 +192,7 @@ impl Labeller<'_> {
         Ok(motions)
     }
 
-    /// The kept cells on both sides of one, along every axis.
+    /// The stored cells on both sides of a cell, along every axis.
     fn sides(&self, cell: u32) -> impl Iterator<Item = [Option<u32>; 2]> {
         let DescentDirections { grid, fold, .. } = self.falls;
         let whole = self.whole(cell);
@@ -203,7 +206,7 @@ impl Labeller<'_> {
         })
     }
 
-    /// The kept cells that touch one, were it by a corner, and itself.
+    /// The stored cells that touch a cell, including by a corner, and itself.
     fn near(&self, cell: u32) -> Vec<u32> {
         let DescentDirections { grid, fold, .. } = self.falls;
         let mut near = vec![self.whole(cell)];
@@ -220,7 +223,7 @@ impl Labeller<'_> {
         near.into_iter().map(|cell| fold.kept_cell(cell) as u32).collect()
     }
 
-    /// Follows some of the cells that joined others to their end: drawn at random, or all where they are few.
+    /// Follows some of the cells with inherited labels to their end: a random sample, or all if they are few.
     fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
         let DescentDirections { grid, fold, .. } = self.falls;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;

@@ -92,11 +92,11 @@ pub enum ConfluenceError {
     HeightsTakeLonger {
         /// How many cells.
         cells: usize,
-        /// What they take, by the rate of a few.
+        /// Their time, estimated from a few motions.
         seconds: f64,
-        /// What there is.
+        /// The time limit.
         budget_s: f64,
-        /// What would fit.
+        /// The size that would fit.
         most: usize,
     },
     /// No heights.
@@ -105,7 +105,7 @@ pub enum ConfluenceError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -217,7 +217,7 @@ impl GridLabels {
         &self.grid
     }
 
-    /// What becomes of the centre of a cell.
+    /// Outcome of the centre of a cell.
     pub fn outcome(&self, cell: usize) -> Outcome {
         self.kept[self.fold.kept_cell(cell)].outcome()
     }

@@ -16,15 +16,15 @@ use crate::pose::{Dof, PoseError};
 pub(super) struct Neighbours<'a> {
     fold: &'a Fold,
     axes: Vec<Lookup>,
-    /// How many of the axes, the first ones, are lateral.
+    /// Number of lateral axes; they are the first.
     lateral: usize,
-    /// Where x and y are among them; none if not sampled.
+    /// Positions of x and y among them; `None` if not sampled.
     places: [Option<usize>; 2],
     /// Share of the centres that must be known.
     share: f64,
 }
 
-/// One axis of the grid.
+/// An axis of the grid.
 struct Lookup {
     /// Its number among [`Dof::ALL`].
     error: usize,
@@ -41,7 +41,8 @@ impl Lookup {
     }
 }
 
-/// Numbers of the lower centre along every axis, −1 below the first: what is around a pose depends on nothing else.
+/// Numbers of the lower centre along every axis, −1 below the first: they determine the surroundings of a
+/// pose.
 pub(super) type Base = [i32; 5];
 
 /// Of so few centres all must be known: with three axes and less, motions are cheaper than errors.
@@ -64,7 +65,7 @@ impl<'a> Neighbours<'a> {
         Self { fold, axes, lateral, places: [place(Dof::X), place(Dof::Y)], share }
     }
 
-    /// Where a pose lies among the centres.
+    /// Position of a pose among the centres.
     pub(super) fn base(&self, error: &PoseError) -> Base {
         let error = error.to_array();
         let mut base = [0; 5];
@@ -88,7 +89,8 @@ impl<'a> Neighbours<'a> {
         base
     }
 
-    /// What all known centres around a pose are labelled, if enough are known and all are alike. `asking` of them ask, and need not be known.
+    /// The common label of all decided centres around a pose, if enough are decided and all agree. `asking`
+    /// centres belong to the query, and need not be decided.
     pub(super) fn agreed(&self, base: &Base, labels: &[Label], asking: u32) -> Option<Label> {
         let sides =
             |(axis, base): (&Lookup, &i32)| u32::from(axis.has(*base)) + u32::from(axis.has(base + 1));

@@ -21,7 +21,7 @@ fn labels(pair: &Pair, cells: usize) -> GridLabels {
     run(pair, &Grid::over(&pair.alignment, |_| cells), &ConfluenceSettings::default(), &Exec::new()).unwrap()
 }
 
-/// Every cell by its own motion: the judge.
+/// Every cell by its own motion: the reference.
 fn judge(labels: &GridLabels, pair: &Pair) -> Vec<Outcome> {
     let domain = Domain::Grid(labels.grid().clone());
     let (acceptance, _) =
@@ -69,7 +69,7 @@ fn thin_jams_are_not_lost() {
     }
 }
 
-/// Where mirrors fold the grid and where they do not, the same comes out but on ridges.
+/// With and without folding by mirror symmetry, the outcomes are equal except on ridges.
 #[test]
 fn folding_changes_nothing() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
@@ -98,7 +98,8 @@ fn threads_do_not_change_a_bit() {
     assert_eq!(one, with(4));
 }
 
-/// What a budget reaches is decided as without it, what it does not reach lies higher, and is undecided: for any number of threads.
+/// Cells within the budget are decided as without it; cells beyond it are higher, and undecided: for any
+/// number of threads.
 #[test]
 fn a_budget_of_motions_decides_what_lies_lowest() {
     let pair = pair(Family::XFace3d, 0.577, 0.5, 0.5, None);
@@ -157,7 +158,8 @@ fn a_budget_of_time_ends_at_once_or_never() {
     }
 }
 
-/// Heights are computed whatever the budget: a grid whose heights alone outlast it is refused before, with one that does not.
+/// Heights are computed whatever the budget: a grid whose heights alone exceed it is rejected in advance,
+/// with a grid that fits.
 #[test]
 fn heights_that_outlast_the_budget_are_refused() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);

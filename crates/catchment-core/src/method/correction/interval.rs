@@ -37,7 +37,7 @@ pub fn wilson95(share: f64, trials: f64) -> [f64; 2] {
     [(center - half).clamp(0.0, share.max(0.0)), (center + half).clamp(share.min(1.0), 1.0)]
 }
 
-/// What was seen in a stratum.
+/// Results of a stratum.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StratumCounts {
     /// Share of the box, p.
@@ -87,13 +87,14 @@ impl StratumCounts {
         }
     }
 
-    /// Variance of the estimated share, were `share` the true one.
+    /// Variance of the estimated share, if `share` were the true value.
     fn variance(&self, share: f64, total: usize) -> f64 {
         share * (1.0 - share) * self.spread / (total as f64 * total as f64)
     }
 
-    /// How much a pose more in this stratum tells: p·√(a(1 − a)), with a drawn towards a half by two poses of either
-    /// kind (Agresti and Coull 1998) so that a stratum which looks pure is looked at again.
+    /// Information from an additional pose in this stratum: p·√(a(1 − a)), with a shifted towards a half by
+    /// two poses of either outcome (Agresti and Coull 1998) so that a stratum which seems pure is sampled
+    /// again.
     pub(crate) fn doubt(&self) -> f64 {
         const PRIOR: f64 = 2.0;
         let open = self.aligned.min(self.descents - self.aligned) as f64;
@@ -102,7 +103,7 @@ impl StratumCounts {
     }
 }
 
-/// What all strata together say, as shares of the box.
+/// The combined estimate of all strata, as shares of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CombinedShares {
     /// Share of the box that is accepted.

@@ -60,10 +60,10 @@ pub enum CorrectionError {
     /// The tolerance is no share.
     #[error("a tolerance of {share} cannot be reached; give a share of the Sum above 0, such as 0.01")]
     Tolerance {
-        /// What was given.
+        /// The given value.
         share: f64,
     },
-    /// What follows the poses refuses.
+    /// The method that follows the poses failed.
     #[error(transparent)]
     Follow(Box<DecideError>),
     /// A grid without cells has no poses to draw.
@@ -72,7 +72,7 @@ pub enum CorrectionError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -121,7 +121,8 @@ pub struct UnbiasedSum {
     pub differing_ci95: [f64; 2],
     /// Poses followed.
     pub descents: usize,
-    /// How many poses drawn evenly over the whole box would have told as much; infinite where no doubt was seen.
+    /// Effective sample size: number of poses sampled uniformly over the whole box with the same information;
+    /// infinite if no uncertainty was found.
     pub plain_descents: f64,
     /// The strata that have cells.
     pub strata: Vec<Stratum>,
@@ -144,7 +145,8 @@ pub fn correct(
     })
 }
 
-/// The same for anything that decides poses: `decide` gives one outcome per pose, which must depend on that pose alone.
+/// The same for any function that decides poses: `decide` returns an outcome for each pose, which must depend
+/// on that pose alone.
 ///
 /// # Errors
 /// See [`CorrectionError`].

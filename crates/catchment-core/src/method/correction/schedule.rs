@@ -28,15 +28,16 @@ pub enum Stop {
     Budget(Duration),
 }
 
-/// Share of the box below which a relative tolerance asks for no more: nobody can reach 1 % of nothing.
+/// Share of the box below which a relative tolerance becomes absolute: 1 % of zero cannot be reached.
 pub const FAINT: f64 = 1e-3;
 
 /// Poses of the first batch, per stratum and in all.
 const FIRST_PER_STRATUM: usize = 8;
 const FIRST: usize = 64;
-/// A batch is this part of all before it, so that the early ones, drawn with little knowledge, weigh little.
+/// A batch is this part of all before it, so that the early batches, drawn with little knowledge, have little
+/// weight.
 const GROWTH: usize = 2;
-/// Poses in a batch at most: what is kept in memory.
+/// Largest number of poses in a batch: memory limit.
 const MOST: usize = 8192;
 
 /// The next batch.
@@ -48,7 +49,8 @@ pub struct Batch {
     pub last: bool,
 }
 
-/// The batch after `total` poses in `strata` strata that took `elapsed` and gave `whole`; none when it is enough.
+/// The batch after `total` poses in `strata` strata that took `elapsed` and gave `whole`; `None` if the
+/// stopping rule applies.
 pub fn next(
     stop: Stop,
     total: usize,
@@ -90,7 +92,7 @@ pub fn next(
     }
 }
 
-/// How far the sampling is, in [0, 1], after `total` poses.
+/// Progress of the sampling, in [0, 1], after `total` poses.
 pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &CombinedShares) -> f64 {
     if total == 0 {
         return 0.0;
@@ -102,8 +104,8 @@ pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Comb
     }
 }
 
-/// Parts a batch among the strata: one pose each, the others in proportion to the doubt (Neyman, J. R. Stat. Soc. 97
-/// (1934) 558).
+/// Distributes a batch over the strata: at least a pose for each, the others in proportion to the uncertainty
+/// (Neyman, J. R. Stat. Soc. 97 (1934) 558).
 pub fn allot(poses: usize, seen: &[StratumCounts]) -> Vec<usize> {
     let spare = poses.saturating_sub(seen.len());
     let doubt: f64 = seen.iter().map(StratumCounts::doubt).sum();

@@ -6,13 +6,14 @@ use crate::landscape::Grid;
 use crate::pose::PoseError;
 use rayon::prelude::*;
 
-/// Cells looked at between two questions whether to stop.
+/// Number of cells between two checks for cancellation.
 const BLOCK: usize = 1 << 16;
 
-/// How many of `cells` cells are ambiguous, and which, in ascending order; no list if they are more than `most`.
+/// Number of ambiguous cells among `cells` cells, and their list, in ascending order; no list if they are
+/// more than `most`.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub fn ambiguous(
     cells: usize,
     is_ambiguous: impl Fn(usize) -> bool + Sync,
@@ -40,8 +41,8 @@ pub fn ambiguous(
     })
 }
 
-/// Follows the centres of `cells` by `follow`, which gives one outcome per pose, and overwrites their outcomes; cells beyond
-/// the grid are left alone.
+/// Follows the centres of `cells` by `follow`, which returns an outcome for each pose, and overwrites their
+/// outcomes; cells beyond the grid are not changed.
 ///
 /// # Errors
 /// Those of `follow`; `outcomes` is then partly overwritten.

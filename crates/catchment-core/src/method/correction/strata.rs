@@ -16,8 +16,8 @@ use crate::advice::Advice;
 use crate::exec::Exec;
 use rayon::prelude::*;
 
-/// A partition of the cells of a grid into a few strata. Any partition keeps the Sum unbiased; a good one has strata
-/// in which nearly all poses fare alike.
+/// A partition of the cells of a grid into a few strata. Any partition keeps the Sum unbiased; a good
+/// partition has strata in which nearly all poses have the same outcome.
 pub trait Stratify: Sync {
     /// Number of strata, at most [`MOST_STRATA`].
     fn strata(&self) -> usize;
@@ -25,7 +25,7 @@ pub trait Stratify: Sync {
     fn stratum(&self, cell: usize) -> u8;
     /// Whether the method accepts the cells of a stratum.
     fn accepts(&self, stratum: usize) -> bool;
-    /// What a stratum holds, for people.
+    /// Description of a stratum, for people.
     fn name(&self, stratum: usize) -> String;
 }
 
@@ -85,7 +85,7 @@ impl<'a, S: Stratify> Strata<'a, S> {
         &self.before[stratum * (self.blocks + 1)..][..=self.blocks]
     }
 
-    /// Number of strata, empty ones included.
+    /// Number of strata, including empty ones.
     pub(super) fn len(&self) -> usize {
         self.before.len() / (self.blocks + 1)
     }
@@ -100,7 +100,7 @@ impl<'a, S: Stratify> Strata<'a, S> {
         self.by.accepts(stratum)
     }
 
-    /// What a stratum holds.
+    /// Description of a stratum.
     pub(super) fn name(&self, stratum: usize) -> String {
         self.by.name(stratum)
     }
@@ -129,8 +129,8 @@ fn place(by: &impl Stratify, cell: usize, strata: usize) -> usize {
     usize::from(by.stratum(cell)).min(strata - 1)
 }
 
-/// How many neighbours of a cell along the axes are accepted where it is not, or the other way round. Where several
-/// differ, the border of the accepted set cuts the cell.
+/// Number of neighbours of a cell along the axes with the opposite label, accepted or not. If several differ,
+/// the border of the accepted set cuts the cell.
 fn differing(shape: &[usize], cell: usize, accepted: impl Fn(usize) -> bool) -> usize {
     let own = accepted(cell);
     let (mut differ, mut stride, mut rest) = (0, 1, cell);
@@ -162,7 +162,7 @@ impl<'a> ByNeighbours<'a> {
         self.outcomes.get(cell) == Some(&Outcome::Aligned)
     }
 
-    /// Numbers of neighbours that may differ, none included.
+    /// Number of possible counts of differing neighbours, including zero.
     fn levels(&self) -> usize {
         2 * self.shape.len() + 1
     }
@@ -200,9 +200,9 @@ pub struct ByFraction<F> {
     shape: Vec<usize>,
 }
 
-/// Borders of the bands. Narrow at the ends, where most cells are; ½ is one of them.
+/// Borders of the bands, including ½. Narrow at the ends, which contain most cells.
 const BORDERS: [f64; 11] = [0.0, 0.002, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 0.998, 1.0];
-/// Differing neighbours are told apart as none, one or two, more.
+/// Classes of the number of differing neighbours: 0, 1 or 2, more.
 const SIDES: [(usize, &str); 3] = [(0, "0"), (2, "1 or 2"), (usize::MAX, "3 or more")];
 
 impl<F: Fn(usize) -> f64 + Sync> ByFraction<F> {

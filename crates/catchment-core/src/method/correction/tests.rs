@@ -25,12 +25,12 @@ struct Case {
     radius: f64,
     fraction: f64,
     outcomes: Vec<Outcome>,
-    /// Hardly any pose fares otherwise than its stratum.
+    /// Hardly any pose differs from the majority of its stratum.
     nearly_pure: bool,
 }
 
 impl Case {
-    /// `guess` is what the grid method believes of a cell's centre.
+    /// `guess` is the outcome that the grid method assigns to a cell's centre.
     fn new(
         name: &'static str,
         cells: &[usize],
@@ -71,8 +71,8 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Share of intervals that hold the truth; bias in standard errors of the mean; mean half-width as a share of the
-/// Sum; mean number of descents, and of plain ones that would tell as much.
+/// Share of intervals that contain the true value; bias in standard errors of the mean; mean half-width as a
+/// share of the Sum; mean number of motions, and effective sample size.
 fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
     // Not by one pool: a thread that waits in one repeat would begin another, and another in that.
     let one = |seed: usize, exec: &Exec| case.estimate(stop, seed as u64, exec);
@@ -91,8 +91,8 @@ fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
     [held, (average - case.fraction) / spread, width, mean(&|c| c.descents as f64), plain]
 }
 
-/// In strata that are nearly pure the interval must leave room for what was not seen, so right grids are held more
-/// often than 95 times in 100; all others between 93 and 98.
+/// In nearly pure strata the interval must leave room for unsampled cases, so for correct grids it contains
+/// the true value more often than 95 times in 100; for all others between 93 and 98.
 #[test]
 fn the_interval_holds_the_truth_as_often_as_it_says_and_the_mean_is_the_truth() {
     const REPEATS: u64 = 1000;
@@ -113,7 +113,7 @@ fn the_interval_holds_the_truth_as_often_as_it_says_and_the_mean_is_the_truth() 
     }
 }
 
-/// Ended by what was seen: slightly biased, by much less than the interval.
+/// The sample ends depending on its results: slightly biased, by much less than the interval.
 #[test]
 fn a_tolerance_is_met_and_its_interval_still_holds() {
     for case in cases().iter().filter(|case| case.name != "small disc, unseen") {

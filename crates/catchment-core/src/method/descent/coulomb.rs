@@ -40,21 +40,23 @@ use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 /// How a contact slips: rows of both tangents.
 pub(super) type Tangents = [Vector; 2];
 
-/// What may be left of a cone or of a slip, as a share of the displacement that the push alone would make.
+/// Largest remaining violation of a cone or change of a slip, as a share of the displacement by the push
+/// alone.
 const EXACT: f64 = 1e-9;
-/// Most rounds of a step, and where it is asked whether slip ends.
+/// Largest number of iterations of a step, and the number at which the end of slip is tested.
 const ROUNDS: usize = 100;
 const PATIENT: usize = 20_000;
 /// Rounds before slips are extrapolated: directions settle first.
 const SETTLED: usize = 4;
-/// A round goes on by at most so many times what was missing, and where the last one overshot, as it does in halves that wedge, by at least so much of
-/// it. It leaves a slip that falls at least this share of what the round says: where it falls to nothing the half sticks, and nothing makes it slip again.
+/// An iteration extrapolates by at most this factor of the residual, and after an overshoot, as in halves
+/// that wedge, by at least this factor. It leaves a slip that falls at least this share of the result of the
+/// iteration: if the slip becomes zero the half sticks, and nothing makes it slip again.
 const BOLDEST: f64 = 20.0;
 const SHYEST: f64 = 0.05;
 const LEFT: f64 = 0.5;
-/// What moves less than this share of what the push alone would make stays.
+/// A displacement below this share of that by the push alone counts as rest.
 const STILL: f64 = 1e-7;
-/// What moves less than this share of it is slow: whether it goes on is asked.
+/// A displacement below this share of it is slow: whether it continues is tested.
 const SLOW: f64 = 1e-2;
 /// Contacts that such a slip opens or closes by less than this share of itself stay closed.
 const CLOSED: f64 = 0.5;
@@ -68,13 +70,13 @@ pub(super) struct Coulomb {
     planes: Vec<Vector>,
     /// Of which contact each is.
     owners: Vec<usize>,
-    /// sᵢ of every contact, what the last round says is missing of it, and what the round before said.
+    /// sᵢ of every contact, its residual by the last iteration, and that of the iteration before.
     slips: Vec<f64>,
     missing: Vec<f64>,
     before: Vec<f64>,
     /// The contacts that are pressed.
     pressed: Vec<usize>,
-    /// How the half moved last, where the push alone would make 1: what slips goes on slipping.
+    /// The last displacement, relative to that by the push alone: a slip continues.
     last: Option<Vector>,
 }
 
@@ -118,13 +120,13 @@ impl Default for Coulomb {
 }
 
 impl Coulomb {
-    /// One that takes the time it needs.
+    /// A solver without a limit on its time.
     pub(super) fn patient() -> Self {
         Self { rounds: PATIENT, ..Self::default() }
     }
 
-    /// The displacement that the push comes to; `None` where negative gaps contradict each other. As
-    /// [`Projection::closest_allowed`], which it is without friction.
+    /// The displacement caused by the push; `None` if negative gaps contradict each other. Without friction
+    /// it equals [`Projection::closest_allowed`].
     pub(super) fn displacement(
         &mut self,
         projection: &mut Projection,
@@ -153,7 +155,8 @@ impl Coulomb {
         Some(u)
     }
 
-    /// How the half moved last, where the push alone would make 1: where the rounds begin. `None`: as without friction.
+    /// Sets the last displacement, relative to that by the push alone, as the start of the iteration. `None`:
+    /// as without friction.
     pub(super) const fn begin_at(&mut self, last: Option<Vector>) {
         self.last = last;
     }
@@ -168,7 +171,8 @@ impl Coulomb {
         self.unheld(projection, push, contacts).is_some_and(|u| is_still(&u))
     }
 
-    /// What no force within the cones takes of the push, with all contacts touching: the push less the nearest one that they hold.
+    /// The part of the push that no contact forces within the cones balance, with all contacts touching: the
+    /// push minus the nearest force that they can balance.
     pub(super) fn unheld(
         &mut self,
         projection: &mut Projection,
@@ -252,7 +256,8 @@ impl Coulomb {
         Some(if free { self.slow(projection, push, contacts, &u, gap, scale).unwrap_or(u) } else { u })
     }
 
-    /// Where a slow slip comes to, by the balance of forces along its direction; `None` where it is not slow, or where no forces balance the push along it.
+    /// Limit of a slow slip, by the balance of forces along its direction; `None` if it is not slow, or if no
+    /// contact forces balance the push along it.
     fn slow(
         &mut self,
         projection: &mut Projection,
@@ -299,7 +304,7 @@ impl Coulomb {
         (ahead <= EXACT).then_some([0.0; MAX_COORDINATES])
     }
 
-    /// Keeps the planes that the last projection pressed against, and says of which contacts they are.
+    /// Keeps the planes with positive forces in the last projection, and their contacts.
     fn keep_pressed(&mut self, projection: &Projection) {
         self.pressed.clear();
         let mut kept = 0;
@@ -319,7 +324,7 @@ impl Coulomb {
     }
 }
 
-/// Whether a displacement is none, where the push alone would make 1.
+/// Whether a displacement is zero, relative to that by the push alone.
 pub(super) fn is_still(u: &Vector) -> bool {
     u.iter().all(|x| x.abs() <= STILL)
 }

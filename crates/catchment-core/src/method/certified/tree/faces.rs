@@ -28,10 +28,10 @@ impl Face {
 }
 
 impl Tree {
-    /// What shares faces with the parts that leaves were given, and the other way round.
+    /// Joins the faces of leaves with those of new parts, in both directions.
     ///
     /// # Errors
-    /// [`Cancelled`] when asked to stop.
+    /// [`Cancelled`] if a stop is requested.
     pub(in crate::method::certified) fn join(
         &mut self,
         split: &[usize],
@@ -98,7 +98,7 @@ impl Tree {
         shared
     }
 
-    /// Whether a leaf has a face where its axis closes on itself.
+    /// Whether a leaf has a face at the closure of its periodic axis.
     pub(in crate::method::certified) fn closes(&self, cell: &Cell, face: Face) -> bool {
         let [a, b] = self.span(cell)[face.axis()];
         if face.above { b == WHOLE } else { a == 0 }

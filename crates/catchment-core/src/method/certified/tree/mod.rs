@@ -31,14 +31,14 @@ const DEEPEST: u8 = 20;
 /// The root's size in smallest boxes.
 pub(super) const WHOLE: u32 = 1 << DEEPEST;
 
-/// What is certain of all motions that begin in a box, on the height of first contact.
+/// Certified facts about all motions that begin in a box, on the height of first contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Label {
     /// They dock.
     Yes,
-    /// None docks: each comes to rest elsewhere, in a pit that the seat is no part of.
+    /// No motion docks: each comes to rest elsewhere, in a pit that does not contain the seat.
     Jams,
-    /// None docks: each passes by or slides off, or comes to rest elsewhere on its way.
+    /// No motion docks: each passes by or slides off, or comes to rest elsewhere before.
     Leaves,
 }
 
@@ -72,13 +72,13 @@ pub(super) struct Cell {
     parts: Option<Parts>,
     /// All that may carry in it.
     pub(super) among: Box<[u32]>,
-    /// Heights, in D; none where nothing touches.
+    /// Heights, in D; `None` without contact.
     pub(super) height: Option<Interval>,
     /// See [`Survey`].
     pub(super) sudden: bool,
     pub(super) walled: bool,
     pub(super) restless: bool,
-    /// Whether a motion may come to poses in it at which nothing touches.
+    /// Whether a motion may reach poses in it at which nothing touches.
     pub(super) ends: bool,
     pub(super) flows: Flows,
     /// The bearings that no motion in it goes back along.
@@ -100,7 +100,7 @@ impl Cell {
 /// All boxes.
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
-    /// The free errors: halved ones.
+    /// The free errors: those that are halved.
     pub(super) axes: Vec<Dof>,
     /// The root.
     root: PoseBox,
@@ -109,10 +109,10 @@ pub(super) struct Tree {
     /// Whether nothing touches at either end of it: halves pass each other by.
     clear: [bool; 5],
     pub(super) bearings: Bearings,
-    /// The error box, and where in the root it is.
+    /// The error box, and its position in the root.
     pub(super) asked: PoseBox,
     errors: Span,
-    /// What a unit of each error counts in the ρ-metric, in D.
+    /// Length of a unit of each error in the ρ-metric, in D.
     units: [f64; 5],
     /// Whether motions that meet a wall stay on h: see [`Bodies::upright`].
     pub(super) upright: bool,
@@ -120,7 +120,8 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// The root of an alignment problem. Beyond the error box it goes where no more than one rotation is free: motions can be followed there.
+    /// The root of an alignment problem. It extends beyond the error box if at most one rotation is free:
+    /// motions can be followed there.
     pub(super) fn over(alignment: &Alignment, bodies: &Bodies) -> Self {
         let axes: Vec<Dof> = alignment.free.iter().collect();
         let wide = alignment.free.rotations() <= 1;
@@ -170,7 +171,7 @@ impl Tree {
         WHOLE >> cell.levels[axis]
     }
 
-    /// Where a box is.
+    /// Position of a box.
     pub(super) fn span(&self, cell: &Cell) -> Span {
         let mut span = [[0, WHOLE]; 5];
         for dof in &self.axes {
@@ -223,7 +224,7 @@ impl Tree {
         self.widths(cell).into_iter().fold(0.0, f64::max)
     }
 
-    /// What a box measures in the ρ-metric.
+    /// Volume of a box in the ρ-metric.
     pub(super) fn volume(&self, cell: &Cell) -> f64 {
         let widths = self.widths(cell);
         self.axes.iter().map(|dof| widths[dof.index()]).product()
@@ -244,7 +245,7 @@ impl Tree {
         poses
     }
 
-    /// The places that hold all of these pose errors, each within the root; nothing where one is beyond it.
+    /// The positions that contain all of these pose errors, each within the root; `None` if some lie outside.
     pub(super) fn places(&self, poses: &PoseBox) -> Option<Span> {
         let mut span = [[0, WHOLE]; 5];
         for dof in &self.axes {
@@ -261,7 +262,8 @@ impl Tree {
         Some(span)
     }
 
-    /// The places strictly within these pose errors, but for rounding: what boxes that only touch them hold does not count.
+    /// The positions strictly within these pose errors, except for rounding: boxes that only touch them do
+    /// not count.
     pub(super) fn inner_places(&self, poses: &PoseBox) -> Option<Span> {
         let within = self.axes.iter().all(|dof| {
             let (own, root) = (poses[dof.index()], self.root[dof.index()]);
@@ -311,7 +313,8 @@ impl Tree {
         })
     }
 
-    /// Whether a motion may come from a box to places that heights and faces tell nothing of: under something, or out of the root.
+    /// Whether a motion may go from a box to places that heights and faces do not describe: under something,
+    /// or out of the root.
     pub(super) fn loses(&self, cell: &Cell) -> bool {
         cell.walled && !self.upright || self.leaves_root(cell)
     }
@@ -321,12 +324,13 @@ impl Tree {
         self.cells.iter().enumerate().filter(|(_, cell)| cell.parts.is_none())
     }
 
-    /// Visits every leaf that shares more than a border with a span, until one says stop; whether none did.
+    /// Visits every leaf that shares more than a border with a span, until `go_on` returns false; returns
+    /// whether it never did.
     pub(super) fn visit(&self, span: &Span, mut go_on: impl FnMut(usize, &Cell) -> bool) -> bool {
         self.visit_in(0, span, &mut go_on)
     }
 
-    /// The same, of one box and its parts.
+    /// The same for a box and its parts.
     fn visit_in(&self, number: usize, span: &Span, go_on: &mut impl FnMut(usize, &Cell) -> bool) -> bool {
         let cell = &self.cells[number];
         let is_apart = |dof: &Dof| {
@@ -367,7 +371,7 @@ impl Tree {
         })
     }
 
-    /// The parts that a leaf would have, halved along all errors or along its widest, each looked at: nothing is changed.
+    /// The parts of a leaf, halved along all errors or along its widest, each examined: nothing is changed.
     pub(super) fn parts(
         &self,
         number: usize,
@@ -413,7 +417,7 @@ impl Tree {
     }
 }
 
-/// How far aside the face centres are, at least, of halves that pass each other by for certain, at any rotation, in D.
+/// Smallest distance of the face centres at which halves certainly pass each other by, at any rotation, in D.
 pub(super) fn passing(bodies: &Bodies) -> f64 {
     let face = DVec3::Z * bodies.cor;
     let fixed = bodies.fixed.vertices.iter().map(|v| v.truncate().length()).fold(0.0, f64::max);
