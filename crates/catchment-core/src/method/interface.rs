@@ -31,24 +31,24 @@ use serde_json::Value;
 use std::fmt;
 use std::time::Duration;
 
-/// What is known of a method without asking it anything.
+/// Static description of a method.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Info {
     /// The lower-case name used in files, reports and options.
     pub name: &'static str,
-    /// What it does, in a line.
+    /// Its function, in a line.
     pub summary: &'static str,
-    /// Whether its answer depends on nothing but the grid and its resolution: what studies of resolution compare.
+    /// Whether its result depends only on the grid and its resolution: the methods of resolution studies.
     pub on_grids: bool,
     /// Whether it departs from exact frictionless motion on purpose, so that pictures show its own cells and no slices followed
     /// exactly.
     pub departs: bool,
 }
 
-/// What a decision will take, estimated before it is made.
+/// Cost of a decision, estimated in advance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
-    /// What it is that needs the memory.
+    /// The data that needs the memory.
     pub what: &'static str,
     /// Bytes per cell at the peak.
     pub bytes_per_cell: u64,
@@ -56,15 +56,16 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// A way to decide what becomes of pose errors.
+/// A method that decides the outcomes of pose errors.
 pub trait DecisionMethod: fmt::Debug + Send + Sync {
-    /// What is known of it beforehand.
+    /// Its static description.
     fn info(&self) -> &'static Info;
 
-    /// What changes its answer, as JSON: what [`Method`](super::Method) reads and writes.
+    /// Its settings that change the result, as JSON: the form that [`Method`](super::Method) reads and
+    /// writes.
     fn settings(&self) -> Value;
 
-    /// The same for one problem, with everything filled in that depends on it; as stored with the result.
+    /// The same for a given problem, with all values that depend on it filled in; as stored with the result.
     fn settings_for(&self, _problem: &Problem) -> Value {
         self.settings()
     }
@@ -85,18 +86,18 @@ pub trait DecisionMethod: fmt::Debug + Send + Sync {
         Ok(())
     }
 
-    /// Cells per axis when nothing was said, for one to five axes: an answer within seconds.
+    /// Default cells per axis, for one to five axes: a result within seconds.
     fn default_cells(&self, pair: &Pair) -> [usize; 5];
 
-    /// Random poses followed exactly to correct the Sum when nothing was said.
+    /// Default number of sampled poses, followed exactly, that correct the Sum.
     fn default_samples(&self, _pair: &Pair) -> usize {
         0
     }
 
-    /// What deciding a grid will take.
+    /// Cost of deciding a grid.
     fn cost(&self, problem: &Problem, grid: &Grid) -> Cost;
 
-    /// What it knows beside the outcomes, by the names of [`ByProducts`].
+    /// Its results besides the outcomes, by the names of [`ByProducts`].
     fn by_products(&self) -> &'static [&'static str] {
         &[]
     }
@@ -107,28 +108,29 @@ pub trait DecisionMethod: fmt::Debug + Send + Sync {
     /// See [`DecideError`].
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError>;
 
-    /// How it follows motions, and how random poses beside it are followed.
+    /// Settings of its exact motions, and of those of the samples.
     fn motions(&self) -> descent::DescentSettings {
         descent::DescentSettings::default()
     }
 
-    /// The same method for so much time, where it has something to tell when the time is over; what takes its time anyway has not.
+    /// The same method with a time limit, if it has a partial result when the time is over; `None` if it
+    /// cannot stop early.
     fn within(&self, _budget: Duration) -> Option<Method> {
         None
     }
 
-    /// The same method pose by pose, where each is decided by itself.
+    /// The same method pose by pose, if each is decided separately.
     fn follows(&self) -> Option<&dyn PoseMethod> {
         None
     }
 }
 
-/// Told the number of a pose and where it ends, from any thread and in any order, once for each.
+/// Called with the number of a pose and its end, from any thread and in any order, once for each.
 pub type PoseObserver<'a> = &'a (dyn Fn(usize, End) + Sync);
 
 /// A method that decides each pose by itself.
 pub trait PoseMethod: DecisionMethod {
-    /// Where every pose of a domain ends, in its order, and their outcomes.
+    /// The ends of all poses of a domain, in its order, with their outcomes.
     ///
     /// # Errors
     /// See [`DecideError`].
@@ -139,7 +141,7 @@ pub trait PoseMethod: DecisionMethod {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError>;
 
-    /// The same, each until it has come to rest, also where it is known before what becomes of it.
+    /// The same, each until it has come to rest, even if its outcome is known before.
     ///
     /// # Errors
     /// As for [`PoseMethod::follow`].
@@ -152,7 +154,7 @@ pub trait PoseMethod: DecisionMethod {
         self.follow(problem, domain, exec)
     }
 
-    /// The same; `finished` is told of every pose as soon as it is decided.
+    /// The same; `finished` is called for every pose as soon as it is decided.
     ///
     /// # Errors
     /// As for [`PoseMethod::follow`].
@@ -173,12 +175,13 @@ pub trait PoseMethod: DecisionMethod {
         false
     }
 
-    /// How deep the halves overlap where they press on each other in the ends that it finds, in D: contacts of an engine are springs.
+    /// Overlap of the halves under contact force in the ends that it finds, in D: contacts of an engine are
+    /// springs.
     fn give(&self) -> f64 {
         0.0
     }
 
-    /// What the method itself doubts about its motions on this problem, tried on random poses.
+    /// The method's own warning about its motions on this problem, tested on sampled poses.
     ///
     /// # Errors
     /// See [`DecideError`].
@@ -191,26 +194,26 @@ pub trait PoseMethod: DecisionMethod {
 pub trait CellFractions: fmt::Debug + Send + Sync {
     /// Share of the cell that is accepted, by the method's own estimate, in [0, 1]; accepted above ½.
     fn fraction(&self, cell: usize) -> f64;
-    /// Whether the method cannot tell what becomes of the cell.
+    /// Whether the method cannot decide the outcome of the cell.
     fn is_ambiguous(&self, cell: usize) -> bool;
     /// Mean fraction over the grid: the method's own estimate of the accepted share of the box.
     fn mean(&self) -> f64;
 }
 
-/// What a method found.
+/// Result of a method.
 #[derive(Debug)]
 pub struct MethodOutput {
     /// Outcomes over the domain.
     pub acceptance: Acceptance,
-    /// How sure it is of them, where it can say.
+    /// Reliability of the outcomes, if the method provides it.
     pub doubts: Option<Box<dyn CellFractions>>,
-    /// What else it knows now.
+    /// Its other results.
     pub by_products: ByProducts,
     /// Its settings as they were used, everything filled in.
     pub settings: Value,
 }
 
-/// What a method knows beside the outcomes.
+/// Results of a method besides the outcomes.
 #[derive(Debug, Default)]
 pub struct ByProducts {
     /// Heights over the grid.
@@ -221,7 +224,7 @@ pub struct ByProducts {
     pub watersheds: Option<Watersheds>,
     /// The polytopes of the contact space.
     pub partition: Option<Partition>,
-    /// What is certain.
+    /// Certified results.
     pub certificate: Option<BoxCertificate>,
     /// How many cells were decided by others, and how often that was wrong.
     pub joined: Option<Joined>,
@@ -250,7 +253,7 @@ pub enum DecideError {
     /// The method is not made for the design.
     #[error(transparent)]
     NotApplicable(#[from] NotApplicable),
-    /// Listed poses, given to a method that decides the cells of a grid from one another.
+    /// Listed poses, for a method whose cells depend on each other.
     #[error("{method} decides the cells of a grid from one another, not listed poses")]
     NeedsGrid {
         /// The method.
@@ -259,7 +262,7 @@ pub enum DecideError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// Anything else, in the method's own words.
@@ -274,7 +277,7 @@ impl DecideError {
     }
 }
 
-/// The grid of a domain, for methods that need one.
+/// The grid of a domain, for methods that need a grid.
 pub(super) fn grid_of<'a>(info: &Info, domain: &'a Domain) -> Result<&'a Grid, DecideError> {
     match domain {
         Domain::Grid(grid) => Ok(grid),

@@ -4,7 +4,8 @@ use crate::contact::Pair;
 use crate::landscape::{Gradient, Grid};
 use crate::pose::{PoseError, descent_map};
 
-/// The linear map from gradients to velocities at one rotation, velocities in cells of the grid's axes, in their order.
+/// The linear map from gradients to velocities at a given rotation, velocities in cells of the grid's axes,
+/// in their order.
 pub(super) struct Metric {
     /// Column k: velocity for a unit of the k-th component of the gradient.
     columns: [[f64; 5]; 5],

@@ -28,13 +28,13 @@ pub static REGISTRY: &[RegistryEntry] = &[
 /// A line of the registry.
 #[derive(Debug)]
 pub struct RegistryEntry {
-    /// What is known of the method.
+    /// Description of the method.
     pub info: &'static Info,
     read: fn(Value) -> Result<Method, serde_json::Error>,
 }
 
 impl RegistryEntry {
-    /// The line of a method whose settings are read as `M`, missing ones being those of `{}`.
+    /// The registry line of a method whose settings are read as `M`, with missing settings as in `{}`.
     pub const fn of<M: DecisionMethod + DeserializeOwned + 'static>(info: &'static Info) -> Self {
         Self::by(info, |settings| Ok(Method::new(serde_json::from_value::<M>(settings)?)))
     }
@@ -71,12 +71,12 @@ impl Method {
         REGISTRY.iter().map(RegistryEntry::method)
     }
 
-    /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
+    /// Methods whose result depends only on the grid and its resolution: the methods of resolution studies.
     pub fn on_grids() -> Vec<Self> {
         REGISTRY.iter().filter(|entry| entry.info.on_grids).map(RegistryEntry::method).collect()
     }
 
-    /// A method of one's own making, registered or not.
+    /// A custom method, registered or not.
     pub fn new(method: impl DecisionMethod + 'static) -> Self {
         Self(Arc::new(method))
     }
@@ -219,14 +219,14 @@ pub enum MethodError {
         None => format!("there are {}", known.join(", ")),
     })]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The known names.
         known: Vec<&'static str>,
         /// The nearest of these.
         meant: Option<String>,
     },
-    /// A setting of other methods, or of none.
+    /// A setting of other methods, or an unknown setting.
     #[error("`{setting}` is {}; {method} has none", match owners.as_slice() {
         [] => "no setting of any method".to_owned(),
         owners => format!("a setting of {}", owners.join(" and ")),
@@ -234,7 +234,7 @@ pub enum MethodError {
     NoSuchSetting {
         /// The method.
         method: &'static str,
-        /// What was to be set.
+        /// The setting.
         setting: String,
         /// The methods that have it.
         owners: Vec<&'static str>,
@@ -257,7 +257,8 @@ mod tests {
     use crate::pose::DofSet;
     use crate::problem::testing::problem;
 
-    /// Where acceptance ends at a simple fraction of the half range, no default grid has centres there: of up to four axes up to sixths, of five at halves to fourths.
+    /// The accepted set may end at a simple fraction of the half range, so no default grid has centres there:
+    /// for up to four axes up to sixths, for five at halves to fourths.
     #[test]
     fn centres_of_default_grids_keep_clear_of_simple_fractions() {
         let simple = problem(Family::Pyramid, DofSet::ALL);

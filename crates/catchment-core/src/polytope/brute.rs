@@ -12,7 +12,7 @@ use super::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION, dot};
 /// Pivots below this share of their row's first length are rounding: the points lie in something flatter.
 const DEPENDENT: f64 = 1e-7;
 
-/// The facets of the hull of points, one per plane.
+/// The facets of the hull of points, one for each plane.
 pub fn facets(dimension: usize, points: &[PolytopePoint]) -> Vec<Halfspace> {
     let mut found: Vec<Halfspace> = Vec::new();
     let mut chosen = Vec::new();
@@ -37,10 +37,10 @@ pub fn contains(facets: &[Halfspace], point: &PolytopePoint) -> bool {
     facets.iter().all(|facet| facet.excess(point) <= RESOLUTION)
 }
 
-/// The volume of what `inside` says is inside, by evenly strewn points of a box; off by about (a few / `samples`) of
-/// the box for smooth sets in few dimensions.
+/// The volume of the set for which `inside` is true, by evenly spread points of a box; its error is about (a
+/// few / `samples`) of the box for smooth sets in few dimensions.
 ///
-/// Points are the multiples, modulo 1, of powers of 1/φ, where φ is the root of φ^(d+1) = φ + 1 (M. Roberts'
+/// Points are the multiples, modulo 1, of powers of 1/φ, with φ the root of φ^(d+1) = φ + 1 (M. Roberts'
 /// additive recurrence): no random numbers, and fewer clumps than those have.
 pub fn volume(
     dimension: usize,
@@ -96,7 +96,7 @@ pub(super) fn each_subset(
     }
 }
 
-/// A normal of the plane through points; none where they lie in something flatter.
+/// A normal of the plane through points; `None` if they lie in a lower-dimensional subspace.
 fn normal(dimension: usize, points: &[PolytopePoint], subset: &[usize]) -> Option<PolytopePoint> {
     let origin = &points[subset[0]];
     let span: Vec<PolytopePoint> =
@@ -133,7 +133,7 @@ fn orthonormal(vectors: &[PolytopePoint]) -> Vec<PolytopePoint> {
     basis
 }
 
-/// What of a vector is orthogonal to a basis.
+/// The component of a vector orthogonal to a basis.
 fn reduced(mut vector: PolytopePoint, basis: &[PolytopePoint]) -> PolytopePoint {
     for unit in basis {
         let along = dot(&vector, unit);

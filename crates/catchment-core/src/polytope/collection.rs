@@ -5,7 +5,7 @@
 
 use super::{Polytope, PolytopePoint};
 
-/// A finite union of polytopes of one dimension. Empty where there are none.
+/// A finite union of polytopes of the same dimension. Empty without polytopes.
 #[derive(Clone, Debug, Default)]
 pub struct Collection {
     /// The polytopes, which may overlap.
@@ -25,13 +25,13 @@ impl FromIterator<Polytope> for Collection {
 }
 
 impl Collection {
-    /// What is in both.
+    /// The intersection of both.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         self.pairs(other, Polytope::intersection)
     }
 
-    /// What is in this and not in the other; no two pieces of one polytope overlap.
+    /// The part of this outside the other; pieces of the same polytope do not overlap.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
         self.polytopes.iter().flat_map(|polytope| without(polytope.clone(), &other.polytopes)).collect()
@@ -49,19 +49,19 @@ impl Collection {
         self.polytopes.iter().filter_map(|polytope| polytope.project(axes)).collect()
     }
 
-    /// The same set, of polytopes that do not overlap: of each, what no one before it holds.
+    /// The same set, of polytopes that do not overlap: from each, the part that no earlier polytope contains.
     #[must_use]
     pub fn disjoint(&self) -> Self {
         let polytopes = self.polytopes.iter().enumerate();
         polytopes.flat_map(|(index, polytope)| without(polytope.clone(), &self.polytopes[..index])).collect()
     }
 
-    /// The measure of the set: what several polytopes hold counts once.
+    /// The measure of the set: overlaps count once.
     pub fn volume(&self) -> f64 {
         self.disjoint().polytopes.iter().map(Polytope::volume).sum()
     }
 
-    /// Does one of the polytopes contain the point?
+    /// Whether any of the polytopes contains the point.
     pub fn contains(&self, point: &PolytopePoint) -> bool {
         self.polytopes.iter().any(|polytope| polytope.contains(point))
     }
@@ -76,7 +76,7 @@ impl Collection {
     }
 }
 
-/// What of a polytope is in none of `others`.
+/// The part of a polytope in none of `others`.
 fn without(polytope: Polytope, others: &[Polytope]) -> Vec<Polytope> {
     let mut pieces = vec![polytope];
     for other in others {

@@ -17,7 +17,7 @@
 use super::incidence::{Incidence, ones};
 use super::{Gap, Halfspace, Polytope, PolytopePoint, RESOLUTION};
 
-/// What a plane does to a polytope.
+/// Effect of a plane on a polytope.
 enum Cut {
     /// Nothing of it is outside.
     Inside,
@@ -29,9 +29,9 @@ enum Cut {
 
 /// The plane's way through a polytope.
 struct Section {
-    /// How far each vertex is outside; 0 for those on the plane.
+    /// Distance of each vertex outside; 0 for those on the plane.
     excess: Vec<f64>,
-    /// New vertices: where, and on the edge between which vertices.
+    /// New vertices: position, and the two vertices of the edge.
     crossings: Vec<(PolytopePoint, usize, usize)>,
     /// There are vertices on the plane.
     touches: bool,
@@ -40,8 +40,8 @@ struct Section {
 }
 
 impl Polytope {
-    /// The part of it in a half space: a copy if nothing is cut off, none if nothing thicker than [`RESOLUTION`]
-    /// is left.
+    /// The part of it in a half-space: a copy if nothing is cut off, `None` if the rest is thinner than
+    /// [`RESOLUTION`].
     #[must_use]
     pub fn cut(&self, by: &Halfspace) -> Option<Self> {
         match self.section(by) {
@@ -75,21 +75,22 @@ impl Polytope {
         Some(rest.unwrap_or_else(|| self.clone()))
     }
 
-    /// What is in both; none where that is thinner than [`RESOLUTION`], or their dimensions differ.
+    /// The intersection of both; `None` if it is thinner than [`RESOLUTION`], or their dimensions differ.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Option<Self> {
         if self.is_apart(other) { None } else { self.intersection_of(&other.facets) }
     }
 
-    /// Do their interiors meet? They touch at most where this is false.
+    /// Whether their interiors meet; if not, they at most touch.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.intersection(other).is_some()
     }
 
-    /// What is in this and not in the other, as polytopes whose interiors do not meet; this one in one piece if it
-    /// does not overlap the other.
+    /// The part of this outside the other, as polytopes whose interiors do not meet; this polytope unchanged
+    /// if it does not overlap the other.
     ///
-    /// A facet of the other after the other, the part outside is one piece and the part inside goes on (*regiondiff*).
+    /// For each facet of the other in turn, the part outside becomes a piece and the part inside is processed
+    /// further (*regiondiff*).
     #[must_use]
     pub fn difference(&self, other: &Self) -> Vec<Self> {
         if self.is_apart(other) {
@@ -113,8 +114,8 @@ impl Polytope {
         pieces
     }
 
-    /// A quick sign that interiors do not meet: their boxes do not, or a facet of one has all of the other outside.
-    /// True for different dimensions.
+    /// A fast sufficient test for disjoint interiors: the boxes are disjoint, or a facet of one has all of
+    /// the other outside. True for different dimensions.
     fn is_apart(&self, other: &Self) -> bool {
         let boxes = |axis: usize| {
             self.high[axis] - other.low[axis] <= RESOLUTION || other.high[axis] - self.low[axis] <= RESOLUTION
@@ -128,7 +129,7 @@ impl Polytope {
             || outside(other, self)
     }
 
-    /// Where a plane goes through.
+    /// The intersection with a plane.
     fn section(&self, by: &Halfspace) -> Cut {
         let mut excess: Vec<f64> = self.vertices.iter().map(|vertex| by.excess(vertex)).collect();
         let (mut inside, mut outside, mut touches, mut gap) = (false, false, false, Gap::NEW);
@@ -162,7 +163,7 @@ impl Polytope {
         Cut::Through(Section { excess, crossings, touches, gap })
     }
 
-    /// The part where `side` · excess is negative, which is inside `by`.
+    /// The part with negative `side` · excess, which is inside `by`.
     fn part(&self, by: &Halfspace, section: &Section, side: f64) -> Option<Self> {
         let width = self.incidence.row(0).len();
         let mut staying = vec![0u64; width];

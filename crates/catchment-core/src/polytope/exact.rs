@@ -21,11 +21,13 @@ use std::cmp::Ordering;
 /// Distance between neighbouring lattice points: 2⁻⁴⁰ ≈ 9e-13 D or rad, 4 000 times the rounding of a coordinate of
 /// order 1, so that rounding makes no lattice points of its own.
 pub(super) const SPACING: f64 = 1.0 / (1u64 << 40) as f64;
-/// Largest coordinate of a point: a thousand times any connector, and what keeps minors in their words.
+/// Largest coordinate of a point: a thousand times any connector, and the limit at which minors fit their
+/// words.
 pub(super) const REACH: f64 = 1024.0;
-/// Error of a rounded side, relative to the sum of its terms with all signs positive. A term is rounded k times at the
-/// k-th row and at most 5 rows are expanded, the first of which is exact: 14 units of 2⁻⁵³; scaling, the last product
-/// and its sum take 10 more, and the bound's own rounding is covered by what is left to 32.
+/// Error of a rounded side, relative to the sum of its terms with all signs positive. A term is rounded k
+/// times at the k-th row and at most 5 rows are expanded, the first of which is exact: 14 units of 2⁻⁵³;
+/// scaling, the last product and its sum add 10 more, and the rest up to 32 covers the rounding of the bound
+/// itself.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 /// A normal that is not known to be right to this is rounded from whole numbers: 2⁻⁴⁴ moves no point within reach of
 /// order 1 by a unit of the lattice.
@@ -37,8 +39,8 @@ pub(super) type Lattice = [i64; MAX_DIMENSION];
 /// A signed whole number, lowest word first, two's complement.
 type Wide = [u64; MAX_DIMENSION];
 
-/// The lattice point next to `point`, or none where a coordinate is no number or out of reach. What is beyond the
-/// dimension becomes 0.
+/// The lattice point next to `point`, or `None` if a coordinate is NaN or out of reach. Coordinates beyond
+/// the dimension become 0.
 pub(super) fn snapped(dimension: usize, point: &PolytopePoint) -> Option<Lattice> {
     let mut lattice = [0; MAX_DIMENSION];
     for (to, from) in lattice.iter_mut().zip(point).take(dimension) {
@@ -69,7 +71,7 @@ pub(super) fn difference(a: &Lattice, b: &Lattice) -> PolytopePoint {
 pub(super) struct Plane {
     dimension: usize,
     corners: [Lattice; MAX_DIMENSION],
-    /// The unit normal, pointing away from what lies below; after [`Self::refine`] right to [`TILT`].
+    /// The unit normal, pointing away from the points below; after [`Self::refine`] accurate to [`TILT`].
     pub(super) unit: PolytopePoint,
     /// Its components with all signs positive, which bound its error.
     bound: PolytopePoint,
@@ -82,8 +84,8 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// The plane through the first `dimension` of `corners`, with `below` below it; none where those lie in
-    /// something flatter or `below` lies on it.
+    /// The plane through the first `dimension` of `corners`, with `below` below it; `None` if those lie in a
+    /// lower-dimensional subspace or `below` lies on it.
     pub(super) fn new(dimension: usize, corners: &[Lattice; MAX_DIMENSION], below: &Lattice) -> Option<Self> {
         let (mut unit, mut bound) = rough_normal(dimension, corners);
         // At most 2^313: its square is a number. Where it vanishes, the side is always computed exactly.
@@ -205,8 +207,8 @@ fn rough_normal(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> (Polyto
     (normal, bounds)
 }
 
-/// The minors of the dimension − 1 rows of differences to the first point, leaving out one column each. Expanded along
-/// the last row, for all sets of columns from small to large.
+/// The minors of the dimension − 1 rows of differences to the first point, each without one column. Expanded
+/// along the last row, for all sets of columns from small to large.
 fn exact_minors(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> [Wide; MAX_DIMENSION] {
     let all = (1usize << dimension) - 1;
     let mut minors = [[0; MAX_DIMENSION]; 1 << MAX_DIMENSION];
@@ -255,7 +257,7 @@ fn add_product(sum: &mut Wide, factor: i64, number: &Wide, words: usize) {
     }
 }
 
-/// The nearest `f64`, or one of its next neighbours.
+/// The nearest `f64`, or a neighbour of it.
 fn rounded(number: &Wide) -> f64 {
     let negative = is_negative(number);
     let mut size = *number;

@@ -13,7 +13,7 @@ use super::{Gap, Halfspace, Polytope};
 use std::cmp::Ordering;
 
 impl Hull {
-    /// The polytope of which this is the boundary; none where it is thinner than [`super::RESOLUTION`].
+    /// The polytope with this boundary; `None` if it is thinner than [`super::RESOLUTION`].
     pub(super) fn into_polytope(mut self) -> Option<Polytope> {
         self.simplices.iter_mut().for_each(|simplex| simplex.plane.refine());
         let mut vertices: Vec<usize> =
@@ -25,8 +25,8 @@ impl Hull {
         self.faces(&vertices, &order, true).or_else(|| self.faces(&vertices, &order, false))
     }
 
-    /// Puts coplanar simplices together, the largest first, because its plane is known best. None if `nearly` and in
-    /// doubt.
+    /// Merges coplanar simplices, the largest first, because its plane is the most accurate. `None` if
+    /// `nearly` and uncertain.
     fn faces(&self, vertices: &[usize], order: &[usize], nearly: bool) -> Option<Polytope> {
         let mut taken = vec![false; self.simplices.len()];
         let mut facets: Vec<Halfspace> = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::{MAX_DIMENSION, PolytopePoint, dot};
 
-/// What lies behind a plane.
+/// The points behind a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Halfspace {
     /// The unit normal, pointing out.
@@ -12,8 +12,8 @@ pub struct Halfspace {
 }
 
 impl Halfspace {
-    /// `normal · x ≤ offset`, scaled so that the normal has length 1. None where the normal is zero or a number is not
-    /// finite.
+    /// `normal · x ≤ offset`, scaled so that the normal has length 1. `None` if the normal is zero or a
+    /// number is not finite.
     pub fn new(normal: PolytopePoint, offset: f64) -> Option<Self> {
         // Scaled by the largest component first, so that no square overflows.
         let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
@@ -35,7 +35,7 @@ impl Halfspace {
         Self { normal, offset: 0.0 - self.offset }
     }
 
-    /// How far a point is outside; negative inside.
+    /// Distance of a point outside; negative inside.
     pub fn excess(&self, point: &PolytopePoint) -> f64 {
         dot(&self.normal, point) - self.offset
     }

@@ -25,7 +25,7 @@ use std::cmp::Ordering;
 /// No facet.
 const NONE: usize = usize::MAX;
 
-/// A facet of the hull: a simplex. Its i-th neighbour is the one opposite its i-th vertex.
+/// A facet of the hull: a simplex. Its i-th neighbour is opposite its i-th vertex.
 pub(super) struct Simplex {
     pub(super) vertices: [usize; MAX_DIMENSION],
     pub(super) neighbours: [usize; MAX_DIMENSION],
@@ -44,7 +44,7 @@ pub(super) struct Hull {
     pub(super) simplices: Vec<Simplex>,
 }
 
-/// What a hull in the making needs beside its simplices.
+/// Data of an incomplete hull besides its simplices.
 struct Waiting {
     /// For each point, a facet that it sees, or [`NONE`].
     facet: Vec<usize>,
@@ -53,7 +53,7 @@ struct Waiting {
 }
 
 impl Hull {
-    /// The hull of `points` in dimension 2 or more; none where all of them lie in something flatter than
+    /// The hull of `points` in dimension 2 or more; `None` if all of them lie in a subspace up to
     /// [`RESOLUTION`].
     pub(super) fn of(dimension: usize, mut points: Vec<Lattice>) -> Option<Self> {
         points.sort_unstable();
@@ -84,7 +84,7 @@ impl Hull {
         Some(hull)
     }
 
-    /// Lets a point wait above the facet from `first` on that it sees from highest, if it sees one.
+    /// Assigns a point to the facet, from `first` on, above which it is highest, if it sees any.
     fn wait(&self, point: usize, first: usize, waiting: &mut Waiting) {
         let at = &self.points[point];
         let (mut best, mut above) = (NONE, 0.0);
@@ -100,8 +100,8 @@ impl Hull {
         (waiting.facet[point], waiting.height[point]) = (best, above);
     }
 
-    /// Makes a point that waits part of the hull. None only if the surface were not closed, which exact signs rule
-    /// out.
+    /// Adds a waiting point to the hull. `None` only if the surface were not closed, which exact signs
+    /// exclude.
     fn join(&mut self, point: usize, waiting: &mut Waiting) -> Option<()> {
         let dimension = self.dimension;
         let at = self.points[point];
@@ -156,13 +156,13 @@ impl Hull {
         Some(())
     }
 
-    /// Where in `simplex` the ridge to `neighbour` is.
+    /// Position of the ridge to `neighbour` in `simplex`.
     fn slot_of(&self, simplex: usize, neighbour: usize) -> Option<usize> {
         self.simplices[simplex].neighbours[..self.dimension].iter().position(|n| *n == neighbour)
     }
 
-    /// The new facet beside the one that took the place of `facet` at `slot`, across the ridge opposite vertex
-    /// `other`: turns around what both share through facets that went, until a new one comes.
+    /// The new facet beside the facet that replaced `facet` at `slot`, across the ridge opposite vertex
+    /// `other`: found by going around their common ridge through removed facets, to the first new facet.
     fn around(
         &self,
         mut facet: usize,
@@ -219,8 +219,8 @@ impl Waiting {
     }
 }
 
-/// Points that span the space: the first one, and always the one farthest from what is spanned so far. None where
-/// that is nearer than [`RESOLUTION`].
+/// Points that span the space: the first point, and then always the point farthest from the span so far.
+/// `None` if that is closer than [`RESOLUTION`].
 fn first_simplex(dimension: usize, points: &[Lattice]) -> Option<Vec<usize>> {
     let first = points.first()?;
     let mut rest: Vec<PolytopePoint> = points.iter().map(|point| exact::difference(point, first)).collect();

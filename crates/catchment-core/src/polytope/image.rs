@@ -6,9 +6,9 @@
 use super::exact::{self, Lattice};
 use super::{MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION};
 
-/// The hull of all sums of a point of the one and a point of the other set: the Minkowski sum of their hulls, either of
-/// which may be flat, or a single point. None where the sum is thinner than [`RESOLUTION`], or a coordinate of a point is
-/// no number or beyond 1024.
+/// The hull of all sums of a point of the first and a point of the second set: the Minkowski sum of their
+/// hulls, either of which may be flat, or a single point. `None` if the sum is thinner than [`RESOLUTION`],
+/// or a coordinate of a point is NaN or beyond 1024.
 pub fn minkowski_sum_of(
     dimension: usize,
     one: &[PolytopePoint],
@@ -26,7 +26,8 @@ pub fn minkowski_sum_of(
 }
 
 impl Polytope {
-    /// All sums of a point here and a point there. None where dimensions differ or a coordinate is beyond 1024.
+    /// All sums of a point here and a point there. `None` if dimensions differ or a coordinate is beyond
+    /// 1024.
     #[must_use]
     pub fn minkowski_sum(&self, other: &Self) -> Option<Self> {
         if self.dimension == other.dimension {
@@ -36,7 +37,7 @@ impl Polytope {
         }
     }
 
-    /// The shadow on these axes, in this order. None where an axis does not exist.
+    /// The shadow on these axes, in this order. `None` if an axis does not exist.
     #[must_use]
     pub fn project(&self, axes: &[usize]) -> Option<Self> {
         if axes.iter().any(|axis| *axis >= self.dimension) {
@@ -52,8 +53,8 @@ impl Polytope {
         Self::hull(axes.len(), &self.vertices.iter().map(shadow).collect::<Vec<_>>())
     }
 
-    /// The cross-section where a coordinate has this value, in the other coordinates. None where there is none
-    /// thicker than [`RESOLUTION`], and for an axis that does not exist.
+    /// The cross-section at a value of a coordinate, in the other coordinates. `None` if it is empty or
+    /// thinner than [`RESOLUTION`], and for an axis that does not exist.
     #[must_use]
     pub fn slice(&self, axis: usize, value: f64) -> Option<Self> {
         if axis >= self.dimension {
@@ -79,8 +80,8 @@ impl Polytope {
         Self::hull(self.dimension - 1, &points)
     }
 
-    /// A facet, seen along an axis: the hull of its vertices in the other coordinates. None where the facet is seen edge
-    /// on, and for a facet or axis that does not exist.
+    /// A facet, seen along an axis: the hull of its vertices in the other coordinates. `None` if the facet is
+    /// seen edge on, and for a facet or axis that does not exist.
     #[must_use]
     pub fn facet_projected(&self, facet: usize, drop_axis: usize) -> Option<Self> {
         if drop_axis >= self.dimension {
@@ -92,7 +93,7 @@ impl Polytope {
     }
 }
 
-/// The point without one of its coordinates.
+/// The point without a given coordinate.
 fn without(point: &PolytopePoint, axis: usize) -> PolytopePoint {
     let mut rest = [0.0; MAX_DIMENSION];
     let others = point.iter().enumerate().filter(|(index, _)| *index != axis);

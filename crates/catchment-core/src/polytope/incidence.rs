@@ -10,7 +10,7 @@ const WORD: usize = u64::BITS as usize;
 /// Rows of bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Incidence {
-    /// Words in a row, at least one.
+    /// Words in a row, at least 1.
     width: usize,
     words: Vec<u64>,
 }
@@ -22,7 +22,7 @@ impl Incidence {
         Self { width, words: Vec::with_capacity(vertices * width) }
     }
 
-    /// One more vertex, on these facets.
+    /// Adds a vertex, on these facets.
     pub(super) fn push(&mut self, facets: impl IntoIterator<Item = usize>) {
         let start = self.words.len();
         self.words.resize(start + self.width, 0);
@@ -80,9 +80,9 @@ impl Incidence {
         }
     }
 
-    /// The number of edges; none where a vertex has fewer than dimension of them, or, within a facet, fewer than
-    /// dimension − 1 (in three dimensions, other than two). For the turned matrix, where facets are joined by
-    /// ridges, the same holds of the dual polytope.
+    /// The number of edges; `None` if a vertex has fewer than dimension of them, or, within a facet, fewer
+    /// than dimension − 1 (in three dimensions, other than two). For the transposed matrix, in which ridges
+    /// join facets, the same holds for the dual polytope.
     fn joins(&self, dimension: usize, facets: usize) -> Option<usize> {
         let vertices = self.rows();
         let mut within = vec![0usize; vertices * facets];

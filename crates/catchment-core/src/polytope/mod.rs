@@ -90,17 +90,18 @@ pub const MAX_DIMENSION: usize = 6;
 /// A point or direction, in D and rad. Components beyond the dimension are 0.
 pub type PolytopePoint = [f64; MAX_DIMENSION];
 
-/// Nearer to a plane than this, in D or rad, is on it, and what is thinner is nothing: 2⁻³⁰ ≈ 9e-10.
+/// Points closer to a plane than this, in D or rad, are on it, and thinner sets are empty: 2⁻³⁰ ≈ 9e-10.
 ///
-/// Derived from the lattice of hulls (2⁻⁴⁰): a plane through rounded points is off by their rounding, times what it is
-/// extrapolated by, times the square root of the dimension; a thousand units of the lattice stay above that, and
-/// a million times below the thousandth of D that a connector's makers and a result's readers care about.
+/// Derived from the lattice of hulls (2⁻⁴⁰): the error of a plane through rounded points is their rounding,
+/// times the extrapolation factor, times the square root of the dimension; a thousand units of the lattice
+/// are above that, and a million times below the thousandth of D that matters for a connector and its
+/// results.
 pub const RESOLUTION: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls.
 const FLAT: f64 = RESOLUTION / 16.0;
-/// Vertices on a plane and the nearest others must be so many times farther apart: a plane through some of the vertices
-/// on it can miss the others by that, where their features are that small.
+/// Smallest ratio between the distances of the nearest other vertices and of the vertices on a plane: a plane
+/// through some of the vertices on it can miss the others by that ratio, if their features are that small.
 const CLEAR: f64 = 1e6;
 
 /// How well the vertices on planes stand apart from the others.
@@ -108,7 +109,7 @@ const CLEAR: f64 = 1e6;
 struct Gap {
     /// The largest distance of a vertex that counts as on its plane.
     on: f64,
-    /// The smallest distance of one that does not.
+    /// The smallest distance of a vertex off the plane.
     off: f64,
 }
 
@@ -147,10 +148,10 @@ pub struct Polytope {
 }
 
 impl Polytope {
-    /// The convex hull of points. Neither their order nor repetitions matter; components beyond `dimension` are
+    /// The convex hull of points. Order and repetitions have no effect; components beyond `dimension` are
     /// ignored, the others are rounded to multiples of 2⁻⁴⁰.
     ///
-    /// None where they all lie in something thinner than [`RESOLUTION`], where a coordinate is no number or beyond 1024,
+    /// `None` if they all lie in a set thinner than [`RESOLUTION`], if a coordinate is NaN or beyond 1024,
     /// and for a dimension of 0 or above [`MAX_DIMENSION`].
     pub fn hull(dimension: usize, points: &[PolytopePoint]) -> Option<Self> {
         if !(1..=MAX_DIMENSION).contains(&dimension) {
@@ -168,7 +169,7 @@ impl Polytope {
         Hull::of(dimension, points)?.into_polytope()
     }
 
-    /// The box from `low` to `high`. None where a side is shorter than [`RESOLUTION`], a coordinate is no number or
+    /// The box from `low` to `high`. `None` if a side is shorter than [`RESOLUTION`], a coordinate is NaN or
     /// beyond 1024, and for a dimension of 0 or above [`MAX_DIMENSION`].
     pub fn cuboid(dimension: usize, low: &PolytopePoint, high: &PolytopePoint) -> Option<Self> {
         if !(1..=MAX_DIMENSION).contains(&dimension) {
@@ -198,7 +199,7 @@ impl Polytope {
         Self::assembled(dimension, facets, vertices, incidence)
     }
 
-    /// Puts a polytope together from forms that fit; none where it is thinner than [`RESOLUTION`].
+    /// Assembles a polytope from consistent forms; `None` if it is thinner than [`RESOLUTION`].
     fn assembled(
         dimension: usize,
         facets: Vec<Halfspace>,
@@ -231,13 +232,13 @@ impl Polytope {
         &self.vertices
     }
 
-    /// The indices of a facet's vertices; none for a facet that does not exist.
+    /// The indices of a facet's vertices; empty for a facet that does not exist.
     pub fn facet_vertices(&self, facet: usize) -> impl Iterator<Item = usize> + '_ {
         let exists = facet < self.facets.len();
         (0..self.vertices.len()).filter(move |vertex| exists && self.incidence.has(*vertex, facet))
     }
 
-    /// The indices of the facets that a vertex lies on; none for a vertex that does not exist.
+    /// The indices of the facets on which a vertex lies; empty for a vertex that does not exist.
     pub fn vertex_facets(&self, vertex: usize) -> impl Iterator<Item = usize> + '_ {
         let exists = vertex < self.vertices.len();
         (0..self.facets.len()).filter(move |facet| exists && self.incidence.has(vertex, *facet))

@@ -16,17 +16,19 @@ use crate::exec::{Cancelled, Exec};
 use crate::method::correction::wilson95;
 use crate::method::{affordable, motions_in};
 
-/// Poses of simple halves: one change among them is 0.3 %, the interval of none ends at 1.3 %. A second or less.
+/// Number of poses for simple halves: a single change is 0.3 %, the interval without a change ends at 1.3 %.
+/// A second or less.
 const SIMPLE: f64 = 300.0;
-/// Poses of other halves: the interval of no change ends at 4 %; unless they take longer than this on one core, in seconds.
+/// Number of poses for other halves: the interval without a change ends at 4 %; fewer if they would take
+/// longer than this on one core, in seconds.
 const LEAST: usize = 100;
 const LONGEST: f64 = 8.0;
 
-/// The doubt that outcomes of a tight pair depend on the step, if any of the poses drawn by `seed` ends otherwise at half
-/// the step; `None` if none does, or nothing is tight.
+/// The warning that outcomes of a tight pair depend on the step, if any of the poses drawn by `seed` has
+/// another outcome at half the step; `None` if none has, or if the fit is not tight.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub fn step_dependence(
     pair: &Pair,
     settings: &DescentSettings,

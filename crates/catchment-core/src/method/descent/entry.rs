@@ -28,8 +28,8 @@ impl DecisionMethod for DescentSettings {
         json!(self)
     }
 
-    /// Odd, so that a cell is centred on the mated pose; fewer where halves have many facets, but in all about as many as random poses are followed beside
-    /// them.
+    /// Odd, so that a cell is centred on the mated pose; fewer for halves with many facets, but in total
+    /// about as many as the number of sampled poses.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1001, 101, 23, 11, 7];
         let cells = affordable_cells(pair, SIMPLE, default_samples(pair));
@@ -109,7 +109,7 @@ impl PoseMethod for DescentSettings {
 /// Random descents that make the Sum of a pair's grid known to a percent or so, in a second; of large halves fewer.
 pub(in crate::method) fn default_samples(pair: &Pair) -> usize {
     const SIMPLE: f64 = 4000.0;
-    /// Unless these take longer than this on one core, in seconds.
+    /// Fewer if these would take longer than this on one core, in seconds.
     const LEAST: usize = 200;
     const LONGEST: f64 = 25.0;
     ((SIMPLE * affordable(pair)) as usize).max(LEAST.min(motions_in(LONGEST, pair)))

@@ -26,24 +26,26 @@ use crate::contact::{Pair, Seat};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
 
-/// How far off halves are let go: D, and radians.
+/// Pose errors at which halves are released: D, and radians.
 const OFF: [f64; 2] = [0.01, PI / 180.0];
-/// What comes this near the mated pose, in the ρ-metric, stays: along the ways on which it would fall it is never nearer than a third of where it began.
+/// A half this close to the mated pose, in the ρ-metric, stays: on paths along which it would fall it is
+/// never closer than a third of its initial distance.
 const HOME: f64 = 1e-3;
-/// Halves of many facets that come as near as this, and as this share of where those began that came home, are taken there.
+/// Halves of many facets this close to the mated pose, and within this share of the distance of the tested
+/// motions that ended there, are moved to it.
 const TAKEN: f64 = 2e-3;
 const SHARE: f64 = 0.2;
 /// Of so few free errors all combinations of signs are tried.
 const FEW: usize = 2;
 
-/// Where a half that is a little off comes to rest below the seat of a pair, or runs off to; `None`: nowhere, its mated pose holds. With the default
-/// settings, whoever asks: the answer is kept with the pair.
+/// Rest below the seat of a pair that a half slightly off reaches, or its running off; `None` if the mated
+/// pose is stable. Always with the default settings: the result is stored with the pair.
 pub fn fall(pair: &Pair) -> Option<Fall> {
     about(pair).fall
 }
 
-/// How near the mated pose, in the ρ-metric, all of halves of many facets comes to it: what is let go a little off, each way that is tried, does so from farther
-/// away. 0 where one does not.
+/// Distance from the mated pose, in the ρ-metric, within which all halves of many facets reach it: every
+/// tested half that is released slightly off, from farther away, does so. 0 if one does not.
 pub(super) fn home(pair: &Pair) -> f64 {
     about(pair).home
 }
@@ -81,14 +83,14 @@ fn about(pair: &Pair) -> About {
     })
 }
 
-/// Whether what is in the seat is docked, so that a motion may be called before it has come to rest: the design limits nothing, the mated pose
-/// holds, and the seat does not leak.
+/// Whether every half in the seat is docked, so that a motion may end before it comes to rest: the design has
+/// no limits, the mated pose is stable, and the seat does not leak.
 pub(in crate::method) fn all_count(pair: &Pair) -> bool {
     let mut seat = Seat::new(pair);
     !seat.is_limited() && fall(pair).is_none() && !seat.leaks()
 }
 
-/// The errors that halves are let go with.
+/// The pose errors at which halves are released.
 fn starts(pair: &Pair) -> Vec<PoseError> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();

@@ -52,20 +52,21 @@ pub enum Guide {
     Along,
 }
 
-/// What is no farther apart counts as touching where nothing else is said, in D: what motions leave where they end, below any fit that is designed.
+/// Default largest gap that counts as contact, in D: the gaps that motions leave at their end, below any
+/// designed fit.
 pub use super::rest::TOUCHING;
 
 /// A foot counts as on its feature up to this far beyond the border, in D: so that the facets on both sides of a valley are found together.
 pub(super) const BORDER: f64 = 1e-8;
 
-/// Loads beyond so many preloads are not told apart from any: a slope of 89.9999°.
+/// Loads beyond this many preloads count as infinite: a slope of 89.9999°.
 pub const MOST_LOAD: f64 = 1e6;
 /// The largest load is found to this share of itself, or of the preload.
 const EXACT: f64 = 1e-9;
-/// A rest withstands its own preload but for this share: motions end on slopes as gentle.
+/// A rest resists its own preload except for this share: motions end on slopes as gentle.
 const OWN: f64 = 1e-3;
 
-/// A half where it rests, with what touches there.
+/// A half at rest, with its contacts.
 #[derive(Debug, Clone)]
 pub struct Holding {
     touching: Touching,
@@ -77,7 +78,8 @@ pub struct Holding {
 }
 
 impl Holding {
-    /// What touches where a half is lowered at a pose error: everything no farther apart than `near`, in D. `None` where nothing touches.
+    /// The contacts of a half lowered at a pose error: all features with gaps up to `near`, in D. `None` if
+    /// nothing touches.
     pub fn at(pair: &Pair, error: &PoseError, near: f64) -> Option<Self> {
         // Any friction: slips are asked for.
         let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
@@ -86,7 +88,8 @@ impl Holding {
         Self::seen(&mut motion, &state, near)
     }
 
-    /// What touches where a half rests at a pose error, its centre of rotation at `height`; also beneath what it could not be lowered through.
+    /// The contacts of a half at rest at a pose error, with its centre of rotation at `height`; also beneath
+    /// features through which it could not be lowered.
     pub fn at_rest(pair: &Pair, error: &PoseError, height: f64, near: f64) -> Option<Self> {
         let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
         let mut motion = Motion::new(pair, &settings);
@@ -128,7 +131,7 @@ impl Holding {
         &self.rotation
     }
 
-    /// What touches.
+    /// The contacts.
     pub fn contacts(&self) -> &[(Contact, Meeting)] {
         &self.contacts
     }
@@ -138,7 +141,7 @@ impl Holding {
         self.preload(friction).is_some()
     }
 
-    /// From which friction on the preload alone may be held, and until which it slips: [`super::sticking()`] with what touches here.
+    /// Sticking and slipping threshold for the preload alone: [`super::sticking()`] with these contacts.
     pub fn sticking(&mut self) -> Sticking {
         self.touching.thresholds()
     }
@@ -148,8 +151,9 @@ impl Holding {
         self.touching.wedges_from()
     }
 
-    /// How many times a load may be added to the preload until the half leaves; infinite where no such load moves it, none where the preload alone
-    /// does. A load that moves nothing that is free is held.
+    /// Largest multiple of a load that can be added to the preload before the half leaves; infinite if no
+    /// such load moves it, `None` if the preload alone does. A load that acts on no free error is always
+    /// resisted.
     pub fn most(&mut self, load: &Load, guide: Guide, friction: f64) -> Option<f64> {
         let load = self.generalised(load);
         match guide {
@@ -178,7 +182,8 @@ impl Holding {
         Some(held)
     }
 
-    /// The preload, less what the gentle slope on which a motion ends does not hold of it; `None` if that is more.
+    /// The preload, minus the part that contacts on the gentle slope at the end of a motion do not balance;
+    /// `None` if that part is too large.
     pub(super) fn preload(&mut self, friction: f64) -> Option<Vector> {
         let push = self.touching.push;
         let left = self.touching.unheld(&push, friction)?;
@@ -196,7 +201,7 @@ impl Holding {
         self.touching.unheld(&unit, friction).is_some_and(|left| is_still(&left))
     }
 
-    /// What displacements do to the gaps of the contacts.
+    /// Change of the gaps of the contacts per displacement.
     pub(super) fn rows(&self) -> &[Vector] {
         &self.touching.rows
     }
@@ -230,7 +235,8 @@ impl Holding {
         push
     }
 
-    /// The same contacts where only the way of a load is open, and z; `None` for a load without one.
+    /// The same contacts with only the direction of a load free, and z; `None` for a load without a
+    /// direction.
     fn guided(&self, load: Vector) -> Option<Self> {
         let along = only(&load);
         let size = dot(&along, &along).sqrt();

@@ -24,7 +24,7 @@ use glam::{DMat3, DVec3};
 
 /// How near, in D and radians.
 const NEAR: f64 = 0.02;
-/// Poses that are tried: if none of so many jams, fewer than 3 % do (0.97¹⁰⁰ < 5 %).
+/// Number of poses tried: if none of these jams, fewer than 3 % do (0.97¹⁰⁰ < 5 %).
 const POSES: u64 = 100;
 /// Their numbers.
 const SEED: u64 = 0x40e;
@@ -35,8 +35,8 @@ pub(super) fn is_near(pair: &Pair, rotation: &DMat3, cor: DVec3) -> bool {
     face.truncate().length() <= NEAR && pair.alignment.turned_by(rotation) <= NEAR
 }
 
-/// Whether all poses that are tried near the mated one dock. With the default settings, whoever asks: the answer is kept with the pair, and
-/// must not depend on who asked first.
+/// Whether all tried poses near the mated pose dock. Always with the default settings: the result is stored
+/// with the pair, and must not depend on the first caller.
 pub(super) fn all_dock(pair: &Pair) -> bool {
     if pair.is_tight() || pair.is_large() || !all_count(pair) {
         return false;

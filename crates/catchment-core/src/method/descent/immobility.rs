@@ -32,26 +32,27 @@ use crate::pose::{PoseError, rotation};
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A slope below this is none: motions end on as gentle ones.
+/// A slope below this counts as zero: motions end on slopes as gentle.
 const LEVEL: f64 = 1e-3;
 /// More gradients than this have no hull in reasonable time.
 const MOST_HULL: usize = 40;
 /// Gradients steeper than this are walls, and count as if they were as steep.
 const STEEPEST: f64 = 500.0;
-/// Gradients, and directions, nearer than this are one.
+/// Gradients, and directions, closer than this are equal.
 const SAME: f64 = 1e-6;
 /// The pushes by which curvature is taken, in D: rounding of 10⁻¹⁶ leaves 10⁻⁹, the next order 10⁻⁷.
 const PUSH: f64 = 3e-4;
-/// A curvature below this is none, per D: a radius of a thousand widths.
+/// A curvature below this counts as zero, per D: a radius of a thousand widths.
 const FLAT: f64 = 1e-3;
-/// The greatest curvature that is told from any, per D: a radius of a thousandth of D.
+/// Curvatures above this count as infinite, per D: a radius of a thousandth of D.
 const MOST_CURVED: f64 = 1e3;
-/// Directions that are tried where several are free to first order, per direction, and moves about the best.
+/// Number of directions that are tried if several are free to first order, per direction, and of variations
+/// of the best.
 const TRIES: u64 = 24;
 const MOVES: u64 = 48;
-/// A load of this share of the preload more or less tells whether a contact can carry.
+/// Change of the load, as a share of the preload, in the test whether a contact can carry.
 const MORE: f64 = 1e-3;
-/// Halvings of what the forces of contacts leave open.
+/// Number of bisections of the remaining range of the contact forces.
 const HALVINGS: usize = 40;
 
 /// Order of immobility of a rest.
@@ -100,7 +101,7 @@ pub struct Immobility {
     pub weakest: PoseError,
 }
 
-/// How a rest is held; `None` where its contacts do not hold the load.
+/// Immobility of a rest; `None` if its contacts do not balance the load.
 pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) -> Option<Immobility> {
     let mut rest = At::new(pair, holding, error)?;
     if rest.is_inside() {
@@ -138,7 +139,7 @@ pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) 
     Some(Immobility { order, slope: [0.0; 2], free: free.len(), curvature: Some(curvature), weakest })
 }
 
-/// A rest, with what carries it.
+/// A rest, with its carrying contacts.
 struct At<'a> {
     pair: &'a Pair,
     holding: Holding,
@@ -172,7 +173,8 @@ impl<'a> At<'a> {
         })
     }
 
-    /// The least slope: of the nearest facet of the hull of all gradients, or between what is withstood along the axes.
+    /// The smallest slope: that of the nearest facet of the hull of all gradients, or bounds from the holding
+    /// forces along the axes.
     fn slope(&mut self) -> [f64; 2] {
         let mut gradients: Vec<PolytopePoint> = Vec::new();
         for row in self.holding.rows() {
@@ -242,7 +244,7 @@ impl<'a> At<'a> {
         free
     }
 
-    /// The least curvature over directions that no other contact blocks, and where.
+    /// The smallest curvature over directions that no other contact blocks, with its direction.
     fn least_curvature(&mut self, free: &[Vector], stream: Stream) -> Option<(f64, Vector)> {
         let combined = |parts: &[f64]| -> Option<Vector> {
             let mut way = [0.0; MAX_COORDINATES];
@@ -359,7 +361,7 @@ fn distance(a: &PolytopePoint, b: &PolytopePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// Takes out of a vector what lies along orthonormal ones.
+/// Removes from a vector its components along orthonormal vectors.
 fn take_out(vector: &mut Vector, from: &[Vector]) {
     for other in from {
         let along = dot(vector, other);

@@ -100,7 +100,7 @@ const MOST_FRICTION: f64 = 10.0;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{friction} is no coefficient of friction: that is a number from 0 to {MOST_FRICTION}, such as 0.2")]
 pub struct FrictionOutOfRange {
-    /// What was given.
+    /// The given value.
     pub friction: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct FrictionOutOfRange {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{slope} is no slope at which motion ends: that is a finite number from 0 on, such as 0.2")]
 pub struct SlopeOutOfRange {
-    /// What was given.
+    /// The given value.
     pub slope: f64,
 }
 
@@ -118,7 +118,7 @@ impl DescentSettings {
         self.friction > 0.0 || self.slope_threshold > 0.0
     }
 
-    /// The defaults, with motion that ends where the slope is no more than this.
+    /// The defaults, with motion that ends if the slope is at most this.
     ///
     /// # Errors
     /// A slope is finite, and at least 0.
@@ -163,7 +163,7 @@ impl End {
     }
 }
 
-/// Follows one pose after another, keeping its buffers.
+/// Follows poses in sequence, keeping its buffers.
 pub struct Follower<'a>(Motion<'a>);
 
 impl<'a> Follower<'a> {
@@ -172,23 +172,25 @@ impl<'a> Follower<'a> {
         Self(Motion::new(pair, settings).homing())
     }
 
-    /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
-    /// to rest.
+    /// Follows a pose until its outcome is known: a half in a seat without docking tolerances on the errors
+    /// is docked before it has come to rest.
     pub fn follow(&mut self, error: &PoseError) -> End {
         self.0.follow(error, Until::Known, &mut NoObserver)
     }
 
-    /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
-    /// wedges where it jams. See [`sticking()`].
+    /// The same, with the cases that Coulomb's law leaves open: whether it passed a place at which it slips
+    /// although some force could hold it, and whether it wedges in a jam. See [`sticking()`].
     pub fn follow_doubting(&mut self, error: &PoseError) -> (End, FrictionAmbiguity) {
         let mut doubting = AmbiguityObserver::default();
         let end = self.0.follow(error, Until::Known, &mut doubting);
         (end, doubting.doubt(end.outcome, self.0.settings.friction))
     }
 
-    /// The same; and the least friction, up to `most`, at which some force would hold it somewhere on this way: `most` where none would.
+    /// The same, with the smallest friction coefficient, up to `most`, at which some force would hold it
+    /// somewhere on this motion: `most` if none would.
     ///
-    /// With friction it goes another way: this says what holds where motion without it (or with the friction of the settings) comes by, and no more.
+    /// With friction the motion is different: this value applies only to the motion without friction (or with
+    /// the friction of the settings).
     pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
         let mut holding = HoldingFrictionObserver::up_to(most);
         // All the way, also where it is known before that it docks.
@@ -198,7 +200,7 @@ impl<'a> Follower<'a> {
         (end, holding.least())
     }
 
-    /// The same, but no further than to where `known` tells what becomes of a pose error on the way.
+    /// The same, but ends once `known` returns the outcome of a pose error on the motion.
     pub fn follow_until(
         &mut self,
         error: &PoseError,
@@ -207,23 +209,23 @@ impl<'a> Follower<'a> {
         self.0.follow(error, Until::Known, &mut known).outcome
     }
 
-    /// What all searches of trees took until now, about: counted, in nanoseconds; 0 of halves that have none.
+    /// Estimated cost of all tree searches so far: counted, in nanoseconds; 0 for halves without trees.
     pub(in crate::method) const fn took(&self) -> u64 {
         self.0.nearby.took()
     }
 
-    /// Follows one pose until it has come to rest, also in the seat.
+    /// Follows a pose until it has come to rest, even in the seat.
     pub fn rest(&mut self, error: &PoseError) -> End {
         self.0.follow(error, Until::AtRest, &mut NoObserver)
     }
 }
 
-/// Follows one pose until it is known what becomes of it.
+/// Follows a pose until its outcome is known.
 pub fn outcome(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> End {
     Follower::new(pair, settings).follow(error)
 }
 
-/// Follows one pose until it has come to rest, and keeps its path.
+/// Follows a pose until it has come to rest, and keeps its trajectory.
 pub fn trace(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Trajectory {
     let mut waypoints = Vec::new();
     let End { outcome, .. } = Motion::new(pair, settings).follow(error, Until::AtRest, &mut waypoints);
@@ -234,10 +236,11 @@ pub fn trace(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Traj
 const REPORTS: usize = 100;
 const MOST_BETWEEN: usize = 256;
 
-/// Follows every pose of a domain until it is known what becomes of it, in parallel; the ends are in the order of the domain.
+/// Follows every pose of a domain until its outcome is known, in parallel; the ends are in the order of the
+/// domain.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop; checked before every pose.
+/// [`Cancelled`] if a stop is requested; checked before every pose.
 pub fn run(
     pair: &Pair,
     domain: Domain,
@@ -247,10 +250,11 @@ pub fn run(
     each(pair, domain, Until::Known, settings, exec, &|_, _| {})
 }
 
-/// The same until every pose has come to rest: the outcomes of [`run`], and where halves end that dock.
+/// The same until every pose has come to rest: the outcomes of [`run`], and the residual poses of docked
+/// halves.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop; checked before every pose.
+/// [`Cancelled`] if a stop is requested; checked before every pose.
 pub fn rests(
     pair: &Pair,
     domain: Domain,
@@ -260,7 +264,7 @@ pub fn rests(
     rests_told(pair, domain, settings, exec, &|_, _| {})
 }
 
-/// The same; `finished` is told of every pose as soon as it has come to rest.
+/// The same; `finished` is called for every pose as soon as it has come to rest.
 pub(super) fn rests_told(
     pair: &Pair,
     domain: Domain,
@@ -271,23 +275,23 @@ pub(super) fn rests_told(
     each(pair, domain, Until::AtRest, settings, exec, finished)
 }
 
-/// Poses that lie in an array, and where what becomes of them goes: row k of all four is of pose k. Nothing is copied.
+/// Poses in an array, and arrays for their results: row k of all four belongs to pose k. Nothing is copied.
 #[derive(Debug)]
 pub struct Rows<'a> {
     /// The pose errors, in the order of [`Dof::ALL`](crate::pose::Dof::ALL), in D and radians.
     pub poses: &'a [[f64; 5]],
     /// Receives the last pose errors, likewise.
     pub ends: &'a mut [[f64; 5]],
-    /// Receives [`End::height`], NaN where the moving half missed.
+    /// Receives [`End::height`], NaN if the moving half missed.
     pub heights: &'a mut [f64],
     /// Receives the codes of the outcomes.
     pub outcomes: &'a mut [u8],
 }
 
-/// The same as [`rests`] for poses that lie in an array. Where the four have unlike lengths, the shortest counts.
+/// The same as [`rests`] for poses in an array. If the four have different lengths, the shortest counts.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop; checked before every pose. What was written until then means nothing.
+/// [`Cancelled`] if a stop is requested; checked before every pose. The arrays then contain no valid results.
 pub fn rests_of_rows(
     pair: &Pair,
     rows: Rows<'_>,

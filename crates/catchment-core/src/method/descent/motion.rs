@@ -22,27 +22,27 @@ pub(super) struct State {
     /// COR in the world frame.
     pub(super) cor: DVec3,
     pub(super) rotation: DMat3,
-    /// The same rotation where all three are free.
+    /// The same rotation if all three are free.
     pub(super) spin: DQuat,
-    /// (roll, pitch, yaw) where some rotation is locked; unused when all three are free.
+    /// (roll, pitch, yaw) if some rotation is locked; unused if all three are free.
     pub(super) angles: [f64; 3],
 }
 
 /// How long a motion is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
-    /// Until it is known what becomes of it.
+    /// Until the outcome is known.
     Known,
-    /// Until it has come to rest, whatever is known before.
+    /// Until it has come to rest, even if the outcome is known before.
     AtRest,
 }
 
 /// Sees a motion at every step.
 pub(super) trait MotionObserver {
-    /// What becomes of the motion, if that is known from here: it is followed no further.
+    /// The outcome of the motion, if it is known from here: the motion then ends.
     fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome>;
 
-    /// Whether it looks at contacts: else those of the last step are not looked for.
+    /// Whether it needs the contacts: those of the last step are not searched if not.
     fn looks(&self) -> bool {
         true
     }
@@ -69,7 +69,7 @@ impl MotionObserver for Vec<Waypoint> {
     }
 }
 
-/// Asks at every pose error on the way.
+/// Queries the function at every pose error of the motion.
 impl<F: FnMut(&PoseError) -> Option<Outcome>> MotionObserver for F {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self(&motion.error_of(state))
@@ -84,29 +84,30 @@ impl<F: FnMut(&PoseError) -> Option<Outcome>> MotionObserver for F {
 const LEVEL: f64 = 1e-6;
 const LEVEL_STEPS: usize = 128;
 
-/// What is near the mated pose, in a seat that is known to lead there ([`home`]), and above it by at least this share of how far it is, is followed no further.
+/// A half near the mated pose, in a seat known to lead there ([`home`]), ends its motion if its height is at
+/// least this share of its distance.
 const TAPER: f64 = 0.1;
 
-/// A mover of poses for one pair: owns the buffers.
+/// A mover of poses for a pair: owns the buffers.
 pub(super) struct Motion<'a> {
     pub(super) pair: &'a Pair,
     pub(super) settings: &'a DescentSettings,
     seat: Seat<'a>,
     /// Whether all motion near the mated pose leads to it: [`super::homing`].
     pub(super) homing: bool,
-    /// Whether the mated pose is taken to hold: [`super::fall`] asks that by motions.
+    /// Whether the mated pose is assumed to be stable: [`super::fall`] tests that by motions.
     trusting: bool,
     pub(super) nearby: Nearby<'a>,
     pub(super) contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`] and [`Motion::meet`].
     pub(super) carrying: Vec<(Contact, Meeting)>,
-    /// What holds for the displacement of this step: [`super::rows`].
+    /// The constraints on the displacement of this step: [`super::rows`].
     pub(super) rows: Rows,
     pub(super) projection: Projection,
     pub(super) coulomb: Coulomb,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
-    /// What drives it.
+    /// The push.
     pub(super) push: Push,
     /// Largest distance of a moving corner from the COR.
     pub(super) radius: f64,
@@ -138,7 +139,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Calls motions before they have come to rest also where all motion near the mated pose leads to it, which friction may end.
+    /// Also ends motions before they come to rest if all motion near the mated pose leads to it; friction may
+    /// stop such motions.
     pub(super) fn homing(mut self) -> Self {
         self.homing = !self.settings.may_hold() && homing::all_dock(self.pair);
         self
@@ -226,7 +228,7 @@ impl<'a> Motion<'a> {
         self.end(Outcome::Undecided, &state, [seated, docked])
     }
 
-    /// The moving half lowered at `error` until it first touches; `None` where it touches nothing.
+    /// The moving half lowered at `error` to first contact; `None` without contact.
     fn touch_down(&mut self, error: &PoseError) -> Option<State> {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
@@ -253,7 +255,7 @@ impl<'a> Motion<'a> {
         Some(state)
     }
 
-    /// What an end is called: rest in the seat, within what the design allows, is docked.
+    /// The outcome of an end: a rest in the seat, within the docking tolerance, is docked.
     fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> End {
         let error = self.error_of(last);
         let rests_well = |motion: &mut Self| {
@@ -304,19 +306,20 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether halves of many facets are taken to their mated pose when they are near it. All facets nearly touch there, and to tell which of them carry takes as
-    /// long as all the way before.
+    /// Whether halves of many facets are moved to their mated pose when they are near it. Almost all facets
+    /// touch there, and determining which of them carry takes as long as the whole motion before.
     fn ends_at_home(&self) -> bool {
         self.pair.asks_trees() && !self.pair.is_tight() && !self.settings.may_hold()
     }
 
-    /// The mated pose, where halves of many facets have come as near to it, in the ρ-metric, as what touches.
+    /// The mated pose, if halves of many facets are as close to it, in the ρ-metric, as the contact
+    /// tolerance.
     pub(super) fn home_of(&self, state: &State) -> Option<State> {
         let is_near = || self.pair.alignment.length(&self.error_of(state)) <= TOUCHING;
         (self.pair.asks_trees() && is_near()).then(|| self.home())
     }
 
-    /// Whether halves of many facets rest in the mated pose, where no push leads on.
+    /// Whether halves of many facets rest in the mated pose, at which no push leads on.
     pub(super) fn is_home(&self, state: &State) -> bool {
         let home = self.home();
         self.pair.asks_trees()

@@ -14,7 +14,7 @@
 
 /// Coordinates of a displacement: lateral x, y, approach z and up to three turns.
 pub(super) const MAX_COORDINATES: usize = 6;
-/// One more row holds the gaps, and one stays 0: eight numbers fill the lanes of a processor.
+/// An additional row holds the gaps, and another stays 0: eight numbers fill the lanes of a processor.
 const ROWS: usize = MAX_COORDINATES + 2;
 /// The row of the gaps.
 const GAPS: usize = MAX_COORDINATES;
@@ -41,13 +41,13 @@ fn product(a: &Column, b: &Column) -> f64 {
 pub(super) struct Projection {
     columns: Vec<Column>,
     passive: Passive,
-    /// What the last displacement was divided by.
+    /// Divisor of the last displacement.
     residual: f64,
 }
 
 impl Projection {
-    /// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`; `None` where negative gaps
-    /// contradict each other.
+    /// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`; `None` if
+    /// negative gaps contradict each other.
     ///
     /// `scale` is the size of displacement of interest: gaps and push are measured in it for conditioning.
     pub(super) fn closest_allowed(
@@ -84,7 +84,8 @@ impl Projection {
         &self.passive.columns[..self.passive.count]
     }
 
-    /// How hard the last displacement presses against rows, all others not at all: `u = push + Σ force · row` where `scale` is 1.
+    /// Forces of the rows on the last displacement, zero for all others: `u = push + Σ force · row` for
+    /// `scale` 1.
     pub(super) fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let Passive { count, columns, lambda, .. } = &self.passive;
         columns.iter().zip(lambda).take(*count).map(|(column, lambda)| (*column, -lambda / self.residual))
@@ -137,7 +138,7 @@ struct Passive {
     r: [[f64; MOST]; MOST],
     /// Qᵀ f.
     right: [f64; MOST],
-    /// What is left of f after the first k columns.
+    /// The residual of f after the first k columns.
     rest: [Column; MOST + 1],
 }
 

@@ -13,12 +13,14 @@ use crate::tolerance;
 /// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
 /// fit is as close.
 pub const TOUCHING: f64 = tolerance::TOUCHING;
-/// The same where a half was set down onto what carries it.
+/// The same for a half that was set down onto its contacts.
 const SET_DOWN: f64 = 1e-7;
 
-/// How hard a half is pushed down onto what carries it, in D: hollows whose curvature is below its inverse are found.
+/// Depth by which a half is pushed down onto its contacts, in D: finds hollows whose curvature is below its
+/// inverse.
 const PUSH: f64 = 0.05;
-/// How far it comes at most, in the ρ-metric and z together, in D: what motions end short of.
+/// Largest displacement of this, in the ρ-metric and z combined, in D: the distance that motions leave at
+/// their end.
 const FARTHEST: f64 = 1e-3;
 /// Passes of Newton's method at most, and the last displacement, in D.
 const PASSES: usize = 24;
@@ -33,11 +35,12 @@ pub struct Rest {
     pub outcome: Outcome,
     /// The last pose error.
     pub error: PoseError,
-    /// z of the COR in the world frame where it was last in contact, in D; `None` where the halves never met.
+    /// z of the COR in the world frame at the last contact, in D; `None` if the halves never met.
     pub height: Option<f64>,
-    /// What touched there, by features.
+    /// The contacts there, by features.
     pub contacts: Vec<(Contact, Meeting)>,
-    /// Gaps up to this touched, in D: [`TOUCHING`], and less where the half was set down onto what carries it.
+    /// Largest gap that counts as contact, in D: [`TOUCHING`], and less if the half was set down onto its
+    /// contacts.
     pub touching: f64,
 }
 
@@ -58,13 +61,14 @@ impl MotionObserver for Last {
 }
 
 impl Follower<'_> {
-    /// Follows one pose until it has come to rest, also in the seat, as [`Follower::rest`] does, and keeps what carries it there.
+    /// Follows a pose until it has come to rest, even in the seat, as [`Follower::rest`] does, and keeps the
+    /// contacts that carry it there.
     pub fn come_to_rest(&mut self, error: &PoseError) -> Rest {
         self.end_of(error, Until::AtRest)
     }
 
-    /// Follows one pose until it is known what becomes of it, as [`Follower::follow`] does, and keeps what carried it last: where it
-    /// jams, where it rests.
+    /// Follows a pose until its outcome is known, as [`Follower::follow`] does, and keeps its last carrying
+    /// contacts: for a jam those at its rest.
     pub fn settle(&mut self, error: &PoseError) -> Rest {
         self.end_of(error, Until::Known)
     }
@@ -100,10 +104,11 @@ impl Follower<'_> {
 }
 
 impl Motion<'_> {
-    /// Sets a half that has come to rest down onto all that carries it, by Newton's method: motions end where what is left of the way is short, some of it
-    /// not yet touched. `None` where that does not end near by, as on ground that is level but for its facets.
+    /// Sets a half at rest down onto all its contacts, by Newton's method: motions end when the remaining
+    /// distance is short, with some contacts not yet closed. `None` if the iteration does not end nearby, as
+    /// on ground that is level except for its facets.
     ///
-    /// [`Motion::contacts`] are those there.
+    /// [`Motion::contacts`] are then the contacts there.
     fn set_down(&mut self, state: &State) -> Option<State> {
         // In the mated pose itself halves of many facets touch all over, exactly.
         if self.settings.slope_threshold > 0.0 || self.is_home(state) {
@@ -148,7 +153,7 @@ impl Motion<'_> {
     }
 }
 
-/// Follows one pose until it is known what becomes of it, and keeps what carried it last.
+/// Follows a pose until its outcome is known, and keeps its last carrying contacts.
 pub fn settle(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Rest {
     Follower::new(pair, settings).settle(error)
 }

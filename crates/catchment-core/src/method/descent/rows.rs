@@ -24,21 +24,22 @@ const WALL: f64 = 0.05;
 const WALL_MARGIN: f64 = 1e-6;
 /// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
 pub(super) const OVERLAP: f64 = 1e-9;
-/// Features that fail to support by more than this angle are not looked for, however long the step: radians.
+/// Features that fail to support by more than this angle are not searched, however long the step: radians.
 const WIDEST: f64 = 0.2;
-/// Rows that differ by less are one contact.
+/// Rows that differ by less belong to the same contact.
 const SAME: f64 = 1e-12;
 /// By more than this sums over equal rows do not differ.
 const SUM_SAME: f64 = 8.0 * SAME;
 
-/// What holds for a displacement, each once.
+/// The constraints on a displacement, without duplicates.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rows {
     pub(super) vectors: Vec<Vector>,
     pub(super) gaps: Vec<f64>,
     /// How each slips; empty without friction.
     pub(super) tangents: Vec<Tangents>,
-    /// Sums over the numbers of each row, in order, with its place: equal rows have equal ones. Of the first rows only where there are many.
+    /// Checksums of the numbers of each row, in order, with its position: equal rows have equal sums. Only
+    /// for the first rows if there are many.
     sums: BTreeSet<(u64, u32)>,
 }
 
@@ -53,12 +54,12 @@ impl Rows {
         self.sums.clear();
     }
 
-    /// What the projection and the cones of friction are asked with.
+    /// The contacts for the projection and the friction cones.
     pub(super) fn contacts(&self, friction: f64) -> Contacts<'_> {
         Contacts { rows: &self.vectors, tangents: &self.tangents, friction }
     }
 
-    /// Adds a row unless it is known; says whether it was new.
+    /// Adds a row unless it is present; returns whether it was new.
     fn learn(&mut self, row: Vector, tangents: Option<Tangents>, gap: f64) -> bool {
         let same = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
         let is = |k: usize| {
@@ -116,7 +117,7 @@ impl Motion<'_> {
         self.contacts = contacts;
     }
 
-    /// What a displacement does to the gap of a contact.
+    /// Change of the gap of a contact per displacement.
     pub(super) fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
         self.row_along(contact.normal, contact, state, axes)
     }
@@ -132,7 +133,7 @@ impl Motion<'_> {
         [side, across].map(|tangent| self.row_along(tangent, contact, state, axes))
     }
 
-    /// How far a displacement moves the touching point of the moving half along a direction.
+    /// Displacement of the contact point of the moving half along a direction, per displacement.
     fn row_along(&self, n: DVec3, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
         let free = self.pair.alignment.free;
         let arm = contact.point + contact.normal * contact.gap - state.cor;
@@ -147,8 +148,9 @@ impl Motion<'_> {
         row
     }
 
-    /// Adds what carries the body at `landed`, `rise` above where the displacement `u` had put it, to the contacts
-    /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
+    /// Adds the contacts that carry the body at `landed`, `rise` above the position that the displacement `u`
+    /// had given, to the contacts of this step. Only contacts below the present position can be added: the
+    /// other side of a valley, not a step up.
     pub(super) fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
         let mut carrying = std::mem::take(&mut self.carrying);
         self.nearby.contacts(landed.cor, OVERLAP, &mut carrying);
@@ -168,7 +170,8 @@ impl Motion<'_> {
         added
     }
 
-    /// Adds what the body has run into at `landed` by the displacement `u` from `state`, as seen halfway: see [`Motion::look_ahead`].
+    /// Adds the contacts into which the body has run at `landed` by the displacement `u` from `state`,
+    /// evaluated halfway: see [`Motion::look_ahead`].
     pub(super) fn meet(&mut self, state: &State, landed: &State, step: f64, u: &Vector) -> bool {
         let (_, near) = self.horizon(step);
         let mut met = std::mem::take(&mut self.carrying);
@@ -192,7 +195,7 @@ impl Motion<'_> {
         added
     }
 
-    /// Axes of the free rotations in the world frame, unit; zero for locked ones.
+    /// Axes of the free rotations in the world frame, unit; zero for locked rotations.
     pub(super) fn axes(&self, state: &State) -> [DVec3; 3] {
         if self.spherical {
             return [DVec3::X, DVec3::Y, DVec3::Z];
@@ -208,8 +211,8 @@ impl Motion<'_> {
         axes
     }
 
-    /// Replaces the rows of the contacts at the start of a step by those halfway along `u`, seen from the start: the
-    /// midpoint rule, second order where contacts bend.
+    /// Replaces the rows of the contacts at the start of a step by those halfway along `u`, relative to the
+    /// start: the midpoint rule, second order for curved contacts.
     pub(super) fn look_ahead(&mut self, state: &State, u: &Vector) {
         let half = u.map(|x| 0.5 * x);
         let middle = self.moved(state, &half);
@@ -238,8 +241,9 @@ impl Motion<'_> {
     }
 }
 
-/// What a step may meet: features that support a normal within the angle by which it turns at most, and gaps by as much
-/// as a point of the body moves. What it meets beyond them is cut off or halved.
+/// Range of features that a step may meet: those that support a normal within the largest rotation of the
+/// step, and gaps up to the largest displacement of a point of the body. Contacts beyond it are cut off or
+/// halve the step.
 pub(super) fn horizon(step: f64, radius: f64, rotation_length: f64) -> (f64, f64) {
     ((step / rotation_length).min(WIDEST), step * (1.0 + radius / rotation_length))
 }

@@ -10,7 +10,7 @@ use super::projection::{Vector, dot};
 use crate::acceptance::Outcome;
 use crate::tolerance::ROUNDING;
 
-/// How a motion goes on.
+/// Continuation of a motion.
 pub(super) enum Advance {
     /// To here, by this length in the ρ-metric.
     Moved(State, f64),
@@ -24,19 +24,20 @@ pub(super) struct Pace {
     pub(super) step: f64,
     /// How hard the force pushes, in steps.
     reach: f64,
-    /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
+    /// Length of the last displacement before it was cut to a step, in steps.
     share: f64,
-    /// How far it may reach at most, in steps.
+    /// Upper limit of that length, in steps.
     most: f64,
 }
 
-/// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
+/// Largest factor of the push relative to the step: raised on gentle slopes so that they take no longer.
 const MAX_REACH: f64 = 1e7;
-/// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
+/// The same with friction, whose forces are less accurate: rest is a slope below 10⁻⁷ beyond the friction.
 const MAX_REACH_OF_FRICTION: f64 = 1e4;
-/// The same on level ground: rest is a slope below 10⁻⁸, which is what gaps known to 10⁻⁹ D make of contacts about ρ away.
+/// The same on level ground: rest is a slope below 10⁻⁸, the effect of gaps known to 10⁻⁹ D on contacts about
+/// ρ away.
 const MAX_REACH_ON_LEVEL: f64 = 1e5;
-/// Ground is level where the normals of all that carries have at least this z: within 0.6°.
+/// Ground is level if the normals of all carrying contacts have at least this z: within 0.6°.
 const LEVEL: f64 = 1.0 - 5e-5;
 /// From this reach on, on level ground, gaps count that a plain push closes: the turn by which they close, at least gap/ρ, changes slopes by as much, and
 /// the reach may make of that no more than the share `SETTLED` of a step. Half a step's slope is 1/reach.
@@ -44,28 +45,30 @@ const HARD: f64 = 16.0;
 const SETTLED: f64 = 1e-3;
 /// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
 const REST: f64 = 1e-3;
-/// A half rests if it does within steps of this share of the longest: within longer ones planes of facets hold it that lie beside it.
+/// A half rests if it does within steps of this share of the longest: in longer steps planes of facets beside
+/// it hold it.
 const RESTING_SHARE: f64 = 1.0 / 16.0;
-/// Steps are halved down to this share of the chosen one.
+/// Steps are halved down to this share of the chosen step.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
-/// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
+/// Steps that fall off an edge are halved down to this share: the exact edge matters little.
 const COARSE_SHARE: f64 = 1.0 / 64.0;
-/// Where a step of this share climbs although the slope falls gently, the bottom of a smooth hollow is within it.
+/// If a step of this share climbs although the slope falls gently, it contains the bottom of a smooth hollow.
 const REST_SHARE: f64 = 1.0 / 256.0;
-/// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
+/// A gentle slope: that of a curvature of 1/(0.01 D) over the smallest such step.
 const GENTLE: f64 = 0.01;
-/// How many contacts one step may discover before it is halved: the facets around a corner.
+/// Largest number of contacts that a step may discover before it is halved: the facets around a corner.
 const MAX_CUTS: usize = 6;
 /// A fall of this many allowed surprises is a fall off an edge.
 const FALL: f64 = 1.0;
 
-/// A motion that turns by less than `STRAIGHT` (sine) from the start of a step to its middle is followed by longer
-/// steps, up to `LONG` times; one that turns by more than `BENT` is not.
+/// A motion that turns by less than `STRAIGHT` (sine) from the start of a step to its middle uses longer
+/// steps, up to `LONG` times; a motion that turns by more than `BENT` does not.
 const STRAIGHT: f64 = 0.01;
 const BENT: f64 = 0.04;
 const LONG: f64 = 2.0;
 
-/// Steps of halves of many facets are halved down to this share of the longest one before what they run into is looked for: to look takes longer.
+/// For halves of many facets, steps are halved down to this share of the longest before the obstacles are
+/// searched: the search takes longer.
 const LOOKING_SHARE: f64 = 1.0 / 16.0;
 
 impl Pace {
@@ -76,7 +79,7 @@ impl Pace {
 }
 
 impl Motion<'_> {
-    /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
+    /// A step from `state`, with its contacts gathered: halved until the height agrees with it.
     pub(super) fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
         let longest = self.settings.step;
         let (mut u, mut length) = self.displacement(state, pace);
@@ -184,7 +187,7 @@ impl Motion<'_> {
         }
     }
 
-    /// The displacement of one step and its length in the ρ-metric, at most `step`.
+    /// The displacement of a step and its length in the ρ-metric, at most `step`.
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
     fn displacement(&mut self, state: &State, pace: &mut Pace) -> (Vector, f64) {
@@ -247,13 +250,14 @@ impl Motion<'_> {
         (u, length)
     }
 
-    /// How far the push reaches at most, in steps.
+    /// Largest factor of the push, in steps.
     fn most_reach(&self) -> f64 {
         if self.settings.friction > 0.0 { MAX_REACH_OF_FRICTION } else { MAX_REACH }
     }
 }
 
-/// Sine of the angle between the lateral parts of two displacements, or 1 where it is obtuse or one of them is none.
+/// Sine of the angle between the lateral parts of two displacements, or 1 if it is obtuse or one of them is
+/// zero.
 fn deflection(a: &Vector, b: &Vector) -> f64 {
     let lateral = |v: &Vector| Vector::map(*v, |x| x);
     let (mut a, mut b) = (lateral(a), lateral(b));

@@ -42,10 +42,10 @@ pub struct Sticking {
     pub wedges_from: Option<f64>,
 }
 
-/// What Coulomb's law leaves open of a motion.
+/// Cases of a motion that Coulomb's law leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FrictionAmbiguity {
-    /// It slipped by a place where some force could hold it as well.
+    /// It passed a place at which it slips although some force could hold it.
     pub may_stick: bool,
     /// It jams, and wedges there: some force would hold it against a pull straight out as well.
     pub wedges: bool,
@@ -53,8 +53,9 @@ pub struct FrictionAmbiguity {
 
 /// To so much the first threshold is found.
 const HOLDS_TO: f64 = 1e-9;
-/// For the second, slips are asked for at these shares of the first, then by so much of the way to where they seem to end, until that is as near as this
-/// share of it: what is left is of second order.
+/// For the slipping threshold, slips are computed at these shares of the first estimate, then at this share
+/// of the distance to their apparent end, until that distance is this share of it: the remainder is of second
+/// order.
 const FIRST: f64 = 0.9;
 const SECOND: f64 = 0.95;
 const SHARE: f64 = 0.7;
@@ -63,7 +64,7 @@ const NEAR: f64 = 2e-3;
 /// So many times the friction at which it slips is hardly more: engines let a half go up to 1.05 times there (`docs/friction.md`).
 pub const HARDLY: f64 = 1.1;
 
-/// From which friction on a half that is lowered at a pose error sticks where it first touches; `None` where it touches nothing.
+/// Sticking thresholds at first contact of a half lowered at a pose error; `None` without contact.
 pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
     // Any friction: what slips is asked for.
     let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
@@ -81,7 +82,7 @@ const OUT: Vector = {
     out
 };
 
-/// What touches, as rows.
+/// The contacts, as rows.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Touching {
     pub(super) rows: Vec<Vector>,
@@ -93,7 +94,8 @@ pub(super) struct Touching {
 }
 
 impl Touching {
-    /// What touches at a place on the way of a motion: contacts that carry by turns lie as far apart there as a step bends.
+    /// Records the contacts at a place of a motion: contacts that carry alternately have gaps as large as the
+    /// bend of a step.
     fn see_on_the_way(&mut self, motion: &Motion, state: &State) {
         let bend = motion.settings.step * motion.settings.step;
         let touches = |contact: &Contact| motion.pair.is_tight() || contact.gap <= bend;
@@ -107,7 +109,7 @@ impl Touching {
         self.see_those(touches, motion, state);
     }
 
-    /// What is no farther apart than `near` counts as touching.
+    /// Features with gaps up to `near` count as contacts.
     pub(super) fn see_within(&mut self, near: f64, motion: &Motion, state: &State) {
         self.see_those(|contact| contact.gap <= near, motion, state);
     }
@@ -123,7 +125,8 @@ impl Touching {
         }
     }
 
-    /// What the contacts do not take of a push: the push less the nearest one that they hold.
+    /// The part of a push that the contacts do not balance: the push minus the nearest force that they can
+    /// balance.
     pub(super) fn unheld(&mut self, push: &Vector, friction: f64) -> Option<Vector> {
         if friction == 0.0 {
             let touching = self.rows.iter().map(|_| 0.0);
@@ -147,7 +150,7 @@ impl Touching {
         self.coulomb.may_stick(&mut self.projection, push, contacts)
     }
 
-    /// From which friction on a push is held, if from one up to `most` on.
+    /// Friction coefficient from which on a push is balanced, if it is at most `most`.
     fn holds_from(&mut self, push: &Vector, most: f64, to: f64) -> Option<f64> {
         self.holds(push, most).then(|| {
             let [mut slips, mut holds] = [0.0, most];
@@ -164,7 +167,7 @@ impl Touching {
         self.holds_from(&OUT, MOST, WAY_HOLDS_TO)
     }
 
-    /// How it slips at a friction, from a slip at less; `None` where it sticks.
+    /// Slip at a friction coefficient, starting from a slip at a smaller one; `None` if the half sticks.
     fn slip(&mut self, friction: f64, from: Option<Vector>) -> Option<Vector> {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
         self.coulomb.begin_at(from);
@@ -181,7 +184,8 @@ impl Touching {
         Sticking { holds_from, slips_until, wedges_from: self.wedges_from() }
     }
 
-    /// Where the speed of the slip falls to nothing, from where no force holds on: by secants, as close to it rounds take long.
+    /// Friction coefficient at which the speed of the slip becomes zero, at least that at which forces can
+    /// hold: by secants, because iterations close to it are slow.
     fn slips_until(&mut self, holds: f64) -> Option<f64> {
         let mut way = None;
         let mut known: Option<[f64; 2]> = None;
@@ -209,17 +213,18 @@ impl Touching {
     }
 }
 
-/// Whether a motion comes by a place where it slips and could as well stick, and what touches where it was seen last.
+/// Whether a motion passes a place at which it slips and could as well stick, and the contacts at the last
+/// place.
 #[derive(Debug, Default)]
 pub(super) struct AmbiguityObserver {
     touching: Touching,
-    /// Whether it may stick where it was seen last: it does not count where that is its end.
+    /// Whether it may stick at the last place: ignored if that is its end.
     here: bool,
     may_stick: bool,
 }
 
 impl AmbiguityObserver {
-    /// What is open of a motion that ended so.
+    /// The open cases of a motion with this outcome.
     pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> FrictionAmbiguity {
         let jams = outcome == Outcome::Jammed && !self.touching.rows.is_empty();
         FrictionAmbiguity { may_stick: self.may_stick, wedges: jams && self.touching.holds(&OUT, friction) }

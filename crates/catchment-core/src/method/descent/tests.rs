@@ -43,7 +43,7 @@ proptest! {
         prop_assert_eq!(end == Outcome::Aligned, x.abs() + y.abs() < 1.0, "{:?}", end);
     }
 
-    /// Rotations locked, the pyramid accepts where its apex is over the socket: |x|, |y| < ½.
+    /// With rotations locked, the pyramid accepts offsets with its apex over the socket: |x|, |y| < ½.
     #[test]
     fn the_pyramid_accepts_its_socket(x in -0.9..0.9f64, y in -0.9..0.9f64) {
         let reach = x.abs().max(y.abs());
@@ -249,8 +249,9 @@ fn walls_are_followed_to_the_end() {
     }
 }
 
-/// Flush on the flank of a flat V the other one's corner comes into its bottom, and the half rests there, as at `(0.4, −53.13°)`; from wherever it slides there.
-/// Both end in the same planes: that the corner passes through the other flank shows on the borders of facets alone.
+/// Flush on the flank of a flat V the corner of the other half enters its bottom, and the half rests there,
+/// at `(0.4, −53.13°)`, from any starting point. Both halves end in the same planes: only the borders of
+/// facets show that the corner passes through the other flank.
 #[test]
 fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
     let mut alignment = Alignment::default_for(Some(Family::VFace));
@@ -285,7 +286,8 @@ fn lathed(halves: [meshes::Triangles; 2]) -> Pair {
     Pair::new(&connector, &alignment)
 }
 
-/// Halves of many facets that dock end in the mated pose itself, by a step like any other, and what touches there is kept.
+/// Halves of many facets that dock end in the mated pose itself, by an ordinary step, and the contacts there
+/// are kept.
 #[test]
 fn a_funnel_ends_in_the_mated_pose() {
     let pair = lathed(meshes::funnel(1000));
@@ -317,7 +319,8 @@ fn a_funnel_ends_in_the_mated_pose() {
     assert!(docked > 6, "{docked}");
 }
 
-/// Where a flat bottom leaves play, what comes near the mated pose rests where it is, and is not taken there; where halves taper, it is.
+/// If a flat bottom leaves play, a half near the mated pose stays at its rest, and is not moved to it; if
+/// halves taper, it is.
 #[test]
 fn only_a_seat_that_leads_home_takes_home() {
     let [socket, plug] = meshes::funnel(1000);
@@ -336,7 +339,8 @@ fn only_a_seat_that_leads_home_takes_home() {
     assert!(rest.error.x > 1e-3, "{rest:?}");
 }
 
-/// Trees change what is looked at, not what comes of it; also among slivers that meet in a tip, where most of what is near does not count.
+/// Trees change the features that are tested, not the results; also for slivers that meet in a tip, at which
+/// most nearby features do not count.
 #[test]
 fn trees_change_no_motion() {
     let pair = lathed(meshes::cone(160));

@@ -24,7 +24,8 @@ fn of(family: Family, aspect_ratio: f64, free: &[Dof]) -> Pair {
     problem.pair().clone()
 }
 
-/// Rotations locked: a half on one facet slides as long as friction is less than the facet's slope, and both thresholds are that.
+/// With rotations locked, a half on a single facet slides while friction is less than the facet's slope, and
+/// both thresholds equal that slope.
 #[test]
 fn on_a_facet_both_thresholds_are_its_slope() {
     let lateral = [Dof::X, Dof::Y];
@@ -87,7 +88,8 @@ fn a_turned_pyramid_has_both_thresholds() {
     }
 }
 
-/// Motions end where friction holds them and not before: docked below the exact threshold, jammed above it, at each of 41 coefficients within 2 % of it.
+/// Motions stick exactly from the threshold on: docked below it, jammed above it, at each of 41 coefficients
+/// within 2 % of it.
 #[test]
 fn motions_stick_from_the_exact_thresholds_on() {
     let yaw = |degrees: f64| PoseError { yaw: degrees.to_radians(), ..PoseError::default() };
@@ -141,9 +143,9 @@ fn a_slope_threshold_ends_motion_on_gentler_slopes() {
     assert!(refusal.contains("NaN is no slope"), "{refusal}");
 }
 
-/// A peg of width d in a hole, askew: its tip on one wall, the rim on its side, `depth` apart along the hole. Whitney's diagram (*Quasi-static assembly of
-/// compliantly supported rigid parts*, 1982): pushed `off` its axis it jams from a friction of depth/(2·off) on, and from depth/d on it
-/// wedges, however it is pushed.
+/// A tilted peg of width d in a hole: its tip on one wall, the rim on its side, `depth` apart along the hole.
+/// Whitney's diagram (*Quasi-static assembly of compliantly supported rigid parts*, 1982): pushed `off` its
+/// axis it jams from a friction of depth/(2·off) on, and from depth/d on it wedges, for any push.
 #[test]
 fn a_peg_jams_and_wedges_as_whitney_says() {
     const WIDTH: f64 = 1.0;
@@ -163,8 +165,9 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
     }
 }
 
-/// The whole of Whitney's diagram: pushed in by 1, aside by `aside` and turned by `turn` about its tip, in radii, a peg of radius r that stands in two points
-/// jams where turn < −λ − μ (1 + λ) aside, λ = l/(2 r μ), and goes on elsewhere; where it wedges nothing moves it.
+/// The whole of Whitney's diagram: pushed in by 1, aside by `aside` and rotated by `turn` about its tip, in
+/// radii, a peg of radius r with two contact points jams if turn < −λ − μ (1 + λ) aside, λ = l/(2 r μ), and
+/// moves if not; a wedged peg does not move.
 #[test]
 fn a_peg_jams_by_the_lines_of_whitneys_diagram() {
     let stream = Stream::new(1982);
@@ -215,7 +218,7 @@ const PEG: f64 = 2.0;
 /// A planar peg and its hole, drawn so that the push goes `off` the axis of both, and the pose error at which it stands in two points.
 fn peg(width: f64, clearance: f64, off: f64, depth: f64) -> (Pair, PoseError) {
     const LONG: f64 = PEG;
-    /// What is left to the wall: less than what touches.
+    /// Remaining distance to the wall: less than the contact tolerance.
     const LEFT: f64 = 1e-10;
     let (half, hole) = (0.5 * width, 0.5 * (width + clearance));
     let block = |[x0, x1]: [f64; 2], [z0, z1]: [f64; 2]| {
@@ -244,7 +247,8 @@ fn peg(width: f64, clearance: f64, off: f64, depth: f64) -> (Pair, PoseError) {
     (problem.pair().clone(), error)
 }
 
-/// Between the thresholds of a valley a half slips and might stick; below both it slips, above both it sticks: no doubt.
+/// Between the thresholds of a valley a half slips and might stick; below both it slips, above both it
+/// sticks: no open case.
 #[test]
 fn between_the_thresholds_a_motion_is_in_doubt() {
     let pair = of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]);
@@ -257,8 +261,8 @@ fn between_the_thresholds_a_motion_is_in_doubt() {
     }
 }
 
-/// Two facets that face each other, by 45° each, hold a half however it is pushed where the cones about their normals hold the line between them: from 1 on.
-/// One alone never does.
+/// Two facets that face each other, by 45° each, hold a half against any push if the cones about their
+/// normals contain the line between them: from 1 on. A single facet never does.
 #[test]
 fn facing_facets_wedge_from_their_angle_on() {
     let valley = of(Family::VFace, 0.5, &[Dof::X]);
@@ -285,7 +289,7 @@ fn random(count: u64) -> Domain {
     Domain::Poses((0..count).map(pose).collect())
 }
 
-/// Half the step changes at most one outcome in a hundred, and threads none.
+/// Half the step changes at most one outcome in a hundred, and the number of threads changes none.
 #[test]
 fn neither_steps_nor_threads_change_outcomes() {
     let [face, pyramid] = [Family::XFace3d, Family::Pyramid]

@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 use std::path::Path;
 
-/// A load of 10⁻⁷ of the push that is not held counts as none.
+/// A load of 10⁻⁷ of the push that is not balanced counts as zero.
 const EXACT: f64 = 2e-6;
 
 fn pair(connector: &str, free: &str) -> Pair {
@@ -52,7 +52,7 @@ fn the_spatial_x_face_takes_its_aspect_ratio() {
     }
 }
 
-/// A lip with draft δ takes cot δ instead of its aspect ratio, and an upright one anything.
+/// A lip with draft δ resists cot δ instead of its aspect ratio, and an upright lip any load.
 #[test]
 fn a_lip_takes_the_cotangent_of_its_draft() {
     for draft in [0.1f64, 0.3] {
@@ -69,7 +69,7 @@ fn a_lip_takes_the_cotangent_of_its_draft() {
     assert!(before < 1.0 && behind == f64::INFINITY, "{before} {behind}");
 }
 
-/// On one flank of slope α a force climbs at tan(α + φ), and where that is a right angle at none.
+/// On a single flank of slope α a force climbs at tan(α + φ), and never if that is a right angle.
 #[test]
 fn a_flank_with_friction_takes_the_tangent_of_both_angles() {
     let pair = pair("family = \"v-face\"\naspect_ratio = 0.6", "\"x\"");
@@ -104,7 +104,8 @@ fn a_plate_slides_at_its_friction_and_tips_over_its_edge() {
     assert!((found - 0.5 * SQRT_2).abs() < EXACT, "{found}");
 }
 
-/// No motion that the contacts allow lifts by less per way of the load than the half withstands, and some lifts hardly more.
+/// No motion that the contacts permit lifts by less per displacement along the load than the holding force,
+/// and some motions lift hardly more.
 #[test]
 fn the_least_lift_of_all_motions_is_what_it_withstands() {
     const TRIED: u64 = 200_000;

@@ -9,7 +9,7 @@ use crate::pose::{Dof, DofSet, Mount, PoseError};
 
 const RHO: f64 = 0.5;
 
-/// Corners of a profile in x and z, one D deep along y.
+/// Corners of a profile in x and z, 1 D deep along y.
 fn prism(profile: &[[f64; 2]]) -> Vec<[f64; 3]> {
     profile.iter().flat_map(|[x, z]| [[*x, -0.5, *z], [*x, 0.5, *z]]).collect()
 }
@@ -69,8 +69,9 @@ fn a_plate_on_two_fingers_stands_with_its_weight_above() {
     }
 }
 
-/// A wedge of half-angle β, apex down, between two fingers 2a apart: its apex moves on a circle of radius R = a/sin 2β by twice its turn, so that a weight at L
-/// above it is at −R cos 2θ + L cos θ, and turns about the point where both normals meet, 2R above the apex.
+/// A wedge of half-angle β, apex down, between two fingers 2a apart: its apex moves on a circle of radius R =
+/// a/sin 2β by twice its rotation, so that a weight at L above it is at −R cos 2θ + L cos θ, and rotates
+/// about the intersection of both normals, 2R above the apex.
 #[test]
 fn a_wedge_between_two_fingers_stands_below_four_radii() {
     let (a, beta) = (0.2f64, 50f64.to_radians());

@@ -13,12 +13,12 @@ pub struct Touch {
     #[serde(rename = "point_d")]
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub point: DVec3,
-    /// Unit normal, from the fixed half to the moving one.
+    /// Contact normal: unit vector from the fixed half to the moving half.
     #[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))]
     pub normal: DVec3,
 }
 
-/// One moment of a motion.
+/// A waypoint of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waypoint {
     /// The pose error.
@@ -27,11 +27,11 @@ pub struct Waypoint {
     pub height: f64,
     /// Path length travelled since first contact, in the ρ-metric, in D.
     pub travelled: f64,
-    /// What touches.
+    /// The contacts.
     pub touches: Vec<Touch>,
 }
 
-/// The motion of one pose from first contact to its end.
+/// The motion of a pose from first contact to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// From first contact on; empty when the halves never meet.

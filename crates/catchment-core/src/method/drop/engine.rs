@@ -50,7 +50,7 @@ pub(super) struct Engine<'a> {
     turning: Turning,
 }
 
-/// Steps between two looks at the cancel flag and at whether the half has come to rest.
+/// Steps between two checks of the cancel flag and of the state of rest.
 const WINDOW: usize = 64;
 /// Windows in a row in which a half at rest does not move.
 const WINDOWS: u32 = 2;
@@ -59,8 +59,9 @@ const SETTLED: u32 = 10;
 /// Springs give way by so much, in D, as they do in the seat.
 pub(super) const SUNK: f64 = 2e-3;
 
-/// How contacts are solved. They are springs that take away a part of an overlap per step: this one, in steps per cycle and
-/// critically damped, leaves 10⁻³ D where the half pushes by 0.005 D per step, and does not ring.
+/// Parameters of the contact solver. Contacts are springs that remove a part of an overlap per step: this
+/// setting, in steps per cycle and critically damped, leaves 10⁻³ D if the half pushes by 0.005 D per step,
+/// and does not oscillate.
 const STEPS_PER_CYCLE: f64 = 4.0;
 const CONTACT_DAMPING: f64 = 2.0;
 /// Sweeps over all contacts per step, with and without the push that takes overlaps away.
@@ -96,7 +97,7 @@ impl<'a> Engine<'a> {
         self.watch(error, exec, &mut |_, _| {})
     }
 
-    /// The same; `seen` is told how the half lies where it is let go, as step 0, and after every step.
+    /// The same; `seen` receives the state of the half at its release, as step 0, and after every step.
     pub(super) fn watch(
         &self,
         error: &PoseError,
@@ -183,8 +184,8 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Whether a translation locked at the centre of mass, as the engine does it, is locked at the COR: no free rotation may move the
-/// one against the other along it.
+/// Whether a translation locked at the centre of mass, as in the engine, is also locked at the COR: no free
+/// rotation may move the two relative to each other along it.
 pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
     let turns: Vec<Dof> = free.iter().filter(|dof| dof.is_rotation()).collect();
     let beside = center.truncate().length() > CENTERED;
@@ -199,7 +200,7 @@ pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
     center.length() <= CENTERED || holds(Dof::X, Dof::Roll) && holds(Dof::Y, Dof::Pitch)
 }
 
-/// Places this close to each other, in D, are one: a centre of mass and the COR, contacts of two pieces.
+/// Positions this close to each other, in D, are equal: a centre of mass and the COR, contacts of two pieces.
 const CENTERED: f64 = 1e-9;
 
 /// z of the lowest corner of a turned half, in D.
@@ -228,11 +229,11 @@ pub(super) struct Fall<'a> {
     engine: &'a Engine<'a>,
     world: PhysicsWorld,
     half: RigidBodyHandle,
-    /// The fixed half, where it has to be held.
+    /// The fixed half, if it must be held.
     held: Option<RigidBodyHandle>,
 }
 
-/// Weight of a held fixed half, as a multiple of the moving one's.
+/// Weight of a held fixed half, as a multiple of that of the moving half.
 const HEAVY: f64 = 1e6;
 
 impl<'a> Fall<'a> {
@@ -317,7 +318,7 @@ impl<'a> Fall<'a> {
         self.world.narrow_phase.contact_pairs().any(ContactPair::has_any_active_contact)
     }
 
-    /// Where the halves touch, in the world, with unit normals towards the moving half; the ground counts as fixed.
+    /// The contacts, in the world, with unit normals towards the moving half; the ground counts as fixed.
     pub(super) fn contacts(&self) -> Vec<Touch> {
         let mut found: Vec<Touch> = Vec::new();
         for pair in self.world.narrow_phase.contact_pairs() {
@@ -386,8 +387,8 @@ impl<'a> Fall<'a> {
 }
 
 impl Engine<'_> {
-    /// Velocity of the centre of the damped body and its rate of turning, as the half is let go with this rotation: those of the COR and
-    /// of the free hinges.
+    /// Velocity of the centre of the damped body and its rate of rotation, at the release of the half with
+    /// this rotation: from those of the COR and of the free hinges.
     fn launch(&self, rotation: &DMat3) -> (DVec3, DVec3) {
         let Launch { speed, drift: [x, y], spin } = self.settings.launch;
         let free = |dof, rate: f64| if self.pair.alignment.free.contains(dof) { rate } else { 0.0 };
@@ -398,7 +399,7 @@ impl Engine<'_> {
         (cor + turning.cross(*rotation * self.damped.center), turning)
     }
 
-    /// What the engine moves at this rotation.
+    /// Mass properties for the engine at this rotation.
     fn mass_properties(&self, rotation: &DMat3) -> MassProperties {
         let damped = &self.damped;
         if self.turning.is_spherical() {

@@ -16,10 +16,11 @@ use crate::connector::Surface;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// How far corners may lie from the plane of their facet, or from the line between their neighbours, in D: a hundredth of what the contacts of the engine give way.
+/// Largest distance of corners from the plane of their facet, or from the line between their neighbours, in
+/// D: a hundredth of the compliance of the engine's contacts.
 const FLAT: f64 = 1e-5;
 
-/// A convex surface with coplanar facets joined; as it is where there are none.
+/// A convex surface with coplanar facets merged; unchanged if it has none.
 pub(super) fn joined(surface: &Surface) -> Surface {
     let facets: Vec<Vec<u32>> = surface.facets.iter().map(|facet| facet.corners.clone()).collect();
     let count = facets.len();
@@ -81,7 +82,7 @@ fn sides(face: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]])
 }
 
-/// Two faces joined along a side of the first; `None` where they lie in two planes or are not convex together.
+/// Two faces merged along a side of the first; `None` if they are not coplanar or not convex together.
 fn union(vertices: &[DVec3], face: &[u32], other: &[u32], [a, b]: [u32; 2]) -> Option<Vec<u32>> {
     let from = |face: &[u32], corner: u32| -> Option<Vec<u32>> {
         let first = face.iter().position(|c| *c == corner)?;

@@ -27,7 +27,7 @@ pub(super) struct Mass {
 }
 
 impl Mass {
-    /// What the settings say of the moving half, given from the COR.
+    /// Mass properties of the moving half by the settings, relative to the COR.
     pub(super) fn of(moving: &Half, settings: &DropSettings, alignment: &Alignment) -> Self {
         let mass = match settings.body {
             MassProperties::Given { mass, gyration, center } => {
@@ -62,7 +62,7 @@ impl Mass {
         Self { weight: mass, center, inertia: isotropic(trace) - about }
     }
 
-    /// The body that an implicit step of `settings.timestep` moves: this one with its damping.
+    /// The body that an implicit step of `settings.timestep` moves: this body with its damping.
     pub(super) fn damped(&self, settings: &DropSettings, rotation_length: f64) -> Self {
         let impulse = settings.timestep * self.weight;
         let at_cor = Self {

@@ -66,7 +66,7 @@ pub enum DropError {
     /// The engine does not take the geometry.
     #[error("the engine does not take this geometry: {reason}")]
     Shape {
-        /// What it says.
+        /// The reason.
         reason: String,
     },
     /// A translation is locked at the COR, but the centre of mass swings about it.
@@ -75,13 +75,13 @@ pub enum DropError {
          free: give a mass at the centre of rotation, or free the translation"
     )]
     OffCenter {
-        /// Where the centre of mass lies, from the COR, in D.
+        /// The centre of mass, relative to the COR, in D.
         center: DVec3,
     },
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -90,11 +90,11 @@ pub enum DropError {
 /// are put together.
 const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 
-/// Drops every pose of a domain, in parallel; the ends are in the order of the domain. The end of a pose is that of its first
-/// trial that agrees with the verdict.
+/// Drops every pose of a domain, in parallel; the ends are in the order of the domain. The end of a pose is
+/// that of its first trial with the majority outcome.
 ///
 /// # Errors
-/// See [`DropError`]. A stop is looked for every 64 time steps.
+/// See [`DropError`]. Cancellation is checked every 64 time steps.
 pub fn run(
     pair: &Pair,
     domain: Domain,
@@ -104,7 +104,7 @@ pub fn run(
     run_told(pair, domain, settings, exec, &|_, _| {})
 }
 
-/// The same; `finished` is told of every pose as soon as it is decided.
+/// The same; `finished` is called for every pose as soon as it is decided.
 fn run_told(
     pair: &Pair,
     domain: Domain,
@@ -146,7 +146,7 @@ fn run_told(
     Ok((Acceptance { method: "drop", domain, outcomes, warnings }, ends))
 }
 
-/// Drops one pose until its verdict cannot change.
+/// Drops a pose until its majority outcome cannot change.
 fn decide(
     engine: &Engine,
     pair: &Pair,
@@ -165,8 +165,8 @@ fn decide(
     Ok(verdict(&ends))
 }
 
-/// The first end with the outcome that more than half of them have, or else of those that are not aligned the most frequent
-/// one, the first among equals.
+/// The first end with the outcome of more than half of them, or else with the most frequent outcome among
+/// those that failed, the first among equals.
 fn verdict(ends: &[End]) -> End {
     let votes = |outcome: Outcome| ends.iter().filter(|e| e.outcome == outcome).count();
     let majority = ends.iter().find(|e| 2 * votes(e.outcome) > ends.len());
@@ -175,7 +175,7 @@ fn verdict(ends: &[End]) -> End {
     majority.or(most).copied().unwrap_or(missing)
 }
 
-/// Halves that trials of any settings are made with: what the engine needs of them is prepared once.
+/// Halves for trials with any settings: the data for the engine is prepared once.
 pub struct Bench<'a> {
     pair: &'a Pair,
     shapes: Shapes,
@@ -190,10 +190,10 @@ impl<'a> Bench<'a> {
         Ok(Self { pair, shapes: Shapes::of(pair)? })
     }
 
-    /// One trial with these settings, which starts where `error` says and nowhere else: nothing is perturbed.
+    /// A trial with these settings, started exactly at `error`, without perturbation.
     ///
     /// # Errors
-    /// See [`DropError`]. A stop is looked for every 64 time steps.
+    /// See [`DropError`]. Cancellation is checked every 64 time steps.
     pub fn fall(&self, error: &PoseError, settings: &DropSettings, exec: &Exec) -> Result<End, DropError> {
         Ok(Engine::new(self.pair, &self.shapes, settings)?.fall(error, exec)?)
     }
@@ -212,9 +212,9 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the free errors of the
-/// pose and the number of the trial alone. Neither the place of the pose in a list nor a locked offset, which the lock decides,
-/// changes it.
+/// Start of a trial: uniform within the perturbation around the pose, and a function only of the seed, the
+/// free errors of the pose and the number of the trial. The position of the pose in a list and locked offsets
+/// have no effect.
 fn perturbed(pair: &Pair, settings: &DropSettings, error: &PoseError, trial: u32) -> PoseError {
     let free = pair.alignment.free;
     let mut start = error.to_array();

@@ -15,26 +15,26 @@ use crate::method::descent::{Touch, Trajectory, Waypoint};
 use crate::pose::PoseError;
 use glam::{DMat3, DVec3};
 
-/// The way of one trial.
+/// Record of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
-    /// From where it was let go to its end; empty where the halves pass each other by.
+    /// From the release to the end; empty if the halves pass each other by.
     pub moments: Vec<DropMoment>,
     /// How it ended.
     pub outcome: Outcome,
 }
 
-/// One moment of a trial.
+/// A waypoint of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DropMoment {
-    /// Since it was let go, in s.
+    /// Time since release, in s.
     pub time: f64,
-    /// Where it is.
+    /// Position and contacts.
     pub waypoint: Waypoint,
 }
 
 impl Path {
-    /// The same without times: from where it was let go.
+    /// The same without times: from the release on.
     pub fn trajectory(&self) -> Trajectory {
         let waypoints = self.moments.iter().map(|moment| moment.waypoint.clone()).collect();
         Trajectory { waypoints, outcome: self.outcome }
@@ -44,7 +44,7 @@ impl Path {
 /// Way between two moments that are kept, in D: a hundred of them to a face.
 const STEP: f64 = 0.01;
 
-/// Follows one trial and keeps its way.
+/// Follows a trial and records it.
 pub(super) fn trace(engine: &Engine<'_>, error: &PoseError, exec: &Exec) -> Result<Path, Cancelled> {
     let mut moments: Vec<DropMoment> = Vec::new();
     let mut travelled = 0.0;

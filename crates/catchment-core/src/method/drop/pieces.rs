@@ -28,7 +28,7 @@ pub(super) enum Part {
 /// Half of the last place of a single-precision number, as meshes are stored in, relative to it.
 const SINGLE: f64 = 1.0 / (1 << 24) as f64;
 
-/// How far rounding has moved the corners of a surface at most, in D.
+/// Largest displacement of the corners of a surface by rounding, in D.
 fn rounding(surface: &Surface) -> f64 {
     // Moving a half to its face centre takes coordinates near 1 to others.
     surface.vertices.iter().fold(1.0, |size: f64, p| size.max(p.abs().max_element())) * SINGLE
@@ -46,8 +46,9 @@ fn is_wall(corners: &[DVec3], rounding: f64) -> bool {
 
 /// The parts of a half, in its own axes.
 ///
-/// Of the surface that pieces make together, as long as that is convex or columns: where pieces are stacked, the top of the lower one is
-/// a step inside the solid, on which an engine jams what slides past it.
+/// They are parts of the united surface of all pieces, if that is convex or a set of columns: for stacked
+/// pieces, the top of the lower piece would be a step inside the solid, on which sliding bodies jam in an
+/// engine.
 pub(super) fn parts(half: &Half) -> Vec<Part> {
     let whole: Option<Vec<Vec<Surface>>> = half.surfaces.iter().map(convex_parts).collect();
     if let Some(parts) = whole {
@@ -74,7 +75,7 @@ fn convex_parts(surface: &Surface) -> Option<Vec<Surface>> {
     })
 }
 
-/// The columns under the facets that face +z; `None` where some facet facing −z is not at the bottom.
+/// The columns under the facets that face +z; `None` if some facet that faces −z is not at the bottom.
 fn columns(surface: &Surface) -> Option<Vec<Surface>> {
     let floor = surface.bounds().0.z;
     let rounding = rounding(surface);

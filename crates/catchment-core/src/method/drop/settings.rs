@@ -130,11 +130,11 @@ impl Default for DropSettings {
 pub struct Preset {
     /// How it is called.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub summary: &'static str,
     /// The settings.
     pub settings: fn() -> DropSettings,
-    /// What its source leaves open, and what stands here instead.
+    /// Values that its source leaves open, and the values used here instead.
     pub unknown: &'static [&'static str],
 }
 
@@ -158,15 +158,18 @@ pub const PRESETS: [Preset; 1] = [Preset {
 impl DropSettings {
     /// The drop tests of the dissertation, sections 4.2.1 and 4.2.2, as far as they are stated.
     ///
-    /// Stated: g = 9000 m/s² through the solid's centre of mass; all velocities lose 0.99 of themselves per step; no friction, no bounce; one
-    /// half on a ground plane; failed where the face centres are more than a width apart; the majority of three trials.
+    /// Stated: g = 9000 m/s² through the solid's centre of mass; all velocities lose 0.99 of themselves per
+    /// step; no friction, no bounce; one half on a ground plane; failed if the face centres are more than a
+    /// width apart; the majority of three trials.
     ///
-    /// Our reading: D = 65.5 mm, the prototypes' face: it scales time alone. The decay is a force, 99 per step and mass, taken implicitly, so contacts push
-    /// in the metric of friction with ρ of the design, where ODE pushes in that of inertia and scales velocities afterwards. A uniform solid.
-    /// The lower half is held: whether it could slide on its ground is not said.
+    /// Our reading: D = 65.5 mm, the prototypes' face: it only scales time. The decay is a force, 99 per step
+    /// and mass, taken implicitly, so contacts push in the metric of friction with ρ of the design, whereas
+    /// ODE pushes in that of inertia and scales velocities afterwards. A uniform solid. The lower half is
+    /// held: the source does not state whether it could slide on its ground.
     ///
-    /// Unknown: time step (here Gazebo's default), range of the slices, the back of the part (its mass and what hits the ground), the
-    /// threshold below which a distance counts as aligned (here our seat), the height it falls from, how long is "unusually long".
+    /// Unknown: time step (here Gazebo's default), range of the slices, the back of the part (its mass and
+    /// its contact with the ground), the threshold below which a distance counts as aligned (here our seat),
+    /// the drop height, the duration that is "unusually long".
     pub fn gazebo_2014() -> Self {
         /// m/s².
         const GRAVITY: f64 = 9000.0;
@@ -195,18 +198,19 @@ pub struct SettingError {
     pub name: &'static str,
     /// Its value.
     pub value: f64,
-    /// What it may be.
+    /// The permitted values.
     pub advice: &'static str,
 }
 
-/// Most steps of one trial: an hour of computing, not a hang.
+/// Largest number of steps of a trial: an hour of computing, not a hang.
 const MOST_STEPS: f64 = 1e8;
 
-/// Most trials per pose: a share of 1 % apart from one half shows in as many, and more would take minutes per pose.
+/// Largest number of trials per pose: sufficient to distinguish a share from one half by 1 %; more would take
+/// minutes per pose.
 const MOST_TRIALS: u32 = 9_999;
 
 impl DropSettings {
-    /// Refuses what no trial can be made with.
+    /// Rejects settings with which no trial is possible.
     ///
     /// # Errors
     /// The first setting that is out of its range.
@@ -275,7 +279,7 @@ impl DropSettings {
         Ok(())
     }
 
-    /// The preset that these settings come from, as far as what it sets is unchanged.
+    /// The preset from which these settings come, if the values that it sets are unchanged.
     pub fn preset(&self) -> Option<&'static Preset> {
         PRESETS.iter().find(|preset| {
             let of = (preset.settings)();
@@ -283,7 +287,7 @@ impl DropSettings {
         })
     }
 
-    /// Steps of one trial, at most.
+    /// Largest number of steps of a trial.
     pub(super) fn steps(&self) -> usize {
         (self.timeout / self.timestep).ceil() as usize
     }

@@ -28,7 +28,7 @@ fn outcomes(pair: &Pair, poses: Vec<PoseError>, settings: &DropSettings) -> Vec<
     run(pair, Domain::Poses(poses), settings, &Exec::new()).unwrap().0.outcomes
 }
 
-/// How far inside the closed form an offset lies.
+/// Distance of an offset inside the border of the closed form.
 type Margin = fn(f64, f64) -> f64;
 
 #[test]
@@ -199,8 +199,8 @@ fn settings_survive_json_and_refuse_what_they_do_not_know() {
     assert!(serde_json::from_str::<DropSettings>("{\"fricton\": 0.1}").is_err());
 }
 
-/// A tip beside its notch slides off outwards, until its base clears the peak at x = 1: past the notch into nothing, or onto the ground that
-/// the notch stands on, where its apex comes to rest.
+/// A tip beside its notch slides off outwards, until its base clears the peak at x = 1: past the notch into
+/// free space, or onto the ground of the notch, on which its apex comes to rest.
 #[test]
 fn what_slides_off_comes_to_rest_on_the_ground() {
     let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
@@ -321,7 +321,7 @@ fn a_frozen_rotation_leaves_the_region_of_sliding() {
     assert_eq!(free, [Outcome::Aligned]);
 }
 
-/// Figure 4.5: a half that rests on the other one and on the ground that this one stands on.
+/// Figure 4.5: a half that rests on the other half and on the ground on which the other half stands.
 #[test]
 fn a_half_rests_on_the_other_and_on_the_ground() {
     let alignment = Alignment { center_of_rotation: 0.5, ..Alignment::default_for(Some(Family::XFace3d)) };

@@ -31,12 +31,12 @@ impl Turning {
         self.free == [true; 3]
     }
 
-    /// Whether the hinges are not where they were once the half has turned.
+    /// Whether the hinges move when the half rotates.
     pub(super) fn hinges_move(self) -> bool {
         self.free.iter().filter(|free| **free).count() == 2
     }
 
-    /// (roll, pitch, yaw) of a rotation that the free hinges can make, or nearly; locked ones are 0.
+    /// (roll, pitch, yaw) of a rotation that the free hinges can make, or nearly; locked angles are 0.
     pub(super) fn angles(self, r: &DMat3) -> [f64; 3] {
         let [x, y, z] = [r.x_axis, r.y_axis, r.z_axis];
         match self.free {

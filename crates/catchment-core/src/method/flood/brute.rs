@@ -1,10 +1,10 @@
 //! Basins and their tree by definition, in plain loops: the reference for the fast path. For small grids
 //! only, since most steps visit every cell.
 
-/// Minimum cell, its height and its depth, in the order of the cells: cell after cell from the lowest on, united with
-/// those neighbours that are there already. Where two bodies of water meet, the one with the higher minimum (the
-/// later in memory among equals) ends; if it was no higher than the water, it was no minimum. Cells of height −∞ are
-/// one body.
+/// Minimum cell, its height and its depth, in the order of the cells: cell after cell from the lowest on,
+/// united with the neighbours that are already present. If two bodies of water meet, the body with the higher
+/// minimum (the later in memory among equals) ends; if that minimum was no higher than the water, it was not
+/// a minimum. Cells of height −∞ form a single body.
 pub fn tree(shape: &[usize], heights: &[f32]) -> Vec<(usize, f64, f64)> {
     let mut order: Vec<usize> = (0..heights.len()).collect();
     // The order of memory stays among equals; −0 and 0 are the same height.
@@ -41,9 +41,9 @@ pub fn tree(shape: &[usize], heights: &[f32]) -> Vec<(usize, f64, f64)> {
     found
 }
 
-/// The minimum that every cell drains to, by its lowest neighbours. Cells without a lower neighbour lead to the
-/// nearest equal one that drains, the first in memory among several; a plateau where none does is a minimum and
-/// known by its first cell, cells of height −∞ by the first of them.
+/// The minimum to which every cell drains, by its lowest neighbours. Cells without a lower neighbour lead to
+/// the nearest equal cell that drains, the first in memory among several; a plateau without such a cell is a
+/// minimum and represented by its first cell, cells of height −∞ by the first of them.
 pub fn basins(shape: &[usize], heights: &[f32]) -> Vec<usize> {
     let near: Vec<Vec<usize>> = (0..heights.len()).map(|cell| neighbours(shape, cell)).collect();
     let outside = |cell: &usize| heights[*cell] == f32::NEG_INFINITY;

@@ -43,9 +43,9 @@ pub(super) struct Basins {
     pub(super) outside: Option<u32>,
 }
 
-/// How many cells are worked on between two looks at the cancel flag.
+/// Number of cells between two checks of the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 16;
-/// The same for flat cells, all of whose neighbours are looked at.
+/// The same for flat cells, all of whose neighbours are visited.
 const FLATS_PER_CHECK: usize = 1 << 12;
 
 /// Drains every cell of a grid of this shape.
@@ -128,7 +128,7 @@ fn lowest(slabs: &Slabs, heights: &[f32], ways: &mut [AtomicU32], exec: &Exec) -
     })
 }
 
-/// What a cell of this height does beside the least word of its block.
+/// The link of a cell of this height, given the smallest word of its block.
 fn way_down(height: f32, least: u64) -> u32 {
     if height == f32::NEG_INFINITY {
         OUTSIDE

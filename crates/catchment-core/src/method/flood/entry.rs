@@ -27,7 +27,7 @@ const STEEPEST: Info = Info {
 /// The line of [`DrainageRule::Lowest`] in the registry.
 pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<FloodSettings>(&LOWEST);
 
-/// The line of [`DrainageRule::Steepest`], which is the rule where none is named.
+/// The registry line of [`Rule::Steepest`], which is the default rule.
 pub(in crate::method) const ENTRY_STEEPEST: RegistryEntry = RegistryEntry::by(&STEEPEST, |value| {
     let named = value.get("rule").is_some();
     let settings: FloodSettings = serde_json::from_value(value)?;

@@ -119,10 +119,10 @@ pub enum FloodError {
     /// The tolerance is no depth.
     #[error("a depth tolerance of {depth} is no depth; give a length of at least 0")]
     Tolerance {
-        /// What was given, in D.
+        /// The given value, in D.
         depth: f64,
     },
-    /// More cells than a basin number can tell apart.
+    /// More cells than a basin number can distinguish.
     #[error("{cells} cells are more than flooding can number ({LABEL_LIMIT}); lower the resolution")]
     TooManyCells {
         /// How many.
@@ -144,7 +144,7 @@ pub enum FloodError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -180,7 +180,7 @@ pub struct Flooding {
     pub watersheds: Watersheds,
 }
 
-/// The basins of a landscape, at one tolerance and at all of them.
+/// The basins of a landscape, at a given tolerance and at all tolerances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hierarchy {
     /// The basins after merging, those with the most cells first.
@@ -218,10 +218,11 @@ pub fn docks<'a>(pair: &'a Pair, grid: &'a Grid) -> impl Fn(usize) -> bool + 'a 
     }
 }
 
-/// Floods a landscape; `docks` says of the lowest cell around the mated pose whether it leads there, see [`docks`].
+/// Floods a landscape; `docks` decides for the lowest cell around the mated pose whether it leads there, see
+/// [`docks`].
 ///
 /// # Errors
-/// When the tolerance is no depth, the landscape is too large, or the computation is cancelled.
+/// If the tolerance is not a depth, the landscape is too large, or the computation is cancelled.
 pub fn flood(
     landscape: &Landscape,
     alignment: &Alignment,
@@ -252,7 +253,8 @@ pub fn flood(
     Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase }, watersheds })
 }
 
-/// Every cell's basin before merging, and the tree of the basins. Minima that hold one of the `targets` are one.
+/// Every cell's basin before merging, and the tree of the basins. Minima that contain one of the `targets`
+/// are merged.
 fn divide(
     shape: &[usize],
     heights: &[f32],
@@ -288,8 +290,8 @@ fn divide(
     Ok((drained.labels, tree))
 }
 
-/// Bytes per cell that flooding needs beside the heights: the number of its basin and its outcome. What it needs
-/// per basin is checked once their number is known.
+/// Bytes per cell that flooding needs besides the heights: the number of its basin and its outcome. The
+/// memory per basin is checked once their number is known.
 const BYTES_PER_CELL: u64 = (size_of::<u32>() + size_of::<Outcome>()) as u64;
 
 /// Bytes that flooding `cells` cells needs, heights included.

@@ -7,9 +7,9 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, Landscape};
 use rayon::prelude::*;
 
-/// How many cells are worked on between two looks at the cancel flag.
+/// Number of cells between two checks of the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 16;
-/// Level ground this far above the seat is none of it, in D.
+/// Level ground this far above the seat does not belong to it, in D.
 const ABOVE: f32 = 0.01;
 /// A share of level ground among accepted cells that is worth a word: below it chance makes neighbours equal.
 const LEVEL_SHARE: f64 = 1e-3;
@@ -73,8 +73,8 @@ pub(super) fn verdict(
     Ok((Acceptance { method: "flood", domain: Domain::Grid(grid.clone()), outcomes, warnings }, basins))
 }
 
-/// The number of the basin that gathers at the mated pose: the one that holds the lowest cell around it, unless that does not dock, or
-/// has joined a basin which gathers lower than the tolerance can explain.
+/// The number of the basin that drains to the mated pose: the basin with the lowest cell around it, unless
+/// that cell does not dock, or the basin has joined a basin lower than the tolerance can explain.
 fn target_basin(
     heights: &[f32],
     targets: &[usize],
@@ -100,7 +100,8 @@ fn cells(tree: &MergeTree, into: &[u32]) -> Vec<usize> {
     cells
 }
 
-/// How far the water must rise in every merged basin to run over into another: over the lowest of the tree's passes.
+/// Height that the water must rise in every merged basin to overflow into another: over the lowest of the
+/// tree's passes.
 fn escapes(tree: &MergeTree, into: &[u32]) -> Vec<f64> {
     let mut escapes = vec![f64::INFINITY; into.len()];
     for link in &tree.links {
@@ -114,8 +115,9 @@ fn escapes(tree: &MergeTree, into: &[u32]) -> Vec<f64> {
     escapes
 }
 
-/// The outcome of a basin that is neither the mated one nor the outside, by where its minimum lies, and whether that is
-/// on a border: missed at one of a translation, jammed at one of a rotation and anywhere else.
+/// The outcome of a basin that is neither the mated basin nor the outside, by the position of its minimum,
+/// and whether that is on a border: missed at a border of a translation, jammed at a border of a rotation and
+/// anywhere else.
 pub(super) fn elsewhere(grid: &Grid, minimum: usize) -> (Outcome, bool) {
     let (translation, rotation) = on_border(grid, minimum);
     (if translation { Outcome::Missed } else { Outcome::Jammed }, translation || rotation)
@@ -133,7 +135,7 @@ fn on_border(grid: &Grid, index: usize) -> (bool, bool) {
     (at(false), at(true))
 }
 
-/// What a reader must know; `border_cells` drain to a minimum on the border.
+/// The warnings; `border_cells` drain to a minimum on the border.
 pub(super) fn warnings(
     landscape: &Landscape,
     outcomes: &[Outcome],

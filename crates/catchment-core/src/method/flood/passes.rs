@@ -27,7 +27,7 @@ pub(super) struct Pass {
     pub(super) level: u32,
     /// The basin of the smaller number.
     pub(super) a: u32,
-    /// The other one.
+    /// The other basin.
     pub(super) b: u32,
 }
 
@@ -88,7 +88,7 @@ struct PassTable {
 
 /// A power of two; a table of these passes stays in the nearest cache.
 const LATELY: usize = 1 << 11;
-/// How many passes per basin are held before they are thinned to one, and how many at least.
+/// Number of passes per basin that are held before they are reduced to one, and the minimum number.
 const ROOM: usize = 4;
 const LEAST_ROOM: usize = 1 << 14;
 /// No pass.

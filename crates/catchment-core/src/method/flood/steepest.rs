@@ -23,7 +23,7 @@ pub(super) struct Metric<'a> {
     pub(super) alignment: &'a Alignment,
 }
 
-/// A step to one neighbour.
+/// A step to a neighbour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Step {
     /// Added to the index of the cell.
@@ -35,7 +35,7 @@ struct Step {
 }
 
 impl Metric<'_> {
-    /// The way down from every cell: the first in memory among equally steep ones.
+    /// The downhill link of every cell: the first in memory among equally steep links.
     pub(super) fn steepest(
         &self,
         heights: &[f32],
@@ -74,7 +74,7 @@ impl Metric<'_> {
         })
     }
 
-    /// Cells along x and y; 1 where an axis is not sampled.
+    /// Cells along x and y; 1 for an axis that is not sampled.
     fn lateral_cells(&self) -> [usize; 2] {
         [Dof::X, Dof::Y].map(|dof| self.grid.axis(dof).map_or(1, |axis| axis.cells))
     }

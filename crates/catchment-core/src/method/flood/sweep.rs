@@ -42,7 +42,7 @@ pub(super) const fn number_of(word: u64) -> u32 {
     word as u32
 }
 
-/// A grid as slabs along its last axis. Axes of one cell, along which nothing has a neighbour, are left out.
+/// A grid as slabs along its last axis. Axes of a single cell, which have no neighbours, are removed.
 pub(super) struct Slabs {
     /// Cells along every axis of a slab, the first running fastest.
     axes: Vec<usize>,
@@ -52,7 +52,7 @@ pub(super) struct Slabs {
     pub(super) count: usize,
 }
 
-/// Slabs that a run holds at once: one, the next, and what the one before left.
+/// Slabs that a run holds at once: the current slab, the next, and the remainder of the previous slab.
 const HELD: usize = 3;
 
 impl Slabs {
@@ -62,7 +62,7 @@ impl Slabs {
         Self { len: axes.iter().product(), axes, count }
     }
 
-    /// Runs of neighbouring slabs, one per thread. No result depends on where they are cut.
+    /// Runs of neighbouring slabs, a run per thread. No result depends on the division.
     pub(super) fn runs(&self, exec: &Exec) -> Vec<Range<usize>> {
         let runs = exec.threads().clamp(1, self.count.max(1));
         (0..runs).map(|k| k * self.count / runs..(k + 1) * self.count / runs).collect()
@@ -131,7 +131,8 @@ impl Slabs {
     }
 }
 
-/// The least of every entry and those one stride before and after it; `before` has one stride of greatest values.
+/// The minimum of every entry and the entries one stride before and after it; `before` has one stride of
+/// greatest values.
 fn least_of_three(block: &mut [u64], before: &mut [u64]) {
     if let [before] = before {
         for k in 1..block.len() {
@@ -160,7 +161,7 @@ fn least_of_three(block: &mut [u64], before: &mut [u64]) {
     }
 }
 
-/// The least of every entry and the one a stride after it.
+/// The minimum of every entry and the entry a stride after it.
 fn least_of_two(block: &mut [u64], stride: usize, meet: &mut impl FnMut(u64, u64)) {
     if stride == 1 {
         for k in 1..block.len() {

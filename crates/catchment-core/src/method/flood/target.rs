@@ -12,8 +12,8 @@ use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::TAU;
 
-/// How far from a cell's centre, in cells, a pose still counts as sampled there: far above the rounding of
-/// `lo + k·step`, far below what a height difference could tell.
+/// Largest distance from a cell's centre, in cells, at which a pose counts as sampled there: far above the
+/// rounding of `lo + k·step`, far below any effect on heights.
 const CENTRED: f64 = 1e-6;
 
 /// The aligned poses: the mated pose, and for an n-fold symmetry its turns about z by 2π/n within half a turn.
@@ -22,7 +22,7 @@ pub(super) fn aligned_poses(symmetry: u32) -> Vec<PoseError> {
     (-(n / 2)..=n / 2).map(|k| PoseError { yaw: TAU * k as f64 / n as f64, ..PoseError::default() }).collect()
 }
 
-/// Cells around every aligned pose within the grid: one where a cell is centred on the pose, up to 2ⁿ where the
+/// Cells around every aligned pose within the grid: one cell if it is centred on the pose, up to 2ⁿ if the
 /// pose lies between centres. In ascending order.
 pub(super) fn cells(grid: &Grid, alignment: &Alignment) -> Vec<usize> {
     let poses = match grid.axis(Dof::Yaw) {
@@ -35,7 +35,7 @@ pub(super) fn cells(grid: &Grid, alignment: &Alignment) -> Vec<usize> {
     cells
 }
 
-/// Cells around one pose; none if it lies outside the grid.
+/// Cells around a pose; empty if it lies outside the grid.
 fn around(grid: &Grid, pose: &[f64; 5]) -> Vec<usize> {
     let mut cells = vec![0usize];
     let mut stride = 1;
@@ -51,7 +51,8 @@ fn around(grid: &Grid, pose: &[f64; 5]) -> Vec<usize> {
     cells
 }
 
-/// The cells whose centres lie on both sides of `value`; twice the same where a centre meets it or at the border.
+/// The cells whose centres lie on both sides of `value`; twice the same cell if its centre equals it, or at
+/// the border.
 fn between(axis: &GridAxis, value: f64) -> Option<(usize, usize)> {
     let place = (value - axis.center(0)) / axis.step();
     let last = axis.cells - 1;

@@ -7,7 +7,8 @@ use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
 use proptest::prelude::*;
 
-/// Random landscapes of one to five axes: few levels, so that plateaus, ties and cells without contact abound.
+/// Random landscapes of one to five axes: few levels, so that plateaus, ties and cells without contact are
+/// frequent.
 fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f32>)> {
     let shapes = prop_oneof![
         prop::collection::vec(1..60usize, 1),
@@ -45,7 +46,8 @@ proptest! {
         prop_assert_eq!(tree.minima.iter().map(|m| m.cells).sum::<usize>(), heights.len());
     }
 
-    /// Merging at a tolerance leaves one basin per minimum at least as deep, which is the lowest of its own.
+    /// Merging at a tolerance leaves a basin for each minimum at least as deep, which is the lowest of its
+    /// own.
     #[test]
     fn merged_basins_are_those_deeper_than_the_tolerance((shape, heights) in landscapes(), tolerance in 0..40i8) {
         let (_, tree) = fast(&shape, &heights, 1);
@@ -57,7 +59,7 @@ proptest! {
         }
     }
 
-    /// Labels that are joined wherever a link is shallower than the tolerance are the merged ones, cell by cell.
+    /// Labels joined wherever a link is shallower than the tolerance are the merged labels, cell by cell.
     #[test]
     fn first_labels_joined_by_the_links_are_the_merged_ones((shape, heights) in landscapes(), tolerance in 0..40i8) {
         let (labels, tree) = fast(&shape, &heights, 1);
@@ -88,7 +90,7 @@ proptest! {
         prop_assert_eq!(counts.moved, moved);
     }
 
-    /// The staircase, in one pass, says what merging at every single tolerance says.
+    /// The staircase, in one pass, equals the results of merging at every single tolerance.
     #[test]
     fn the_staircase_is_merging_at_every_tolerance((shape, heights) in landscapes(), at in any::<prop::sample::Index>()) {
         let target = at.index(heights.len());
@@ -107,7 +109,7 @@ proptest! {
     }
 }
 
-/// One axis with the given heights.
+/// A single axis with the given heights.
 fn line(heights: &[f32]) -> (Landscape, Alignment) {
     let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
     let grid = Grid::over(&alignment, |_| heights.len());
@@ -249,7 +251,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-/// Designs of `tests/planar_sums.rs` with their exact Sums at rotation length 1.
+/// Designs of `tests/planar_sums.rs` with their exact Sums at characteristic length 1.
 const PLANAR: [(Family, f64, f64, f64); 5] = [
     (Family::XFace, 1.0, 0.5, 3.853),
     (Family::XFace, 0.5, -0.5, 1.953),
@@ -258,7 +260,7 @@ const PLANAR: [(Family, f64, f64, f64); 5] = [
     (Family::XFace, 2.0, 1.0, 3.707),
 ];
 
-/// The measured bias at 100 × 100 is part of what the room's opening says, for both rules.
+/// The measured bias at 100 × 100 equals that in the module's opening, for both rules.
 #[test]
 fn the_bias_of_flooding_is_what_the_documentation_says() {
     let measure = |(family, aspect_ratio, cor, exact): (Family, f64, f64, f64)| {
@@ -300,7 +302,7 @@ fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
     assert_eq!(PLANAR.map(measure), expected);
 }
 
-/// With the text's own tolerance, 0.1·H, Meyer's queue has the bias that the room's opening says, to a percent.
+/// With the text's own tolerance, 0.1·H, Meyer's queue has the bias in the module's opening, to a percent.
 #[test]
 fn meyers_flooding_has_the_bias_that_the_documentation_says() {
     let expected = [2.3, -24.0, 0.5, -3.5, 1.6];
@@ -317,7 +319,7 @@ fn meyers_flooding_has_the_bias_that_the_documentation_says() {
     }
 }
 
-/// The tolerance of the widest gap accepts what a tenth of the face's height accepts.
+/// The tolerance of the widest gap accepts the same cells as a tenth of the face's height.
 #[test]
 fn the_tolerance_of_the_widest_gap_parts_pits_from_jams() {
     let cases = [
@@ -397,8 +399,9 @@ fn a_bowl_is_one_watershed_and_nothing_is_merged() {
     }
 }
 
-/// The dissertation's figure 5.11: a steep canal that falls towards one end and runs half a cell aside per cell. Every other cell of it
-/// lies on the floor and is a minimum by sampling alone; between two of them the water must rise by half a cell's steepness.
+/// The dissertation's figure 5.11: a steep canal that falls towards one end and runs half a cell aside per
+/// cell. Every other cell of it lies on the floor and is a minimum by sampling alone; between two of them the
+/// water must rise by half a cell's steepness.
 #[test]
 fn a_canal_across_the_grid_is_cut_by_sampling_and_joined_by_merging() {
     const CELLS: usize = 41;

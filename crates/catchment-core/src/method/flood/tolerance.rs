@@ -85,10 +85,10 @@ pub(super) fn choose(tree: &MergeTree, staircase: &[ToleranceStep], height_step:
     Choice { depth, reason: ToleranceReason::WidestGap { between: best, height_step } }
 }
 
-/// How many cells are looked at for the height step: enough for its first two digits.
+/// Number of cells sampled for the height step: enough for its first two digits.
 const SAMPLED: usize = 1 << 16;
 
-/// How much the height differs between neighbouring cells: the largest over the axes of the mean along one.
+/// Height difference between neighbouring cells: the largest, over the axes, of the mean along an axis.
 pub(super) fn height_step(shape: &[usize], heights: &[f32]) -> f64 {
     // Odd, so that it does not keep to every other cell of an even axis.
     let every = (heights.len() / SAMPLED) | 1;

@@ -24,8 +24,8 @@ pub struct Minimum {
     pub cell: usize,
     /// Its height, in D; −∞ for the basin of all cells without contact.
     pub height: f64,
-    /// How far the water must rise to reach a lower minimum (among equally low ones, the first in memory), in D;
-    /// infinite if there is none.
+    /// Height that the water must rise to reach a lower minimum (among equally low minima, the first in
+    /// memory), in D; infinite if no minimum is lower.
     pub depth: f64,
     /// How many cells drain to it.
     pub cells: usize,
@@ -49,14 +49,14 @@ pub struct MergeTree {
     pub minima: Vec<Minimum>,
     /// The passes, the shallowest first: those below a tolerance join basins, those above keep them apart.
     pub links: Vec<Link>,
-    /// Basins around the mated pose that count as one.
+    /// Basins around the mated pose that are merged.
     pub(super) joined: Vec<u32>,
     /// The basin of the cells without contact.
     pub outside: Option<u32>,
 }
 
 impl MergeTree {
-    /// The tree of `basins`, whose passes are sorted; those in `joined` are one from the start.
+    /// The tree of `basins`, whose passes are sorted; those in `joined` are merged from the start.
     pub(super) fn new(basins: &Basins, heights: &[f32], passes: &[Pass], joined: Vec<u32>) -> Self {
         let minimum = |(cell, cells): (&u32, &usize)| Minimum {
             cell: *cell as usize,
@@ -89,7 +89,7 @@ impl MergeTree {
         Self { minima, links, joined, outside: basins.outside }
     }
 
-    /// For every basin the one whose minimum is the lowest of all that it is merged with at a tolerance.
+    /// For every basin the basin with the lowest minimum among all with which it is merged at a tolerance.
     pub fn merged(&self, tolerance: f64) -> Vec<u32> {
         let mut sets = joined_sets(&self.minima, &self.joined);
         for link in self.links.iter().take_while(|link| link.depth < tolerance) {
@@ -106,11 +106,12 @@ impl MergeTree {
         (stays, goes)
     }
 
-    /// How many cells are accepted at every tolerance, if `target` is the basin of the mated pose, whose height is
-    /// `mated`: steps, each valid for tolerances above its own up to the next one's, the first from 0 on.
+    /// Number of accepted cells at every tolerance, if `target` is the basin of the mated pose, whose height
+    /// is `mated`: steps, each valid for tolerances above its own up to that of the next step, the first from
+    /// 0 on.
     ///
-    /// The mated basin grows from step to step until it runs into a lower one by more than the tolerance explains:
-    /// then nothing is accepted.
+    /// The mated basin grows from step to step until it merges with a basin that is lower by more than the
+    /// tolerance explains: then no cell is accepted.
     pub fn staircase(&self, target: u32, mated: f64) -> Vec<ToleranceStep> {
         let mut sets = joined_sets(&self.minima, &self.joined);
         let mut cells: Vec<usize> = self.minima.iter().map(|m| m.cells).collect();
@@ -171,7 +172,7 @@ fn is_elder(minima: &[Minimum], a: u32, b: u32) -> bool {
     m.height.total_cmp(&n.height).then(m.cell.cmp(&n.cell)).is_lt()
 }
 
-/// Sets in which the joined basins are one, under the lowest of them.
+/// Sets in which the joined basins are merged, under the lowest of them.
 fn joined_sets(minima: &[Minimum], joined: &[u32]) -> DisjointSets {
     let mut sets = DisjointSets::new(minima.len());
     let elder = |a: u32, b: u32| if is_elder(minima, b, a) { b } else { a };

@@ -14,14 +14,14 @@ use serde::{Deserialize, Serialize};
 /// The label of a cell between two watersheds.
 pub const DAM: u32 = u32::MAX;
 
-/// Labels of every cell before merging, and where they end up.
+/// Labels of every cell before merging, and their final labels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Watersheds {
     /// The number of every cell's watershed before merging; [`DAM`] for a cell between two.
     pub first: Vec<u32>,
     /// For every number, that of the watershed it is part of after merging.
     pub into: Vec<u32>,
-    /// The number of the watershed of all cells without contact, where there are any.
+    /// The number of the watershed of all cells without contact, if there are any.
     pub outside: Option<u32>,
 }
 

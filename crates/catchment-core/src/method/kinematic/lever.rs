@@ -40,7 +40,7 @@ use glam::{DMat3, DVec2, DVec3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
-/// What is nearer than this, in D, touches; directions closer than this, in radians, are one.
+/// Gaps smaller than this, in D, are contacts; directions closer than this, in radians, are equal.
 const SAME: f64 = 1e-9;
 
 /// One of the two bodies.
@@ -55,7 +55,7 @@ pub enum LeverBody {
 }
 
 impl LeverBody {
-    /// For a person.
+    /// Name for people.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Base => "base",
@@ -64,7 +64,7 @@ impl LeverBody {
     }
 }
 
-/// A contact of a corner of one body with an edge of the other.
+/// A contact of a corner of a body with an edge of the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lever {
     /// Whose corner it is; the edge is the other's.
@@ -73,7 +73,7 @@ pub struct Lever {
     pub corner_pivot: DVec2,
     /// Rotation point of the edge's body.
     pub edge_pivot: DVec2,
-    /// Where they touch.
+    /// Contact point.
     pub contact: DVec2,
     /// Unit normal of the edge, out of its body.
     pub normal: DVec2,
@@ -96,7 +96,7 @@ pub struct Lever {
 }
 
 impl Lever {
-    /// θ₂ where the halves are aligned: `β_p + α_e`, in [0, π].
+    /// θ₂ of aligned halves: `β_p + α_e`, in [0, π].
     pub fn aligned(&self) -> f64 {
         wrapped(self.beta_p + self.alpha_e)
     }
@@ -152,18 +152,19 @@ impl Lever {
     }
 }
 
-/// What the kinematic method sees of one pose.
+/// Result of the kinematic method for a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeverPose {
     /// Its settings.
     pub settings: KinematicSettings,
     /// The pose error.
     pub error: PoseError,
-    /// z of the rotation point of the moving half at first contact, in D; `None` where the halves pass each other by.
+    /// z of the rotation point of the moving half at first contact, in D; `None` if the halves pass each
+    /// other by.
     pub height: Option<f64>,
-    /// The contact; `None` where nothing touches, or corner meets corner.
+    /// The contact; `None` without contact, or if a corner meets a corner.
     pub lever: Option<Lever>,
-    /// What becomes of it by the bounds, or by the stepping.
+    /// Its outcome by the bounds, or by the stepping.
     pub outcome: Outcome,
     /// How the stepping of an X-Face halts.
     pub halt: Option<Halt>,
@@ -268,7 +269,7 @@ const fn flat(p: DVec3) -> DVec2 {
     DVec2::new(p.x, p.z)
 }
 
-/// Counter-clockwise from one direction to another, in (−π, π].
+/// Counter-clockwise angle from a direction to another, in (−π, π].
 fn turn(from: DVec2, to: DVec2) -> f64 {
     from.perp_dot(to).atan2(from.dot(to))
 }

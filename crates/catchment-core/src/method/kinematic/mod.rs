@@ -77,7 +77,7 @@ pub struct KinematicSettings {
 /// Steps of x₀ over ±D, and of θ₀ over [0, π/2].
 const STEPS: i32 = 40;
 
-/// Area that one successful start counts, D·rad.
+/// Area represented by a successful start, D·rad.
 pub const START_MEASURE: f64 = (2.0 / STEPS as f64) * (PI / STEPS as f64);
 
 /// Why the method cannot decide a design.
@@ -109,13 +109,13 @@ pub enum UnsuitableDesign {
 /// Why there is no acceptance.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum KinematicError {
-    /// The design is none of the method's.
+    /// The design is not one of the method's families.
     #[error(transparent)]
     Unfit(#[from] UnsuitableDesign),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -159,7 +159,7 @@ impl KinematicSettings {
         self.starts().outcome(x0, theta0) == Outcome::Aligned
     }
 
-    /// What becomes of starts.
+    /// The decision for starts.
     fn starts(&self) -> Starts<'_> {
         let faces =
             (self.face == PlanarFace::XFace).then(|| Faces::new(self.aspect_ratio, self.rotation_point));
@@ -183,7 +183,7 @@ impl KinematicSettings {
     }
 }
 
-/// Starts of one pair of faces.
+/// Starts of a pair of faces.
 struct Starts<'a> {
     settings: &'a KinematicSettings,
     /// Of an X-Face.

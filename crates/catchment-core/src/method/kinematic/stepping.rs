@@ -46,8 +46,8 @@
 use glam::DVec2;
 use serde::Serialize;
 
-/// How far the farthest corner moves in a step, in D. Half of it changes the
-/// outcome of 656 of the 203 401 starts of the tables (0.32 %).
+/// Displacement of the farthest corner in a step, in D. Half of it changes the outcome of 656 of the 203 401
+/// starts of the tables (0.32 %).
 pub const STEP: f64 = 0.02;
 
 /// Steps after which a motion that has not ended counts as at rest. The corner farthest from its pivot cannot go around more
@@ -69,12 +69,12 @@ pub enum Halt {
     Missed,
     /// Two contacts hold each other.
     Bound,
-    /// One contact holds both.
+    /// A single contact holds both.
     AtRest,
 }
 
 impl Halt {
-    /// For a person.
+    /// Name for people.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Success => "success",
@@ -107,7 +107,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// What it is to be parallel with this contact.
+    /// The halt if the halves are parallel at this contact.
     const fn when_parallel(self) -> Halt {
         // The ramp goes from the last corner to the first in the rising layer, from the second to the last in the other.
         if self.edge == 2 - self.layer { Halt::Success } else { Halt::Beside }
@@ -118,7 +118,7 @@ impl Pair {
 #[derive(Debug, Clone, Copy)]
 struct Contact {
     pair: Pair,
-    /// y where this pair touches.
+    /// y at the contact of this pair.
     height: f64,
     /// The contact seen from the base's pivot.
     point: DVec2,
@@ -146,7 +146,7 @@ impl Faces {
         self.highest(x0, angles).map(|contact| (contact.height, Self::theta2(&contact, x0, angles)))
     }
 
-    /// What becomes of the start (x₀ in D, θ₀ in radians), stepped by `step`, in D.
+    /// The halt of the start (x₀ in D, θ₀ in radians), stepped by `step`, in D.
     pub fn follow(&self, x0: f64, theta0: f64, step: f64) -> Halt {
         let mut angles = [theta0, 0.0];
         if theta0 == 0.0 && x0.abs() >= 1.0 {
@@ -192,7 +192,7 @@ impl Faces {
         [from[0] - turn * g[0], from[1] - turn * g[1]]
     }
 
-    /// Corners of a layer of one half at these angles, the base's from its own pivot, the moving half's from its own.
+    /// Corners of a layer of a half at these angles, each half's from its own pivot.
     fn corners(&self, layer: usize, moving: bool, angles: Angles) -> [DVec2; 3] {
         let turn = DVec2::from_angle(angles[usize::from(!moving)]);
         let sign = if moving { -1.0 } else { 1.0 };
@@ -220,7 +220,7 @@ impl Faces {
         best
     }
 
-    /// Whether the pair that was highest before holds against the one that is now.
+    /// Whether the previously highest pair blocks the pair that is highest now.
     fn binds(&self, before: Pair, now: &Contact, x0: f64, angles: Angles) -> bool {
         let [base, moving] = [false, true].map(|moving| self.corners(before.layer, moving, angles));
         // A corner that has left its edge holds nothing.
@@ -250,7 +250,7 @@ fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// A corner on an edge, where their places overlap and the edge faces the other half.
+/// A corner on an edge, if they overlap laterally and the edge faces the other half.
 fn touch(pair: Pair, base: &[DVec2; 3], moving: &[DVec2; 3], x0: f64) -> Option<Contact> {
     let (corners, edges) = if pair.moving { (moving, base) } else { (base, moving) };
     let (corner, a, b) = (corners[pair.corner], edges[pair.edge], edges[(pair.edge + 1) % 3]);
@@ -305,7 +305,8 @@ mod tests {
         }
     }
 
-    /// The gradient is the derivative of the height, by central differences, wherever one pair stays the highest.
+    /// The gradient is the derivative of the height, by central differences, wherever the same pair stays the
+    /// highest.
     #[test]
     fn the_motion_is_downhill() {
         let mut compared = 0;
@@ -331,7 +332,7 @@ mod tests {
         assert!(compared > 500, "{compared}");
     }
 
-    /// θ₂ of the tip on the opposite ramp, where the halves are parallel: `β_p + α_e = atan(1/(r_p + H)) + atan H`.
+    /// θ₂ of the tip on the opposite ramp, for parallel halves: `β_p + α_e = atan(1/(r_p + H)) + atan H`.
     #[test]
     fn the_aligned_angle_is_that_of_the_text() {
         for (h, r) in [(0.25, 1.0), (1.0, 4.0), (4.0, 2.0)] {

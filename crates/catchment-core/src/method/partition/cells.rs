@@ -18,10 +18,11 @@ use crate::pose::{Dof, DofSet, ROTATIONS, euler_rates};
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 use std::array;
 
-/// Heights closer than this are equal, in D: ten times what a vertex on a plane may be off by, at slopes up to 10.
+/// Heights closer than this are equal, in D: ten times the error of a vertex on a plane, at slopes up to 10.
 pub(super) const LEVEL: f64 = 100.0 * RESOLUTION;
 
-/// Cells meet where they come this close, in D and radians: cuts move their corners by a few times the resolution.
+/// Cells meet if they are this close, in D and radians: cuts move their corners by a few times the
+/// resolution.
 pub(super) const TOUCH: f64 = 16.0 * RESOLUTION;
 
 /// Largest sine of the angle between motion and a facet along which the motion counts as running, not crossing.
@@ -38,11 +39,11 @@ pub(super) struct Cell {
     pub(super) velocity: PolytopePoint,
     /// How fast the height falls along it: the squared slope in the ρ-metric.
     pub(super) descent: f64,
-    /// Where motion leaves.
+    /// Exits of its motion.
     pub(super) gates: Vec<Gate>,
 }
 
-/// A part of a facet through which all motion has the same fate at first.
+/// A part of a facet through which all motion continues in the same way.
 #[derive(Debug, Clone)]
 pub(super) struct Gate {
     /// The facet of the cell.
@@ -51,16 +52,16 @@ pub(super) struct Gate {
     pub(super) dropped: usize,
     /// The part, in the other coordinates.
     pub(super) region: Polytope,
-    /// What lies beyond.
+    /// The region beyond.
     pub(super) to: Beyond,
 }
 
-/// What lies beyond a gate.
+/// The region beyond a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Beyond {
     /// A cell that is not higher there.
     Cell(usize),
-    /// A cell whose motion comes the other way, or a wall: motion goes on along the gate itself.
+    /// A cell with opposing motion, or a wall: motion continues along the gate itself.
     Ravine,
     /// No contact.
     Nothing,
@@ -126,7 +127,7 @@ impl Cells {
         holding
     }
 
-    /// The gates of one cell.
+    /// The gates of a cell.
     pub(super) fn gates_of(&self, k: usize) -> Vec<Gate> {
         let cell = &self.all[k];
         let near = self.near(&cell.region);
@@ -180,7 +181,7 @@ impl Cells {
         })
     }
 
-    /// A shared part of a facet, cut where the height steps from up to down.
+    /// A shared part of a facet, cut at the line at which the height step changes from up to down.
     fn split_at_steps(
         &self,
         part: Polytope,
@@ -228,7 +229,7 @@ impl Cells {
     }
 }
 
-/// How the height goes on beyond a facet.
+/// Change of the height beyond a facet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
     Up,
@@ -251,7 +252,7 @@ impl Cell {
         self.descent > LEVEL * LEVEL && dot(&self.velocity, &plane.normal) > GRAZING * speed
     }
 
-    /// What of the cell leaves through `through`, a part of the plane of one of its facets.
+    /// The part of the cell that leaves through `through`, a part of the plane of one of its facets.
     pub(super) fn upstream(&self, facet: usize, dropped: usize, through: &Polytope) -> Option<Polytope> {
         let plane = &self.region.facets()[facet];
         let speed = dot(&self.velocity, &plane.normal);

@@ -23,7 +23,7 @@ use crate::polytope::PolytopePoint;
 use crate::pose::Dof;
 use std::array;
 
-/// One interval between neighbouring slices for every free rotation: roll, pitch, yaw as far as they are free.
+/// An interval between neighbouring slices for every free rotation: roll, pitch, yaw if free.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Compartment {
     /// Angle and its lower and upper slice, in radians.

@@ -74,7 +74,7 @@ impl PartitionSettings {
         if rotations < 2 { Self::default() } else { Self { slices: 4, strips: 1 } }
     }
 
-    /// Refuses what makes no partition.
+    /// Rejects settings that give no partition.
     fn check(&self) -> Result<(), PartitionError> {
         for (setting, [least, most], given) in
             [("slices", SLICES, self.slices), ("strips", STRIPS, self.strips)]
@@ -111,7 +111,7 @@ pub enum PartitionError {
         least: usize,
         /// The most it may be.
         most: usize,
-        /// What was given.
+        /// The given value.
         given: usize,
     },
     /// A half is not made of few convex pieces.
@@ -136,7 +136,7 @@ pub enum PartitionError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -168,12 +168,13 @@ pub struct Partition {
     counts: PartitionCounts,
 }
 
-/// A part of the contact space with one fate.
+/// A part of the contact space with a common outcome.
 #[derive(Debug, Clone)]
 pub struct PartitionPart {
-    /// Its pose errors, one coordinate per free error: lateral position of the *COR* (D), and angles (radians).
+    /// Its pose errors, a coordinate for each free error: lateral position of the *COR* (D), and angles
+    /// (radians).
     pub region: Polytope,
-    /// What becomes of them.
+    /// Their outcome.
     pub outcome: Outcome,
 }
 
@@ -306,7 +307,7 @@ impl Partition {
             .sum()
     }
 
-    /// What becomes of one pose error.
+    /// Outcome of a pose error.
     pub fn outcome(&self, error: &PoseError) -> Outcome {
         let [dx, dy] = self.offset(error);
         let coordinates = error.to_array();
@@ -333,7 +334,7 @@ impl Partition {
         }
     }
 
-    /// What becomes of the centre of every cell of a grid, or of every pose.
+    /// Outcome of the centre of every cell of a grid, or of every pose.
     pub fn acceptance(&self, domain: Domain, exec: &Exec) -> Result<Acceptance, Cancelled> {
         let outcome = |k: usize| {
             if k.is_multiple_of(256) {
@@ -360,8 +361,8 @@ impl Partition {
     }
 }
 
-/// Whether a place of rest is docked. Slices move it a little: what is as near the mated pose as they leave it is followed by an exact
-/// motion, everything else must lie in the seat as it is.
+/// Whether a rest is docked. Slices displace rests slightly: a rest within this displacement of the mated
+/// pose is followed by an exact motion, all others must lie in the seat.
 fn docks(pair: &Pair) -> impl Fn(&PolytopePoint) -> bool + '_ {
     /// In D and radians.
     const NEAR: f64 = 0.02;

@@ -10,7 +10,7 @@ use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, removed, touc
 use crate::polytope::{MAX_DIMENSION, PolytopePoint};
 use std::array;
 
-/// Where motion ends.
+/// End of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum MotionEnd {
     /// At rest, in contact.
@@ -24,13 +24,13 @@ pub(super) enum MotionEnd {
 /// Motion that has not fallen by [`LEVEL`] over so many cells circles a point of rest.
 const ROUND: usize = 64;
 
-/// Where the point of first contact at `q` ends.
+/// End of the motion from first contact at `q`.
 pub(super) fn fate(cells: &Cells, q: &PolytopePoint) -> MotionEnd {
     let top = cells.holding(q).into_iter().map(|k| cells.all[k].height.at(q)).max_by(f64::total_cmp);
     top.map_or(MotionEnd::Lost, |height| fate_from(cells, q, height))
 }
 
-/// Where motion ends that is at `q` at a height: below first contact, beside a wall.
+/// End of the motion from `q` at a height: below first contact, beside a wall.
 pub(super) fn fate_from(cells: &Cells, start: &PolytopePoint, height: f64) -> MotionEnd {
     let (mut q, mut height) = (*start, height);
     let at = |k: usize, q: &PolytopePoint| cells.all[k].height.at(q);
@@ -84,7 +84,7 @@ fn leading(cells: &Cells, under: &[usize], q: &PolytopePoint) -> Option<usize> {
     under.iter().copied().filter(inward).max_by(|a, b| steeper(a, b).then(b.cmp(a)))
 }
 
-/// Where motion from `q` leaves the cell, and through which facet.
+/// Point at which the motion from `q` leaves the cell, and the facet.
 fn crossed(cells: &Cells, k: usize, q: &PolytopePoint) -> (PolytopePoint, usize) {
     let cell = &cells.all[k];
     let time = |facet: usize| {
@@ -133,7 +133,7 @@ pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, PolytopePoin
         .unwrap_or((f64::INFINITY, cell.region.centroid()))
 }
 
-/// Where motion rests that reaches a level gate: the aligned pose if the gate holds it, else its middle.
+/// Rest of a motion that reaches a level gate: the aligned pose if the gate contains it, else its middle.
 pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<PolytopePoint> {
     let cell = &cells.all[k];
     let plane = &cell.region.facets()[gate.facet];
@@ -148,7 +148,7 @@ pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<PolytopePoin
     Some(if holds { aligned } else { lifted(&gate.region.centroid(), plane, gate.dropped) })
 }
 
-/// A point that nothing leads down from: at rest, unless it is where the contact space ends.
+/// A point without a downward path: a rest, unless the contact space ends there.
 fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> MotionEnd {
     let mut fate = MotionEnd::Rest(*q);
     for &k in under {

@@ -17,7 +17,8 @@ use rstar::{AABB, RTree};
 pub type Corner = [f64; 2];
 
 impl Partition {
-    /// All parts as polygons, counter-clockwise, with what becomes of them; nothing if other than two errors are free.
+    /// All parts as polygons, counter-clockwise, with their outcomes; empty unless exactly two errors are
+    /// free.
     pub fn polygons(&self) -> Vec<(Vec<Corner>, Outcome)> {
         if self.alignment.free.len() != 2 {
             return Vec::new();
@@ -34,7 +35,7 @@ impl Partition {
             .collect()
     }
 
-    /// The border of what is accepted, as segments; nothing if other than two errors are free.
+    /// The border of the accepted set, as segments; empty unless exactly two errors are free.
     pub fn outline(&self) -> Vec<[Corner; 2]> {
         if self.alignment.free.len() != 2 {
             return Vec::new();

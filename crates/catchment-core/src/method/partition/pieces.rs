@@ -44,7 +44,7 @@ impl Piece {
     }
 }
 
-/// The convex pieces of both halves, moving ones from the COR.
+/// The convex pieces of both halves, those of the moving half relative to the COR.
 #[derive(Debug)]
 pub(super) struct Pieces {
     /// Of the fixed half.
@@ -71,8 +71,8 @@ const MOST_PIECES: usize = 512;
 const MOST_PAIRS: usize = 100_000;
 
 impl Pieces {
-    /// The pieces of a pair: profiles where both halves are extrusions along y and only x and pitch are free, else solids. The moving ones
-    /// are cut into strips narrower than `width`.
+    /// The pieces of a pair: profiles if both halves are extrusions along y and only x and pitch are free,
+    /// else solids. Those of the moving half are cut into strips narrower than `width`.
     pub(super) fn of(pair: &Pair, width: f64) -> Result<Self, PartitionError> {
         let [fixed, moving] = [&pair.fixed, &pair.moving].map(convex_pieces);
         let (fixed, moving) = (fixed?, moving?);

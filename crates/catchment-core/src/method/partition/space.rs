@@ -37,7 +37,8 @@ impl Affine {
         self.slope.iter().zip(q).map(|(s, q)| s * q).sum::<f64>() + self.level
     }
 
-    /// Where this lies above `other`: a half-space, or everywhere, or nowhere; on equal planes `tie` decides.
+    /// Region in which this lies above `other`: a half-space, or everywhere, or nowhere; on equal planes
+    /// `tie` decides.
     pub(super) fn above(&self, other: &Self, tie: bool) -> Covered {
         let normal: PolytopePoint = array::from_fn(|k| other.slope[k] - self.slope[k]);
         let rise = self.level - other.level;
@@ -53,19 +54,19 @@ impl Affine {
     }
 }
 
-/// Where one plane lies above another.
+/// Region in which a plane lies above another.
 pub(super) enum Covered {
     Everywhere,
     Nowhere,
     Where(Halfspace),
 }
 
-/// One polytope of the sum, seen from above.
+/// A polytope of the sum, seen from above.
 #[derive(Debug, Clone)]
 pub(super) struct Roof {
-    /// Its shadow: where it can be met at all.
+    /// Its shadow: the region in which it can be met at all.
     pub(super) shadow: Polytope,
-    /// Its upward facets: each one's own part of the shadow, and its plane.
+    /// Its upward facets: for each its part of the shadow, and its plane.
     pub(super) facets: Vec<(Polytope, Affine)>,
     /// Its highest point, in D.
     top: f64,
@@ -80,7 +81,7 @@ pub(super) struct Tile {
     pub(super) height: Affine,
 }
 
-/// The contact space over one compartment.
+/// The contact space over a compartment.
 pub(super) fn tiles(
     pairs: &[PiecePair<'_>],
     compartment: &Compartment,
@@ -90,7 +91,7 @@ pub(super) fn tiles(
     envelope(&roofs(pairs, compartment, free, exec)?, exec)
 }
 
-/// All polytopes of the sum over one compartment, highest first.
+/// All polytopes of the sum over a compartment, highest first.
 pub(super) fn roofs(
     pairs: &[PiecePair<'_>],
     compartment: &Compartment,
@@ -177,7 +178,7 @@ impl Roof {
     }
 }
 
-/// What of every facet is met first. `roofs` are sorted, highest first.
+/// The part of every facet that is met first. `roofs` are sorted, highest first.
 pub(super) fn envelope(roofs: &[Roof], exec: &Exec) -> Result<Vec<Tile>, Cancelled> {
     let mut tiles = Vec::new();
     for (k, roof) in roofs.iter().enumerate() {
@@ -236,7 +237,7 @@ fn without(part: Polytope, cover: &[Halfspace]) -> Vec<Polytope> {
     outside
 }
 
-/// Parts of one facet, joined where their union is convex: fewer cells to drain later.
+/// Parts of a facet, merged if their union is convex: fewer cells to drain later.
 fn joined(parts: Vec<Polytope>) -> Vec<Polytope> {
     if parts.len() < 2 { parts } else { super::pieces::joined(parts) }
 }

@@ -31,27 +31,28 @@ use rayon::prelude::*;
 /// The watersheds of a cell.
 #[derive(Debug, Clone)]
 pub(super) enum Parts {
-    /// One.
+    /// A single outcome.
     Whole(Outcome),
     /// Disjoint parts.
     Cut(Vec<(Polytope, Outcome)>),
 }
 
-/// Which part of which cell drains where.
+/// Destinations of the parts of cells.
 #[derive(Debug)]
 pub(super) struct Watersheds {
     /// In the order of the cells.
     pub(super) parts: Vec<Parts>,
-    /// Places of rest that ravines and circling motion lead to.
+    /// Rests to which ravines and circling motion lead.
     pub(super) rests: Vec<PolytopePoint>,
     /// Whether some motion leaves through the last slice of a rotation; it counts as jammed.
     pub(super) cut_off: bool,
 }
 
-/// Places of rest closer than this are one, in D and radians: far above rounding, far below a cell.
+/// Rests closer than this are equal, in D and radians: far above rounding, far below a cell.
 const SAME_PLACE: f64 = 1e-6;
 
-/// Parts within one component, per cell of it, after which what is left is decided by the motion of its middle.
+/// Largest number of parts within a component, per cell of it, after which the remainder is decided by the
+/// motion of its middle.
 const MOST_PARTS: usize = 64;
 
 /// A part smaller than this share of its cell is rounding.
@@ -59,9 +60,9 @@ const ROUNDING: f64 = 1e-9;
 
 struct Draining<'a, F> {
     cells: &'a Cells,
-    /// Whether a place of rest is the mated pose.
+    /// Whether a rest is the mated pose.
     is_aligned: F,
-    /// Per cell and gate: where it leads, unless into a cell.
+    /// For each cell and gate: its outcome, unless it leads into a cell.
     labels: Vec<Vec<Option<Outcome>>>,
     parts: Vec<Option<Parts>>,
     rests: Vec<(PolytopePoint, Outcome)>,
@@ -127,7 +128,7 @@ pub(super) fn drain(
     Ok(Watersheds { parts, rests, cut_off: draining.cut_off })
 }
 
-/// Where the gates lead that do not lead into a cell.
+/// Ends of the motions through the gates that do not lead into a cell.
 fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<MotionEnd>> {
     let cell = &cells.all[k];
     cell.gates
@@ -189,7 +190,8 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
         parts
     }
 
-    /// The parts of a cell above the parts below one of its gates. What of the gate they share is joined first.
+    /// The parts of a cell above the parts below one of its gates. The portions of the gate that they share
+    /// are merged first.
     fn above(
         &self,
         k: usize,
@@ -211,18 +213,18 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
         parts
     }
 
-    /// What of a gate leads into a part of the cell below.
+    /// The portion of a gate that leads into a part of the cell below.
     fn side(&self, k: usize, gate: &Gate, part: &Polytope) -> Option<Polytope> {
         let plane = &self.cells.all[k].region.facets()[gate.facet];
         gate.region.intersection(&part.facet_projected(facing(part, plane)?, gate.dropped)?)
     }
 
-    /// What of a cell drains through a gate into a part of the cell below.
+    /// The portion of a cell that drains through a gate into a part of the cell below.
     fn through(&self, k: usize, gate: &Gate, part: &Polytope) -> Option<Polytope> {
         self.cells.all[k].upstream(gate.facet, gate.dropped, &self.side(k, gate, part)?)
     }
 
-    /// Gives a cell its parts: one label if they have only one.
+    /// Gives a cell its parts: a single label if they all agree.
     fn settle(&mut self, k: usize, parts: Vec<(Option<Polytope>, Outcome)>) {
         let parts: Vec<(Polytope, Outcome)> =
             parts.into_iter().filter_map(|(part, label)| Some((part?, label))).collect();

@@ -37,7 +37,7 @@ impl DecisionMethod for TransportSettings {
         settings
     }
 
-    /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once.
+    /// Even, so that no cell lies exactly on a mirror plane, at which two contacts carry the half at once.
     fn default_cells(&self, _: &Pair) -> [usize; 5] {
         [1000, 200, 48, 32, 24]
     }

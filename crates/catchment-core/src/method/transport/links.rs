@@ -18,31 +18,31 @@
 use crate::contact::Mirror;
 use crate::landscape::{GradientField, Grid, Patch};
 
-/// How often a corner across a valley is replaced by where it leads.
+/// Number of times that a corner across a valley is replaced by its own links.
 pub(super) const CROSSINGS: usize = 2;
 /// Corners with less weight are not followed across valleys.
 pub(super) const NEGLIGIBLE: f32 = 0.05;
-/// The least share of its weight that a cell must keep: below it, what is kept is discretisation, not descent. Between 0.05
-/// and 0.2 results hardly change; without it shallow jams leak (V-Face, 2 %).
+/// Smallest share of its weight that a cell must keep: below it, the kept share is discretisation, not
+/// descent. Between 0.05 and 0.2 results hardly change; without it shallow jams leak (V-Face, 2 %).
 pub(super) const LEAST: f32 = 0.1;
 
 /// A share of a cell's arrival.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Link {
-    /// A kept cell, lower than the one the link starts from.
+    /// A stored cell, lower than the cell from which the link starts.
     pub(super) to: u32,
     /// Its weight; those of a cell, with the share that loses contact, sum to 1.
     pub(super) weight: f32,
 }
 
-/// Where motion goes from a cell.
+/// Continuation of the motion from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Way {
     /// To the links that were written; the rest of the weight loses contact.
     Down,
     /// Out of the box, along the axis with this number.
     Leaves(usize),
-    /// The grid cannot tell.
+    /// The grid cannot decide.
     End,
 }
 
@@ -62,9 +62,9 @@ pub(super) struct Links<'a> {
     field: &'a GradientField,
     /// Number of axes.
     axes: usize,
-    /// How many of them, the first ones, are lateral.
+    /// Number of lateral axes; they are the first.
     lateral: usize,
-    /// Where x and y are among the axes; `axes` if not sampled.
+    /// Positions of x and y among the axes; `axes` if not sampled.
     x: usize,
     y: usize,
     cells: [u32; 5],
@@ -72,16 +72,16 @@ pub(super) struct Links<'a> {
     strides: [u32; 5],
 }
 
-/// One corner of a simplex.
+/// A corner of a simplex.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     place: Place,
-    /// The reflection between where it is kept and where it is, seen from the cell the links start from.
+    /// The reflection between its storage and its position, relative to the cell from which the links start.
     mirror: Mirror,
     weight: f32,
 }
 
-/// Corners waiting to be followed: those of one cell, and across valleys those of its corners.
+/// Corners to be followed: those of a cell, and across valleys those of its corners.
 #[derive(Default)]
 pub(super) struct Scratch {
     front: Vec<Corner>,
@@ -108,7 +108,7 @@ impl<'a> Links<'a> {
         Self { field, axes, lateral, x, y, cells, strides }
     }
 
-    /// Writes the links of a kept cell behind those in `out`, and says where motion goes.
+    /// Appends the links of a stored cell to `out`, and returns the continuation of the motion.
     pub(super) fn of(&self, cell: u32, scratch: &mut Scratch, out: &mut Vec<Link>) -> Way {
         let start = out.len();
         let place = self.place(cell);
@@ -161,8 +161,8 @@ impl<'a> Links<'a> {
         Way::Down
     }
 
-    /// Visits the corners within the box of the simplex that the direction at a place points into. Where the
-    /// box ends at a corner, says along which axis.
+    /// Visits the corners within the box of the simplex into which the direction at a position points. If the
+    /// box ends at a corner, returns the axis.
     fn corners(&self, from: &Corner, mut visit: impl FnMut(Corner)) -> Option<usize> {
         let velocity = self.velocity(&from.place);
         let mut order = [0, 1, 2, 3, 4];
@@ -213,7 +213,7 @@ impl<'a> Links<'a> {
         axes.filter(|((axis, _), _)| corner.mirror.flips(axis.dof)).all(|((_, k), n)| 2 * k + 1 == *n)
     }
 
-    /// The place where a cell of the grid is kept, and the reflection that leads there.
+    /// Storage of a cell of the grid, and the reflection that leads there.
     fn folded(&self, mut at: [u32; 5], rotation: u32) -> (Place, Mirror) {
         let fold = &self.field.fold;
         let image = fold.image(rotation as usize);

@@ -87,7 +87,7 @@ pub enum TransportError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -116,7 +116,7 @@ impl ArrivalFractions {
         f64::from(self.shares[self.fold.kept_cell(cell)].aligned())
     }
 
-    /// Whether the grid cannot tell what becomes of a cell.
+    /// Whether the grid cannot decide the outcome of a cell.
     pub fn is_ambiguous(&self, cell: usize) -> bool {
         let [low, high] = Self::AMBIGUOUS;
         (low..high).contains(&self.fraction(cell))
@@ -164,7 +164,8 @@ impl ArrivalFractions {
     }
 }
 
-/// Bytes per cell at the peak, where no symmetry helps: heights, patches' numbers, arrivals; and the outcomes after them.
+/// Bytes per cell at the peak, without symmetry: heights, patches' numbers, arrivals; and the outcomes after
+/// them.
 const BYTES_PER_CELL: u64 =
     GradientField::BYTES_PER_CELL + size_of::<Shares>() as u64 + size_of::<Outcome>() as u64;
 
@@ -229,7 +230,7 @@ struct ExactOracle<'a> {
 }
 
 impl ExactOracle<'_> {
-    /// What one thread needs to decide ends.
+    /// Buffers of a thread that decides ends.
     fn start(&self) -> Ends<'_> {
         Ends { judge: self, follower: descent::Follower::new(self.pair, &self.settings.descent) }
     }
@@ -241,7 +242,8 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// What becomes of an end; `leaves` is the number of the axis along which its motion leaves the box, if it does.
+    /// Outcome of an end; `leaves` is the number of the axis along which its motion leaves the box, if it
+    /// does.
     fn decide(&mut self, kept: u32, leaves: Option<usize>) -> Shares {
         let GradientField { grid, fold, .. } = self.judge.field;
         if let (Some(axis), false) = (leaves, self.judge.follow_out) {

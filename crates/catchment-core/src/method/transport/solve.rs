@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shares(u32);
 
-/// What a share of 1 is stored as: 16 bits, errors of 10⁻⁵ per cell on the way.
+/// Stored value of a share of 1: 16 bits, errors of 10⁻⁵ per cell.
 const ONE: f32 = 65_534.0;
 
 impl Shares {
@@ -44,7 +44,7 @@ impl Shares {
 /// A cell that waits for its links.
 struct Waiting {
     cell: u32,
-    /// Where its links begin; they end where those of the next one begin.
+    /// Start of its links; they end at the start of those of the next cell.
     links: usize,
     /// The first that may be unknown.
     cursor: usize,

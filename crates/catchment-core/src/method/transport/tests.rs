@@ -52,7 +52,7 @@ fn fast_and_brute_agree_cell_by_cell() {
     }
 }
 
-/// Where the exact sums come from: `tests/planar_sums.rs`. Asked is 3 %.
+/// Source of the exact sums: `tests/planar_sums.rs`. The required accuracy is 3 %.
 #[test]
 fn planar_sums_come_out_within_three_percent_at_a_hundred_cells() {
     for (family, ratio, cor, exact) in [

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Cells smaller than this square of the seam's width, in multiples of the seam, are rounding.
 const SLIVER: f64 = 10.0;
 
-/// A convex cell in which one sheet is the highest.
+/// A convex cell in which a given sheet is the highest.
 #[derive(Debug, Clone)]
 pub(super) struct Cell {
     /// Corners, counter-clockwise.
@@ -19,14 +19,14 @@ pub(super) struct Cell {
     pub(super) sheet: usize,
 }
 
-/// Part of a cell's border with one neighbour, or none, across it.
+/// Part of a cell's border with at most one neighbour across it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Border {
     /// From here, counter-clockwise around the cell,
     pub(super) from: DVec2,
     /// to here.
     pub(super) to: DVec2,
-    /// The cell across; `None` where the halves pass each other.
+    /// The cell across; `None` if the halves pass each other by.
     pub(super) across: Option<usize>,
 }
 
@@ -36,7 +36,7 @@ impl Border {
     }
 }
 
-/// The upper envelope of the sheets: every sheet keeps what no other takes from it.
+/// The upper envelope of the sheets: every sheet keeps the region in which no other is higher.
 pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
     exec.install(|| {
         let seen = seen(sheets, exec)?;
@@ -53,10 +53,10 @@ pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result
     })
 }
 
-/// The sheets that are not hidden by one other alone, ascending: one in ten of those of pins and holes.
+/// The sheets that are not hidden by a single other sheet, ascending: about one in ten for pins and holes.
 ///
-/// A sheet is hidden where another reaches over all its corners and is nowhere lower there; of two that are equal the first is
-/// seen. Only the sheet that is the highest over the middle is tried.
+/// A sheet is hidden if another reaches over all its corners and is nowhere lower there; of two equal sheets
+/// the first is visible. Only the sheet that is the highest over the middle is tried.
 fn seen(sheets: &[Sheet], exec: &Exec) -> Result<Vec<usize>, Cancelled> {
     let places = PolygonIndex::new(sheets.iter().map(|sheet| &sheet.footprint[..]), 0.0);
     let is_seen = |i: &usize| {
@@ -93,7 +93,8 @@ fn holds(polygon: &[DVec2], at: DVec2) -> bool {
         .all(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).perp_dot(at - polygon[k]) >= 0.0)
 }
 
-/// What no other sheet takes from one. Those that lie highest over its middle are tried first, after which little is left.
+/// The region of a sheet in which no other is higher. Sheets that lie highest over its middle are tried
+/// first, because little remains after them.
 fn uncovered(
     i: usize,
     seen: &[usize],
@@ -136,7 +137,7 @@ fn uncovered(
     pieces
 }
 
-/// The part of a convex polygon where `inside`, linear and in units of length, is at least 0.
+/// The part of a convex polygon in which `inside`, linear and in units of length, is at least 0.
 pub fn clip(polygon: &[DVec2], inside: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (k, &a) in polygon.iter().enumerate() {
@@ -199,7 +200,7 @@ fn overlap(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
     a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
 }
 
-/// The border of every cell, cut where the neighbour across changes.
+/// The border of every cell, cut at the points at which the neighbour across changes.
 pub(super) fn borders(cells: &[Cell], seam: f64, exec: &Exec) -> Result<Vec<Vec<Border>>, Cancelled> {
     // Sides meet where their lines fall together within a few seams.
     let near = SLIVER * seam;

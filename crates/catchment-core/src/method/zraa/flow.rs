@@ -23,7 +23,7 @@ use glam::DVec2;
 /// Longest chain of cells and valleys: far more than a path has, and it stops a cycle that rounding made.
 const MAX_DEPTH: usize = 4096;
 
-/// Distance under which two points are one, in seams.
+/// Distance below which two points are equal, in seams.
 const NEAR: f64 = 20.0;
 
 /// A strip of a cell: positions between two values of [`Flow::across`], and whether it reaches the seat.
@@ -34,7 +34,7 @@ pub(super) struct Strip {
     pub(super) accepted: bool,
 }
 
-/// What is known of the points that leave by a border.
+/// Outcome of the points that leave by a border.
 #[derive(Debug, Clone)]
 enum Stretch {
     Unknown,
@@ -57,7 +57,7 @@ pub(super) struct Flow<'a, D> {
     pub(super) tangled: bool,
 }
 
-/// How a motion goes on at a border.
+/// Continuation of a motion at a border.
 enum Way {
     /// Into a cell.
     Into(usize),
@@ -68,7 +68,7 @@ enum Way {
     Missed,
 }
 
-/// How a motion goes on from a point where borders meet.
+/// Continuation of a motion from a point at which borders meet.
 enum Onward {
     /// Into a cell.
     Into(usize),
@@ -94,7 +94,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         &self.sheets[self.cells[cell].sheet]
     }
 
-    /// Unit direction of the motion in a cell; zero where it is level.
+    /// Unit direction of the motion in a cell; zero if it is level.
     fn direction(&self, cell: usize) -> DVec2 {
         let g = self.sheet(cell).gradient;
         if g.length() <= self.seam { DVec2::ZERO } else { -g.normalize() }
@@ -105,7 +105,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         self.direction(cell).perp_dot(at)
     }
 
-    /// Distance under which two points are one: a few seams, like the borders.
+    /// Distance below which two points are equal: a few seams, as for the borders.
     fn near(&self) -> f64 {
         NEAR * self.seam
     }
@@ -150,7 +150,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         (self.across(cell, border.from), self.across(cell, border.to))
     }
 
-    /// What becomes of the points that leave `cell` by its k-th border, in the cell's own coordinate.
+    /// Outcomes of the points that leave `cell` by its k-th border, in the cell's own coordinate.
     fn stretch(&mut self, cell: usize, k: usize, depth: usize) -> Vec<Strip> {
         match &self.stretches[cell][k] {
             Stretch::Known(strips) => return strips.clone(),
@@ -206,7 +206,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         }
     }
 
-    /// How a motion that leaves `cell` goes on at one of its borders.
+    /// Continuation of a motion that leaves `cell` at one of its borders.
     fn way(&self, cell: usize, border: &Border) -> Way {
         let Some(next) = border.across else { return Way::Missed };
         let middle = border.midpoint();
@@ -243,7 +243,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         })
     }
 
-    /// Whether a motion that arrives at a point where borders meet, sliding in direction `on`, reaches the
+    /// Whether a motion that arrives at a point at which borders meet, sliding in direction `on`, reaches the
     /// seat.
     fn ends_well(&mut self, at: DVec2, height: f64, on: DVec2, depth: usize) -> bool {
         if (self.docked)(at, height) {

@@ -6,7 +6,7 @@ use crate::connector::Half;
 use crate::exec::Exec;
 use glam::DVec2;
 
-/// A part of the height function where it is one plane.
+/// A part of the height function that is a single plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightFacet {
     /// Corners of the offsets, counter-clockwise, in D.
@@ -24,11 +24,12 @@ impl HeightFacet {
     }
 }
 
-/// The height of first contact of a fixed and a moving half, exactly, as planes over convex polygons that tile the offsets at
-/// which they touch. Halves are taken as they stand: the height is that of the moving half's origin, and nothing is turned.
+/// The height of first contact of a fixed and a moving half, exactly, as planes over convex polygons that
+/// tile the offsets at which they touch. Halves are used as given: the height is that of the moving half's
+/// origin, and nothing is rotated.
 ///
 /// # Errors
-/// Where the contacts are too many, or the run was stopped.
+/// If there are too many contacts, or the computation is cancelled.
 pub fn heights(
     fixed: &Half,
     moving: &Half,
@@ -39,11 +40,11 @@ pub fn heights(
     envelope(&sheets, settings.seam, exec)
 }
 
-/// The largest of functions that are given as planes over convex polygons, counter-clockwise, as planes over convex polygons that
-/// do not overlap.
+/// The maximum of functions that are given as planes over convex polygons, counter-clockwise, as planes over
+/// convex polygons that do not overlap.
 ///
 /// # Errors
-/// Where the planes are too many, or the run was stopped.
+/// If there are too many planes, or the computation is cancelled.
 pub fn highest(
     facets: impl IntoIterator<Item = HeightFacet>,
     settings: &ZraaSettings,

@@ -3,7 +3,7 @@
 use super::sheet::Sheet;
 use glam::DVec2;
 
-/// A stretch of the line over which one plane is a candidate for the height.
+/// A segment of the line over which a plane is a candidate for the height.
 pub(super) struct Segment {
     pub(super) from: f64,
     pub(super) to: f64,
@@ -20,8 +20,9 @@ impl Segment {
 
 /// The interval around the mated pose, along `axis`, from which the motion leads back to it.
 ///
-/// The height over the line is cut where two planes cross or one ends; outward from 0 every stretch must lie in the seat, at most
-/// `depth` above the height at 0, or fall towards 0, and no step may block the way.
+/// The height over the line is divided at every intersection and end of planes; outward from 0 every segment
+/// must lie in the seat, at most `depth` above the height at 0, or fall towards 0, and no step may block the
+/// motion.
 pub(super) fn interval(sheets: &[Sheet], axis: DVec2, depth: f64, seam: f64) -> [f64; 2] {
     let segments: Vec<Segment> = sheets.iter().filter_map(|p| along(p, axis, seam)).collect();
     let tops = envelope(&segments);
@@ -114,7 +115,7 @@ fn merged<'a>(a: &[Top<'a>], b: &[Top<'a>]) -> Vec<Top<'a>> {
     out
 }
 
-/// How far from 0, in the direction of `sign`, the motion still leads back.
+/// Distance from 0, in the direction of `sign`, up to which the motion leads back.
 fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
     let near = 10.0 * seam;
     let mated = tops.iter().filter(|top| top.from <= 0.0 && 0.0 <= top.to).map(|top| top.segment.offset);
@@ -160,7 +161,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Between any two ends or crossings one segment is the highest, and the envelope has it.
+        /// Between any two ends or intersections a single segment is the highest, and the envelope contains
+        /// it.
         #[test]
         fn the_envelope_is_the_highest_everywhere(
             raw in prop::collection::vec((-4i32..4, 1i32..5, -3i32..3, -2i32..3), 1..12),

@@ -74,7 +74,7 @@ impl Default for ZraaSettings {
 /// Translations that are corrected without any rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Zraa {
-    /// One free translation: offsets from `from` to `to` along `axis`, in D.
+    /// A single free translation: offsets from `from` to `to` along `axis`, in D.
     Interval {
         /// x or y.
         axis: Dof,
@@ -89,7 +89,7 @@ pub enum Zraa {
         polygons: Vec<Vec<DVec2>>,
         /// Their area, in D².
         area: f64,
-        /// The seam with which they were cut, in D: gaps of some of it between them are none.
+        /// The seam with which they were cut, in D: gaps of a few seams between them are due to rounding.
         seam: f64,
     },
 }
@@ -115,7 +115,7 @@ pub enum ZraaError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Some of what rests in the seat does not count.
+    /// Some rests in the seat exceed the docking tolerance.
     #[error(
         "docked.{name} is less than the play of the seat: which offsets end within it is not decided exactly here; \
          use run --free x,y"
@@ -132,21 +132,21 @@ pub enum ZraaError {
         "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
     )]
     NoMatedPose,
-    /// An offset lets the aligned half sink deeper: nothing comes to rest there.
+    /// An offset lets the aligned half sink deeper: it is not a rest.
     #[error(transparent)]
     NotHeld(MatedProblem),
     /// The geometry is too rich.
     #[error("more than {MAX_SHEETS} ways to touch: give a coarser mesh or a larger chord_error")]
     TooManySheets,
-    /// Motions say otherwise, with every seam.
+    /// Motions contradict the region, with every seam.
     #[error(
         "exact motions from {differ} of {judged} offsets end otherwise than the region says: which offsets are corrected is not decided \
          exactly here; use run --free x,y"
     )]
     Disputed {
-        /// Offsets of which both say something.
+        /// Number of checked offsets.
         judged: usize,
-        /// Those of which they say different things.
+        /// Number of those that contradict the region.
         differ: usize,
     },
     /// The subdivision is not consistent.

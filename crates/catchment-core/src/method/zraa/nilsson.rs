@@ -36,10 +36,11 @@ use crate::contact::Pair;
 use crate::pose::Dof;
 use glam::DVec2;
 
-/// Heights and places closer than this, in D, are one, and slopes below it level: above the rounding of a few sums.
+/// Heights and positions closer than this, in D, are equal, and slopes below it level: above the rounding of
+/// a few sums.
 const LEVEL: f64 = 1e-12;
 
-/// What one side is limited by: the moving half's minimum must stay short of the fixed half's maximum.
+/// Limit of a side: the moving half's minimum must stay short of the fixed half's maximum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Catch {
     /// x of the minimum on the moving half, mated, in D.
@@ -49,25 +50,25 @@ pub struct Catch {
 }
 
 impl Catch {
-    /// How far it reaches, in D: positive to +x, negative to −x.
+    /// The largest offset, in D: positive to +x, negative to −x.
     pub fn reach(&self) -> f64 {
         self.maximum - self.minimum
     }
 }
 
-/// What a profile corrects without rotation, beside what any profile of its kind can.
+/// Offsets that a profile corrects without rotation, compared with the bound for its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nilsson {
     /// Whether both halves are alike: then the bound is a third of the width, else half of it.
     pub ungendered: bool,
     /// Width of the profile, in D.
     pub width: f64,
-    /// What limits offsets to −x and to +x; `None` where nothing is corrected.
+    /// Limits of offsets to −x and to +x; `None` if nothing is corrected.
     pub catches: [Option<Catch>; 2],
 }
 
 impl Nilsson {
-    /// Beside the exact offsets along x, where the halves of a pair meet along one profile.
+    /// The comparison for the exact offsets along x, if the halves of a pair meet along a single profile.
     pub fn beside(zraa: &Zraa, pair: &Pair) -> Option<Self> {
         matches!(zraa, Zraa::Interval { axis: Dof::X, .. }).then_some(())?;
         HeightProfile::of(pair).map(|profile| Self::of(&profile))
@@ -94,7 +95,7 @@ impl Nilsson {
         self.share() * self.width
     }
 
-    /// Offsets that are corrected, from the most negative to the most positive one, in D.
+    /// Corrected offsets, from the most negative to the most positive, in D.
     pub fn reaches(&self) -> [f64; 2] {
         self.catches.map(|side| side.map_or(0.0, |found| found.reach()))
     }
@@ -106,7 +107,7 @@ impl Nilsson {
     }
 }
 
-/// How far offsets to +x are corrected.
+/// The limit of offsets to +x.
 fn reach(profile: &HeightProfile) -> Option<Catch> {
     let curve = Curve(profile.corners());
     if curve.steepest() <= LEVEL {
@@ -131,7 +132,8 @@ fn reach(profile: &HeightProfile) -> Option<Catch> {
 struct Curve<'a>(&'a [DVec2]);
 
 impl Curve<'_> {
-    /// The piece that an x lies on; on a corner the one to its left, or with `right` the one to its right.
+    /// The segment that contains an x; at a corner the segment to its left, or with `right` that to its
+    /// right.
     fn piece(&self, x: f64, right: bool) -> [DVec2; 2] {
         let before = if right {
             self.0.partition_point(|p| p.x <= x + LEVEL)
@@ -156,8 +158,8 @@ impl Curve<'_> {
         self.0.windows(2).map(|w| (w[1].y - w[0].y) / (w[1].x - w[0].x)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// climb(s), and whether it rises further. The highest pair has a corner of the profile at one of its ends: between corners
-    /// both its heights are linear.
+    /// climb(s), and whether it rises further. The highest pair has a corner of the profile at one of its
+    /// ends: between corners both its heights are linear.
     fn climb(&self, s: f64) -> (f64, bool) {
         let (first, last) = (self.0[0].x, self.0[self.0.len() - 1].x);
         let mut pairs = Vec::new();
@@ -206,7 +208,7 @@ mod tests {
         HeightProfile::new(&corners).unwrap()
     }
 
-    /// One that a half turn maps onto itself: its left half is drawn, its middle lies at height 0.
+    /// A profile that a half turn maps onto itself: its left half is drawn, its middle lies at height 0.
     fn symmetric(left: &[(u32, i32)], end: i32) -> HeightProfile {
         let mut left = left.to_vec();
         left.sort_unstable();
@@ -226,7 +228,7 @@ mod tests {
         HalfSpec::Pieces(corners.windows(2).map(block).collect())
     }
 
-    /// What the solids of a profile and of its counterpart do.
+    /// Exact result for the solids of a profile and of its counterpart.
     fn exact(profile: &HeightProfile) -> Result<Zraa, ZraaError> {
         // The moving half is mounted by a half turn about y: drawn, it is the profile turned in its plane.
         let turned: Vec<DVec2> = profile.corners().iter().rev().map(|p| -*p).collect();
@@ -263,7 +265,7 @@ mod tests {
         prop::collection::vec((1..COLUMNS / 2, -8i32..8), 0..5)
     }
 
-    /// Level stretches are seats of their own, or ground where nothing slides: the theorem has none.
+    /// Level segments are seats of their own, or ground on which nothing slides: the theorem excludes them.
     fn has_no_level(profile: &HeightProfile) -> bool {
         profile.corners().windows(2).all(|w| (w[0].y - w[1].y).abs() > LEVEL)
     }
@@ -382,7 +384,7 @@ mod tests {
         assert_eq!(HeightProfile::of(&apart), None);
     }
 
-    /// Slopes of 12 meet gentle ones: rounding at such a kink is no wall.
+    /// Slopes of 12 meet gentle slopes: rounding at such a kink is not a wall.
     #[test]
     fn steep_kinks_are_no_walls() {
         let left = [(-0.5, -0.125), (-1.0 / 3.0, -0.875), (-7.0 / 24.0, -0.375)];
@@ -394,7 +396,8 @@ mod tests {
         agree(&HeightProfile::new(&corners).unwrap());
     }
 
-    /// One minimum at m, ends higher: min(m, D − m). One maximum at M of a symmetric one: min(M, D − 2M).
+    /// A single minimum at m, ends higher: min(m, D − m). A single maximum at M of a symmetric profile:
+    /// min(M, D − 2M).
     #[test]
     fn single_extrema_have_closed_forms() {
         for m in 1..COLUMNS {

@@ -27,16 +27,16 @@ use crate::method::descent;
 use crate::pose::{Dof, DofSet, PoseError};
 use glam::DVec2;
 
-/// Boxes, each of half the width of the one before.
+/// Number of boxes, each of half the width of the one before.
 const BOXES: i32 = 4;
 /// Places in each.
 const PLACES: u64 = 150;
-/// Distance from the border of the region within which a place is not judged, in D.
+/// Distance from the border of the region within which a position is ignored, in D.
 const MARGIN: f64 = 1e-4;
 /// Of the places.
 const SEED: u64 = 1;
 
-/// What became of the motions.
+/// Outcomes of the motions.
 pub(super) struct Oracle(Vec<(DVec2, bool)>);
 
 impl Oracle {
@@ -61,7 +61,7 @@ impl Oracle {
         Ok(Self(known.map(|(at, outcome)| (at, outcome == Outcome::Aligned)).collect()))
     }
 
-    /// Places that are judged, and how many of them the region says otherwise of.
+    /// Number of checked positions, and number of those that contradict the region.
     pub(super) fn against(&self, region: &Zraa) -> [usize; 2] {
         let aside = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
             .map(|(x, y)| DVec2::new(x, y) * MARGIN);

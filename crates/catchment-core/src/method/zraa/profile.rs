@@ -19,7 +19,8 @@ use crate::connector::{Half, Surface};
 use crate::contact::Pair;
 use glam::{DVec2, DVec3};
 
-/// Points closer than this, in widths of the profile, are one: above single precision, below any drawn detail.
+/// Points closer than this, in widths of the profile, are equal: above single precision, below any drawn
+/// detail.
 const SAME: f64 = 1e-6;
 
 /// A continuous curve z = f(x) of straight pieces.
@@ -50,7 +51,8 @@ impl HeightProfile {
         Some(Self { corners: kept })
     }
 
-    /// The profile along which the halves of a pair meet when they are mated, if they meet along one: see above.
+    /// The profile along which the halves of a pair meet when they are mated, if they meet along a single
+    /// profile: see above.
     pub fn of(pair: &Pair) -> Option<Self> {
         let fixed = Self::border(&pair.fixed, 1.0)?;
         let moving = Self::border(&pair.moving, -1.0)?;
@@ -64,7 +66,7 @@ impl HeightProfile {
         mate.then_some(fixed)
     }
 
-    /// The upper border of a half that is a prism along y; with `sign` −1 the lower one, turned upside down.
+    /// The upper border of a half that is a prism along y; with `sign` −1 the lower border, upside down.
     fn border(half: &Half, sign: f64) -> Option<Self> {
         let (lo, hi) =
             half.surfaces.iter().map(Surface::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
@@ -109,7 +111,7 @@ impl HeightProfile {
         &self.corners
     }
 
-    /// From its left end to its right one, in D.
+    /// Distance from its left to its right end, in D.
     pub fn width(&self) -> f64 {
         self.corners[self.corners.len() - 1].x - self.corners[0].x
     }

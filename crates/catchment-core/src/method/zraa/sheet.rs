@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 
 /// Below this z-component a normal is horizontal: the feature is a wall and has no height.
 const VERTICAL: f64 = tolerance::PARALLEL;
-/// Areas smaller than this, relative to lengths, are none: rounding only.
+/// Areas smaller than this, relative to lengths, count as zero: rounding only.
 const ROUNDING: f64 = 1e-9;
 
 /// A plane over a convex polygon of the lateral plane.
@@ -54,7 +54,8 @@ pub fn area(polygon: &[DVec2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() / 2.0
 }
 
-/// All sheets of a pair of halves, the moving one given from the COR at the aligned rotation; `None` for more than `most`.
+/// All sheets of a pair of halves, with the moving half relative to the COR at the aligned rotation; `None`
+/// for more than `most`.
 pub(super) fn sheets(
     fixed: &Half,
     moving: &Half,
@@ -72,7 +73,7 @@ pub(super) fn sheets(
     Ok((sheets.len() <= most).then_some(sheets))
 }
 
-/// Facets of `a` against corners of `b`; `up` is +1 where a is the fixed half and −1 where it is the moving one.
+/// Facets of `a` against corners of `b`; `up` is +1 if a is the fixed half and −1 if it is the moving half.
 fn facets_and_corners(
     a: &Surface,
     b: &Surface,

@@ -75,7 +75,7 @@ fn a_groove_accepts_its_length() {
     assert!((area - 2.0).abs() < 1e-9, "{area}");
 }
 
-/// Layers with a gap g: |x| < 1, and |y| < g. Beyond, a layer meets the wrong one and rests on it.
+/// Layers with a gap g: |x| < 1, and |y| < g. Beyond, a layer meets the wrong layer and rests on it.
 #[test]
 fn layers_accept_their_gap() {
     for (thickness, gap) in [(0.4, 0.2), (0.1, 0.3), (0.6, 0.05)] {
@@ -258,7 +258,7 @@ proptest! {
     }
 }
 
-/// A family's halves written to STL and read back as one mesh each.
+/// A family's halves written to STL and read back as a mesh each.
 fn through_stl(pair: &Pair, format: stl::StlEncoding) -> Pair {
     let read = |half: &Half| {
         let mut file = Vec::new();

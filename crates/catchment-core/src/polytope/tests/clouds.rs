@@ -38,7 +38,8 @@ pub(super) fn cloud(
     })
 }
 
-/// Points of which some nearly lie on what others span: at distances from far below to above the resolution.
+/// Points of which some nearly lie in the span of others: at distances from far below to above the
+/// resolution.
 pub(super) fn nearly_flat_cloud(
     dimensions: std::ops::RangeInclusive<usize>,
     most: usize,

@@ -4,8 +4,8 @@ use super::super::*;
 use super::clouds::{check, cloud, nearly_flat_cloud, real, sums, support};
 use proptest::prelude::*;
 
-/// How far a support function may be off: rounding to the lattice, and splinters that are left out; corners that
-/// are as sharp as those of random points stand out of a splinter by some thousand times its thickness.
+/// Largest error of a support function: rounding to the lattice, and removed splinters; corners as sharp as
+/// those of random points stand out of a splinter by some thousand times its thickness.
 const SHARP: f64 = 1e-7;
 
 proptest! {

@@ -4,13 +4,13 @@ use super::super::*;
 use super::clouds::{check, cloud, nearly_flat_cloud, real};
 use proptest::prelude::*;
 
-/// How far sums of volumes may be off: slivers thinner than [`RESOLUTION`], a few for each operation, over areas
-/// up to 8.
+/// Largest error of sums of volumes: slivers thinner than [`RESOLUTION`], a few for each operation, over
+/// areas up to 8.
 const SLIVERS: f64 = 1e-7;
 /// Nearer to a border than this, membership is not compared.
 const BORDER: f64 = 1e-6;
 
-/// How far outside a point is; negative inside.
+/// Distance of a point outside; negative inside.
 fn excess(polytope: &Polytope, point: &PolytopePoint) -> f64 {
     polytope.facets().iter().map(|facet| facet.excess(point)).fold(f64::NEG_INFINITY, f64::max)
 }

@@ -15,12 +15,12 @@ use super::super::projection::MAX_COORDINATES;
 const EXACT: f64 = 1e-13;
 /// Most passes: those above, and two for contacts that bend sharply.
 const PASSES: usize = 5;
-/// What is left after the last pass may be as large as this, in D: well below a landing.
+/// Largest residual after the last iteration, in D: well below a landing.
 const GOOD: f64 = 1e-10;
 
 impl Motion<'_> {
-    /// `state` moved by at most `farthest` (ρ-metric and z together) so that the active contacts number `held` touch and
-    /// the others do not overlap; `None` where that is not possible.
+    /// `state` moved by at most `farthest` (ρ-metric and z combined) so that the active contacts number
+    /// `held` touch and the others do not overlap; `None` if that is not possible.
     pub(super) fn corrected(&mut self, state: &State, held: &[usize], farthest: f64) -> Option<State> {
         let mut state = *state;
         let mut moved = 0.0;

@@ -20,26 +20,30 @@ use crate::contact::{Contact, Meeting, chord};
 
 /// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
 const MOST_TRIALS: usize = 60;
-/// Trials of an event alone between two at which everything is looked at: of events that jump more are in vain.
+/// Number of trials for an event alone between two trials with all features: further trials are useless for
+/// events that jump.
 const NARROWINGS: usize = 8;
 /// A step shorter than this leads nowhere, in D.
 const NOWHERE: f64 = 1e-12;
 /// A correction may move a body by this share of its step, and by this much in D, before it is not trusted.
 const TRUSTED_SHARE: f64 = 0.1;
 const TRUSTED: f64 = 1e-6;
-/// What blocks a step at its start is one more contact if it is this close, in D.
+/// A contact that blocks a step at its start is added if it is this close, in D.
 const CLOSE: f64 = 1e-6;
-/// What was open by less than this share of its overlap before a step had been passed earlier, behind a wall.
+/// A feature that was open by less than this share of its overlap before a step had been passed earlier,
+/// behind a wall.
 const PASSED_BEFORE: f64 = 0.25;
-/// So a gap that counts has closed by this many times what the body moved at most, with room for edges, whose feet move, too.
+/// Largest closing of a relevant gap, as a multiple of the largest displacement of the body, with room for
+/// edges, whose feet move, too.
 const CLOSED_BY: f64 = 2.0;
-/// Of halves of many facets, where what a step may reach is most of a part, overlaps are looked for down to this, in D: deeper ones are seen by
-/// edges that pass through facets, and the step is halved.
+/// For halves of many facets, for which the reach of a step contains most of a part, overlaps are searched
+/// only down to this depth, in D: deeper overlaps are detected by edges that pass through facets, and the
+/// step is halved.
 const DEEPEST_MET: f64 = 2e-3;
 /// False position keeps off the ends of its interval by this share of it.
 const EDGE: f64 = 1e-6;
 
-/// Where a step ended.
+/// End of a step.
 pub(super) enum Reached {
     /// Here, after this length.
     At(State, f64),
@@ -47,11 +51,11 @@ pub(super) enum Reached {
     Blocked(Option<(Contact, Meeting)>),
 }
 
-/// What came of a step of some length.
+/// Result of a step of some length.
 enum Trial {
-    /// Nothing met, nothing lost; and whether it was asked if the halves overlap, which they do not.
+    /// No contact met or lost; and whether the halves were tested for overlap, with a negative result.
     Clear(State, bool),
-    /// A contact overlaps, or one that carries is lost; and the same.
+    /// A contact overlaps, or a carrying contact is lost; and whether the halves were tested for overlap.
     Passed(State, Event, bool),
     /// The contacts that carry cannot be kept.
     Failed,
@@ -59,7 +63,7 @@ enum Trial {
     Overlaps,
 }
 
-/// What may happen to two features.
+/// Possible events of two features.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// They meet: the gap falls through 0.
@@ -76,7 +80,7 @@ struct Event {
     kind: Kind,
 }
 
-/// An event between a clear length and one that passes it, with the values there for false position.
+/// An event between a clear length and a length that passes it, with the values there for false position.
 #[derive(Clone, Copy)]
 struct Bracket {
     event: Event,
@@ -107,7 +111,7 @@ impl Bracket {
         (self.passed, self.last) = (value, Some(End::Passed));
     }
 
-    /// Where the event is expected, as a share of the way from the clear length to the other.
+    /// Expected position of the event, as a share of the distance from the clear length to the other.
     fn share(&self) -> f64 {
         if self.clear > 0.0 && self.passed < 0.0 {
             (self.clear / (self.clear - self.passed)).clamp(EDGE, 1.0 - EDGE)
@@ -116,7 +120,7 @@ impl Bracket {
         }
     }
 
-    /// Whether a step that ends where the event's function has this value ends on the event.
+    /// Whether a step that ends at this value of the event's function ends on the event.
     fn lands(&self, value: f64) -> bool {
         match self.event.kind {
             Kind::Met => (-1.5 * LANDING..=LANDING).contains(&value),
@@ -126,7 +130,7 @@ impl Bracket {
 }
 
 impl Motion<'_> {
-    /// Moves from `state`, where the direction is `start`, by `step`, or to the first event before.
+    /// Moves from `state`, with the direction `start`, by `step`, or to the first event before.
     pub(super) fn until_event(&mut self, state: &State, start: &Vector, step: f64) -> Reached {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
@@ -200,8 +204,8 @@ impl Motion<'_> {
         ))
     }
 
-    /// The length between a clear one and one that passes an event at which a step ends on it, whatever else may happen there: by false position, and
-    /// without a look at other features.
+    /// The length, between a clear length and a length that passes an event, at which a step ends on the
+    /// event, regardless of other events there: by false position, and without testing other features.
     fn narrowed(
         &mut self,
         state: &State,
@@ -237,13 +241,13 @@ impl Motion<'_> {
         }
     }
 
-    /// How far a contact is from being lost, in D or as a sine, whichever is less.
+    /// Distance of a contact from its loss, in D or as a sine, whichever is less.
     pub(super) fn hold(&self, contact: &Contact, meeting: &Meeting, state: &State) -> f64 {
         let hold = self.pair.hold(contact, meeting, &state.rotation, state.cor);
         (hold.foot + BORDER).min(hold.support + SUPPORT)
     }
 
-    /// A step of length `at`, and what comes of it; overlaps that no contact announces are seen only if `wary`.
+    /// A step of length `at`, with its result; overlaps that no contact predicts are detected only if `wary`.
     fn attempt(&mut self, state: &State, start: &Vector, at: f64, wary: bool) -> Trial {
         let Some(next) = self.step_of(state, start, at) else { return Trial::Failed };
         let carrying = std::mem::take(&mut self.sliding.carrying);
@@ -252,7 +256,7 @@ impl Motion<'_> {
         trial
     }
 
-    /// Where a step of length `at` ends, with the contacts that carry kept, as far as they can be.
+    /// End of a step of length `at`, with the carrying contacts kept as far as possible.
     fn step_of(&mut self, state: &State, start: &Vector, at: f64) -> Option<State> {
         let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
         let u = self.direction(&middle).unwrap_or(*start);
@@ -266,7 +270,7 @@ impl Motion<'_> {
         corrected
     }
 
-    /// What comes of a step of length `at` from `state` that ends at `next`.
+    /// Result of a step of length `at` from `state` that ends at `next`.
     fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize], wary: bool) -> Trial {
         let closed = CLOSED_BY * self.moved_by(state, &next);
         let closed = closed.min(self.horizon(at).1);
@@ -290,7 +294,8 @@ impl Motion<'_> {
         }
     }
 
-    /// Of what overlaps at `next` by up to `reach`, what was met first from `state` on if gaps close evenly.
+    /// The first contact met from `state` on among those that overlap at `next` by up to `reach`, if gaps
+    /// close evenly.
     fn first_met(&mut self, state: &State, next: &State, reach: f64) -> Option<Event> {
         self.look(next);
         let mut touched = std::mem::take(&mut self.sliding.touched);
@@ -309,7 +314,7 @@ impl Motion<'_> {
         first
     }
 
-    /// How far any point of the body is moved at most.
+    /// Largest displacement of any point of the body.
     fn moved_by(&self, from: &State, to: &State) -> f64 {
         from.cor.distance(to.cor) + self.radius * chord(&from.rotation, &to.rotation)
     }

@@ -36,37 +36,42 @@ use crate::contact::{Contact, FLUSH, Meeting};
 use event::Reached;
 use glam::{DMat3, DVec2};
 
-/// A gap below this touches, in D: above what a landing leaves, far below what turns a direction.
+/// A gap below this touches, in D: above the residual of a landing, far below a gap that would change a
+/// direction.
 const ACTIVE: f64 = 2.0 * LANDING;
-/// A contact is landed on when its gap is this close to 0, in D: above what is inexact in coplanar facets of drawn pieces.
+/// A contact has landed if its gap is this close to 0, in D: above the inexactness of coplanar facets of
+/// drawn pieces.
 const LANDING: f64 = 1e-9;
-/// Overlap up to which a contact still counts, in D: what a height rounded on a steep slope leaves. Deeper ones were passed.
+/// Largest overlap that still counts as contact, in D: that of a height rounded on a steep slope. Deeper
+/// overlaps were passed.
 const DEEPEST: f64 = 1e-7;
-/// A foot counts as on its feature up to this far beyond the border, in D: above [`ACTIVE`], so that the facets on both
-/// sides of a valley are felt together; below the distance at which walls between pieces are looked for (1e-7).
+/// A foot counts as on its feature up to this distance beyond the border, in D: above [`ACTIVE`], so that the
+/// facets on both sides of a valley are active together; below the distance at which walls between pieces are
+/// searched (1e-7).
 const BORDER: f64 = 1e-8;
 /// Sine by which a feature may fail to support a normal: that of faces that lie flush.
 const SUPPORT: f64 = FLUSH;
 
-/// Rest: where the force alone would push the body by 1, it moves by less than this.
+/// The body is at rest if it moves by less than this while the force alone would move it by 1.
 const STILL: f64 = 1e-7;
 /// Largest change of the direction, 1 in its largest part, from the start of a step to its middle.
 const BEND: f64 = 0.05;
 /// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
 const LEAST_SHARE: f64 = 1e-6;
-/// After an event a step is tried as many times as long as the last one, but no shorter than this share of the longest: where a step is tried, everything
-/// that is near there is looked at.
+/// After an event the next step is tried with this multiple of the last length, at least this share of the
+/// longest: each trial tests all features nearby.
 const FURTHER: f64 = 4.0;
 const LEAST_TRY: f64 = 0.25;
-/// How far beyond the border a lost contact is left at most, in D or as a sine: below what a landing tells apart.
+/// Largest distance beyond the border at which a lost contact is left, in D or as a sine: below the
+/// resolution of a landing.
 const FAR_SIDE: f64 = 1e-9;
-/// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
+/// A contact met at the very start of a step is added, at most this often: the corners of two faces.
 const MOST_BLOCKERS: usize = 8;
 /// The contacts that will carry are brought to touch within this before a step, in D: landings on contacts close
 /// together, whose correction is longer than their gap.
 const SETTLED: f64 = 1e-6;
 
-/// A step shorter than this crawls, in D: far below a facet, above what a landing leaves to be closed.
+/// A step shorter than this crawls, in D: far below a facet, above the residual of a landing.
 const CRAWL: f64 = 1e-5;
 /// After so many such steps in a row contacts alternate without an end: more than any two faces have corners.
 const MOST_CRAWLS: usize = 32;
@@ -74,13 +79,13 @@ const MOST_CRAWLS: usize = 32;
 /// Buffers of a sliding motion.
 #[derive(Debug, Default)]
 pub(super) struct Sliding {
-    /// Where the elements are those that [`SUPPORT`] asks for.
+    /// Pose at which the elements are those required by [`SUPPORT`].
     looked: Option<(DMat3, DVec2)>,
     /// How many steps in a row have crawled.
     crawls: usize,
     /// Which of the active contacts carry the body.
     carrying: Vec<usize>,
-    /// What is touched at the end of a step that is tried.
+    /// Contacts at the end of a trial step.
     touched: Vec<(Contact, Meeting)>,
     rows: Vec<Vector>,
     tangents: Vec<Tangents>,
@@ -88,14 +93,14 @@ pub(super) struct Sliding {
 }
 
 impl Sliding {
-    /// What was seen last is gone: the pose is another, or the elements are others.
+    /// Discards the last results: the pose, or the elements, have changed.
     pub(super) const fn forget(&mut self) {
         (self.looked, self.crawls) = (None, 0);
     }
 }
 
 impl Motion<'_> {
-    /// Finds the active contacts and takes the body out of what they overlap.
+    /// Finds the active contacts and moves the body out of their overlaps.
     pub(super) fn feel(&mut self, state: &State) -> State {
         self.look(state);
         self.nearby.contacts_within(state.cor, DEEPEST, BORDER, &mut self.contacts);
@@ -103,7 +108,7 @@ impl Motion<'_> {
         self.corrected(state, &[], DEEPEST).unwrap_or(*state)
     }
 
-    /// One step from `state`, whose active contacts have been felt, to its first event.
+    /// A step from `state`, with its active contacts known, to its first event.
     pub(super) fn slide(&mut self, state: &State, pace: &mut Pace) -> Advance {
         let mut state = *state;
         for _ in 0..=MOST_BLOCKERS {
@@ -149,8 +154,8 @@ impl Motion<'_> {
         self.sliding.crawls = if length < CRAWL { self.sliding.crawls + 1 } else { 0 };
     }
 
-    /// Forgets the contacts that are no longer on their features at `state`, to which a correction has brought the body; says whether
-    /// one of them carried it.
+    /// Removes the contacts that are no longer on their features at `state`, to which a correction has moved
+    /// the body; returns whether one of them carried it.
     fn lets_go(&mut self, state: &State) -> bool {
         let mut contacts = std::mem::take(&mut self.contacts);
         let lost = |(contact, meeting): &(Contact, Meeting)| {
@@ -165,7 +170,7 @@ impl Motion<'_> {
         carried
     }
 
-    /// Turns to `state`, unless that is where the last look was.
+    /// Moves to `state`, unless the last query was there.
     fn look(&mut self, state: &State) {
         let here = (state.rotation, state.cor.truncate());
         if self.sliding.looked != Some(here) {
@@ -175,7 +180,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Lowers the body to what is next below it.
+    /// Lowers the body to the next contact below it.
     fn drop_down(&mut self, state: &State) -> Advance {
         // Faces may land flush: what nearly supports counts too.
         self.sliding.looked = None;
@@ -211,8 +216,9 @@ impl Motion<'_> {
         step
     }
 
-    /// Where the body goes at `state` by the active contacts, borders aside, with 1 for what is longer: its lateral part
-    /// (ρ-metric) or its fall. Keeps which contacts carry it. `None` at rest.
+    /// Direction of the body at `state` by the active contacts, regardless of borders, with its larger
+    /// component scaled to 1: its lateral part (ρ-metric) or its fall. Stores the carrying contacts. `None`
+    /// at rest.
     fn direction(&mut self, state: &State) -> Option<Vector> {
         let axes = self.axes(state);
         let mut rows = std::mem::take(&mut self.sliding.rows);
@@ -243,7 +249,7 @@ fn lateral(u: &Vector) -> f64 {
     u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>().sqrt()
 }
 
-/// How far two directions are apart.
+/// Distance between two directions.
 fn difference(a: &Vector, b: &Vector) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

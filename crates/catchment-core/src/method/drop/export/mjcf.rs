@@ -118,7 +118,7 @@ fn options(scene: &Scene, out: &mut String) -> fmt::Result {
     )
 }
 
-/// The joints of the moving body, and where they start.
+/// The joints of the moving body, and their initial values.
 fn joints(scene: &Scene, out: &mut String) -> Result<Vec<f64>, fmt::Error> {
     let Scene { cor, rotation, turning, pair, .. } = scene;
     let free = pair.alignment.free;

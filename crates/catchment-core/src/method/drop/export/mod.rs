@@ -57,10 +57,10 @@ pub enum ExportError {
         /// Which surface, from 0.
         surface: usize,
     },
-    /// A ground, which the files have none of.
+    /// A ground plane, which the files do not support.
     #[error("a ground plane is not exported: leave it out here, and add one to the file")]
     Ground,
-    /// A half that moves when it is let go, which the files do not say.
+    /// A half that moves at its release, which the files do not support.
     #[error(
         "a half that is let go in motion is not exported: leave its speed, drift and spin out here, and add them to the file"
     )]

@@ -27,10 +27,10 @@ pub struct World {
     pub meshes: Vec<(String, Vec<u8>)>,
 }
 
-/// The world and its meshes: paths beside each other, and what is in them.
+/// The world and its meshes: relative paths, with their content.
 ///
 /// # Errors
-/// None in practice: meshes are written into memory.
+/// Never in practice: meshes are written into memory.
 pub fn write(scene: &Scene) -> io::Result<World> {
     let mut files = Vec::new();
     for (name, pieces) in [("fixed", &scene.fixed), ("moving", &scene.moving)] {

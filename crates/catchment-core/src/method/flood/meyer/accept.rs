@@ -37,9 +37,9 @@ impl MeyerSettings {
     /// Depth tolerance of the text, as a share of the height H of the face.
     pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
 
-    /// What the text says for a design: a tolerance of 0.1·H, in D, where the connector is of a family, whose H is
-    /// known. Pieces and meshes have no H: nobody can say which part of them is the face, so the widest gap decides, which on the
-    /// families accepts the same cells wherever the two were compared.
+    /// The settings of the text for a design: a tolerance of 0.1·H, in D, if the connector is of a family,
+    /// whose H is known. Pieces and meshes have no H, because their face is not defined; the widest gap
+    /// decides instead, which on the families accepts the same cells wherever the two were compared.
     pub fn of(design: &Design) -> Self {
         let depth_tolerance = match &design.connector {
             ConnectorSpec::Family(spec) => Some(Self::DEPTH_PER_FACE_HEIGHT * spec.aspect_ratio()),
@@ -70,19 +70,19 @@ pub struct MeyerFlooding {
 const BYTES_PER_CELL: u64 =
     (2 * size_of::<u32>() + 2 * size_of::<Shore<f32>>() + size_of::<usize>() + size_of::<Outcome>()) as u64;
 
-/// Bytes that flooding `cells` cells needs, heights included; what the passes between basins take comes on top.
+/// Bytes needed to flood `cells` cells, including heights; the passes between basins need additional memory.
 pub const fn bytes(cells: u64) -> u64 {
     cells.saturating_mul(BYTES_PER_CELL + Landscape::bytes(1))
 }
 
 /// Floods a landscape by Meyer's queue; `docks` as for [`flood`](super::super::flood).
 ///
-/// The mated pose is where it is for [`flood`](super::super::flood): the minima among the cells around it are one, and where
-/// none of them is a minimum, the target is the basin of the lowest. If that basin gathers deeper below the mated pose than
-/// the tolerance explains, nothing is accepted.
+/// The mated pose is treated as in [`flood`](super::super::flood): the minima among the cells around it are
+/// merged, and if no such cell is a minimum, the target is the basin of the lowest. If that basin drains
+/// deeper below the mated pose than the tolerance explains, no cell is accepted.
 ///
 /// # Errors
-/// When the tolerance is no depth, the landscape is too large, or the computation is cancelled.
+/// If the tolerance is not a depth, the landscape is too large, or the computation is cancelled.
 pub fn accept(
     landscape: &Landscape,
     alignment: &Alignment,

@@ -35,7 +35,7 @@ pub struct Rules {
     pub dams_pass_water_on: bool,
 }
 
-/// What heights are stored as: `f32` or `f64`.
+/// Storage type of heights: `f32` or `f64`.
 pub trait Height: Copy + PartialOrd + Into<f64> + Send + Sync + sealed::Sealed {}
 impl Height for f32 {}
 impl Height for f64 {}
@@ -49,13 +49,13 @@ mod sealed {
 
 /// Labels after flooding: `DAM` or a basin number per cell, `UNSEEN` for a cell walled in by dams.
 pub(super) struct Flooded {
-    /// One per cell.
+    /// The label of each cell.
     pub(super) labels: Vec<u32>,
     /// For every basin number the lowest cell, first in memory among equals; `None` for numbers not in use.
     pub(super) minima: Vec<Option<usize>>,
 }
 
-/// Labels the minima and floods the rest. Minima that hold one of the `targets` become one basin.
+/// Labels the minima and floods the rest. Minima that contain one of the `targets` become a single basin.
 pub(super) fn flood<H: Height>(
     heights: &[H],
     around: &Neighbourhood,
@@ -73,11 +73,11 @@ pub(super) fn flood<H: Height>(
     Ok(Flooded { labels, minima })
 }
 
-/// How many cells are worked on between two looks at the cancel flag.
+/// Number of cells between two checks of the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 14;
 
-/// A minimum is a connected set of equal cells without a lower neighbour; by the other rule, one of equal cells
-/// that each have none.
+/// A minimum is a connected set of equal cells without a lower neighbour; by the other rule, a set of equal
+/// cells each without a lower neighbour.
 fn label_minima<H: Height>(
     heights: &[H],
     around: &Neighbourhood,
@@ -142,7 +142,7 @@ fn label_minima<H: Height>(
     Ok(())
 }
 
-/// Gives all minima that hold a target cell one number, the smallest.
+/// Gives all minima that contain a target cell the same number, the smallest.
 fn join<H: Height>(labels: &mut [u32], minima: &mut [Option<usize>], heights: &[H], targets: &[usize]) {
     let mut numbers: Vec<u32> =
         targets.iter().map(|t| labels[*t]).filter(|l| is_basin(*l) && *l != OUTSIDE).collect();
@@ -175,7 +175,7 @@ pub(super) struct Shore<H> {
 }
 
 impl<H: Height> Ord for Shore<H> {
-    /// The greatest is the lowest cell, and among equals the one that came first.
+    /// The greatest is the lowest cell, and among equals the first to arrive.
     fn cmp(&self, other: &Self) -> Ordering {
         other
             .height
@@ -199,7 +199,8 @@ impl<H: Height> PartialEq for Shore<H> {
 
 impl<H: Height> Eq for Shore<H> {}
 
-/// Meyer's flooding: the lowest cell on the water line joins the one basin it touches, or becomes a dam.
+/// Meyer's flooding: the lowest cell on the water line joins the single basin that it touches, or becomes a
+/// dam.
 fn rise<H: Height>(
     heights: &[H],
     around: &Neighbourhood,

@@ -7,11 +7,11 @@ use crate::landscape::Grid;
 use crate::method::flood::brute::neighbours;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The basin of every cell after merging: 1 is the outside (height −∞), minima are numbered from 2 in the order of
-/// their first cells, and a basin that others have joined keeps its own number. A cell whose basin was never found
-/// has 0, which no landscape without NaN holds.
+/// The basin of every cell after merging: 1 is the outside (height −∞), minima are numbered from 2 in the
+/// order of their first cells, and a basin that others have joined keeps its own number. A cell without a
+/// basin has 0, which occurs only in landscapes with NaN.
 ///
-/// `shape` has the first axis fastest; minima that hold one of `targets` are one minimum.
+/// `shape` has the first axis fastest; minima that contain one of `targets` are merged.
 pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f64, rules: Rules) -> Vec<u32> {
     let near: Vec<Vec<usize>> = (0..heights.len()).map(|c| neighbours(shape, c)).collect();
     let (mut basin, mut bottoms) = minima(heights, &near, rules);
@@ -30,9 +30,9 @@ pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f6
     basin.iter().map(|b| b.map_or(0, |b| into[&b])).collect()
 }
 
-/// What becomes of every cell, given the basins of [`divide`] and the cells around the mated pose: the outside and basins
-/// whose lowest cell lies on a border of x or y are missed, that of the lowest target is aligned unless it gathers deeper
-/// below it than the tolerance, the rest is jammed.
+/// The outcome of every cell, given the basins of [`divide`] and the cells around the mated pose: the outside
+/// and basins with their lowest cell on a border of x or y are missed, the basin of the lowest target is
+/// aligned unless it drains deeper below it than the tolerance, the rest is jammed.
 pub fn outcomes(
     grid: &Grid,
     heights: &[f64],
@@ -121,7 +121,8 @@ fn flood(heights: &[f64], near: &[Vec<usize>], rules: Rules, basin: &mut [Option
     dams
 }
 
-/// Where every basin ends up when the shallowest below the tolerance joins its neighbour, again and again.
+/// The final basin of every basin after repeatedly merging the shallowest basin below the tolerance into its
+/// neighbour.
 fn merge(
     heights: &[f64],
     near: &[Vec<usize>],

@@ -22,7 +22,7 @@ const INFO: Info = Info {
 pub(in crate::method) const ENTRY: RegistryEntry = RegistryEntry::of::<MeyerSettings>(&INFO);
 
 impl MeyerSettings {
-    /// These settings with the tolerance of the text where none was given.
+    /// These settings with the tolerance of the text as the default.
     fn for_problem(&self, problem: &Problem) -> Self {
         let depth_tolerance = self.depth_tolerance.or(Self::of(problem.design()).depth_tolerance);
         Self { depth_tolerance, ..*self }
@@ -56,7 +56,7 @@ impl DecisionMethod for MeyerSettings {
     }
 
     fn cost(&self, _: &Problem, grid: &Grid) -> Cost {
-        /// Core-seconds per cell and neighbour: the queue looks at all of them.
+        /// Core-seconds per cell and neighbour: the queue visits all neighbours.
         const NEIGHBOUR_SECONDS: f64 = 5e-8;
         let cells = grid.axes.iter().map(|axis| axis.cells as f64).product::<f64>();
         let neighbours = 3f64.powf(grid.axes.len() as f64);

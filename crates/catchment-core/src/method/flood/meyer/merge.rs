@@ -14,10 +14,10 @@ use std::collections::{BTreeMap, BinaryHeap};
 /// The lowest pass to each neighbouring basin.
 pub(super) type Passes = BTreeMap<u32, f64>;
 
-/// The lowest pass between every two basins that meet at a dam; one map per basin number.
+/// The lowest pass between every two basins that meet at a dam; a map for each basin number.
 ///
-/// The pass over a dam cell is as high as the cell or as the lowest cell of either basin beside it, whichever is
-/// highest.
+/// The pass over a dam cell has the height of the cell or of the lowest cell of either adjacent basin,
+/// whichever is highest.
 pub(super) fn passes<H: Height>(heights: &[H], around: &Neighbourhood, flooded: &Flooded) -> Vec<Passes> {
     let mut passes = vec![Passes::new(); flooded.minima.len()];
     let mut beside: Vec<(u32, f64)> = Vec::new();
@@ -50,7 +50,7 @@ pub(super) fn passes<H: Height>(heights: &[H], around: &Neighbourhood, flooded: 
     passes
 }
 
-/// What merging makes of the basins.
+/// Result of merging the basins.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Merged {
     /// For every basin number, the number of the basin it ended up in.
@@ -77,8 +77,8 @@ impl Ord for Depth {
     }
 }
 
-/// Merges, as long as there is one, the shallowest basin of a depth below `tolerance` into the basin across its
-/// lowest pass, which keeps its number. Among equals the smallest number goes first.
+/// Merges, as long as there is one, the shallowest basin of a depth below `tolerance` into the basin across
+/// its lowest pass, which keeps its number. Among equals the smallest number is merged first.
 pub(super) fn merge(bottoms: Vec<f64>, mut passes: Vec<Passes>, tolerance: f64) -> Merged {
     let count = bottoms.len();
     let mut bottom = bottoms;

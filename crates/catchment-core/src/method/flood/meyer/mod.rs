@@ -44,13 +44,13 @@ use basins::{OUTSIDE, is_basin};
 use merge::Merged;
 use neighbourhood::Neighbourhood;
 
-/// A landscape divided into basins: every cell belongs to one, or is a dam.
+/// A landscape divided into basins: every cell belongs to a basin, or is a dam.
 #[derive(Debug, Clone)]
 pub struct Division {
     around: Neighbourhood,
-    /// The basin number of every cell, before merging; dam cells have none.
+    /// The basin number of every cell, before merging; dam cells have no basin.
     labels: Vec<u32>,
-    /// Where the basins ended up.
+    /// The final basins.
     merged: Merged,
 }
 
@@ -74,15 +74,15 @@ impl Division {
         basin == OUTSIDE
     }
 
-    /// The label of every cell before merging, and where merging takes it. Cells that are walled in by dams are dams.
+    /// The label of every cell before and after merging. Cells enclosed by dams are dams.
     pub fn watersheds(&self) -> Watersheds {
         let label = |label: &u32| if is_basin(*label) { *label } else { flood::DAM };
         let first = self.labels.iter().map(label).collect();
         Watersheds { first, into: self.merged.into.clone(), outside: Some(OUTSIDE) }
     }
 
-    /// The cells around a cell, up to 3ⁿ − 1: in ascending order of their place along the last axis, then along the one
-    /// before.
+    /// The cells around a cell, up to 3ⁿ − 1: in ascending order of their position along the last axis, then
+    /// along the axis before.
     pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
         self.around.of(cell)
     }
@@ -97,12 +97,12 @@ impl Division {
 
 /// Minima, flooding and merging of heights over a grid.
 ///
-/// `shape` has the cells per axis, the first running fastest; `heights` one value per cell, −∞ where there is no contact,
-/// never NaN. Minima that hold one of the cells `targets` are one. Basins shallower than `tolerance`, in the unit of the
-/// heights, are merged.
+/// `shape` has the cells per axis, the first axis fastest; `heights` a value for each cell, −∞ without
+/// contact, never NaN. Minima that contain one of the cells `targets` are merged. Basins shallower than
+/// `tolerance`, in the unit of the heights, are merged.
 ///
 /// # Errors
-/// When the shape is not that of the heights, there are too many cells, or the computation is cancelled.
+/// If the shape is not that of the heights, there are too many cells, or the computation is cancelled.
 pub fn divide<H: Height>(
     shape: &[usize],
     heights: &[H],

@@ -1,11 +1,11 @@
 //! The full neighbourhood of a cell, 3ⁿ − 1 cells, in a grid of any number of axes.
 
-/// A step to one neighbour.
+/// A step to a neighbour.
 #[derive(Debug, Clone)]
 struct Step {
     /// Added to the index of the cell.
     delta: isize,
-    /// Borders that forbid the step: bit 2a for the lower border of axis a, bit 2a + 1 for the upper one.
+    /// Borders that forbid the step: bit 2a for the lower border of axis a, bit 2a + 1 for the upper border.
     forbidden_at: u32,
     /// Length of the step in cells.
     length: f64,
@@ -25,7 +25,7 @@ pub(super) fn cells(shape: &[usize]) -> Option<usize> {
 }
 
 impl Neighbourhood {
-    /// Most axes of a grid: two bits each tell which borders a cell lies on.
+    /// Largest number of axes of a grid: two bits each store the borders on which a cell lies.
     pub(super) const MOST_AXES: usize = 16;
 
     /// For a grid of this shape, which has at most [`Self::MOST_AXES`] axes.
@@ -54,7 +54,7 @@ impl Neighbourhood {
         Self { shape: shape.to_vec(), steps }
     }
 
-    /// The borders that a cell lies on, one bit each.
+    /// The borders on which a cell lies, a bit each.
     fn borders(&self, mut index: usize) -> u32 {
         let mut borders = 0;
         for (axis, cells) in self.shape.iter().enumerate() {
@@ -65,7 +65,7 @@ impl Neighbourhood {
         borders
     }
 
-    /// Neighbours of a cell, in ascending order of their offset along the last axis, then the one before, ….
+    /// Neighbours of a cell, in ascending order of their offset along the last axis, then the axis before, ….
     pub(in super::super) fn of(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
         self.with_length(index).map(|(neighbour, _)| neighbour)
     }

@@ -15,7 +15,8 @@ fn rules() -> impl Strategy<Value = Rules> {
     })
 }
 
-/// Random landscapes of one to four axes: few levels, so that plateaus, ties and cells without contact abound.
+/// Random landscapes of one to four axes: few levels, so that plateaus, ties and cells without contact are
+/// frequent.
 fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f64>, Vec<usize>, f64)> {
     let shapes = prop_oneof![
         prop::collection::vec(1..40usize, 1),
@@ -33,7 +34,7 @@ fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f64>, Vec<usize>, f64)
     })
 }
 
-/// The basin of every cell, dams assigned, and what became of the basins.
+/// The basin of every cell, with dams assigned, and the final basins.
 fn fast<H: Height>(
     shape: &[usize],
     heights: &[H],
@@ -57,7 +58,7 @@ proptest! {
         );
     }
 
-    /// First labels, taken where merging takes them, are the final ones; dams alone are given to a watershed later.
+    /// First labels, mapped by merging, are the final labels; only dams are assigned to a watershed later.
     #[test]
     fn merged_first_labels_are_the_final_ones((shape, heights, targets, tolerance) in landscapes(), rules in rules()) {
         let division = divide(&shape, &heights, &targets, tolerance, rules, &Exec::new()).unwrap();
@@ -73,7 +74,7 @@ proptest! {
         prop_assert_eq!(watersheds.counts().dams, dams);
     }
 
-    /// Outcomes on an error grid, the mated pose where the design says.
+    /// Outcomes on an error grid, with the mated pose of the design.
     #[test]
     fn outcomes_equal_the_judges(
         (shape, heights, _, tolerance) in landscapes(),
@@ -108,7 +109,7 @@ proptest! {
         );
     }
 
-    /// A higher tolerance never tells more basins apart.
+    /// A higher tolerance never separates more basins.
     #[test]
     fn merging_is_monotone((shape, heights, targets, tolerance) in landscapes()) {
         let basins = |tolerance| {

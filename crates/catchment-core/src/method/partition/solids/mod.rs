@@ -51,28 +51,29 @@ pub enum SolidShape {
 pub struct Solid {
     /// Corners, on the axes of the file.
     pub vertices: Vec<DVec3>,
-    /// Faces as numbers of corners: counter-clockwise seen from outside, every edge in two of them. A flat body has one.
+    /// Faces as numbers of corners: counter-clockwise seen from outside, every edge in two of them. A flat
+    /// body has a single face.
     pub faces: Vec<Vec<usize>>,
     /// Its piece of the fixed half.
     pub fixed: Option<usize>,
     /// Its piece of the moving half.
     pub moving: Option<usize>,
-    /// Between which slices it lies: the number of the lower one, and both angles in radians.
+    /// Slices between which it lies: the number of the lower slice, and both angles in radians.
     pub slice: Option<(usize, [f64; 2])>,
 }
 
 /// A shape of many convex bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solids {
-    /// What it is.
+    /// The solid.
     pub subject: SolidShape,
-    /// What the three axes of the file show: lengths in D (x, y, z), or an angle in radians by its name.
+    /// Meaning of the three axes of the file: lengths in D (x, y, z), or an angle in radians by its name.
     pub axes: [&'static str; 3],
-    /// 3, or 2 where the bodies are flat.
+    /// 3, or 2 for flat bodies.
     pub dimension: usize,
     /// How it was made.
     pub settings: PartitionSettings,
-    /// Convex pieces of the fixed half and of the moving one, before they were cut into strips.
+    /// Number of convex pieces of the fixed half and of the moving half, before the cut into strips.
     pub pieces: [usize; 2],
     /// The bodies.
     pub solids: Vec<Solid>,
@@ -81,14 +82,14 @@ pub struct Solids {
 /// Why there is no shape.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SolidError {
-    /// More than can be looked at.
+    /// More dimensions than can be displayed.
     #[error("{what} has {dimensions} dimensions, of which a picture shows three: {advice}")]
     Dimensions {
-        /// What it is, with its errors.
+        /// The solid, with its errors.
         what: String,
         /// How many.
         dimensions: usize,
-        /// What to do.
+        /// Advice.
         advice: &'static str,
     },
     /// Nothing turns.
@@ -114,11 +115,11 @@ impl From<OutOfBudget> for SolidError {
     }
 }
 
-/// Makes a shape of a pair. `settings` matter only where something turns, but for the strips, which cut every moving piece but those of the
-/// halves themselves.
+/// Computes a solid of a pair. `settings` matter only with a free rotation, except for the strips, which cut
+/// every moving piece except those of the halves themselves.
 ///
 /// # Errors
-/// [`SolidError`]; cancel is checked for every body.
+/// [`SolidError`]; cancellation is checked for every body.
 pub fn shapes(
     pair: &Pair,
     subject: SolidShape,
@@ -148,12 +149,12 @@ pub fn shapes(
     Ok(Solids { subject, axes, dimension, settings: *settings, pieces, solids: maker.solids })
 }
 
-/// The slices of the angle that is free, if one is.
+/// The slices of the free angle, if any.
 fn slices(pair: &Pair, settings: &PartitionSettings) -> Vec<Compartment> {
     Compartment::all(&settings.slices_of(&pair.alignment))
 }
 
-/// Where the coordinates of a body go in the file.
+/// The map from coordinates of a body to those of the file.
 struct Frame {
     /// The axes of the file.
     axes: [&'static str; 3],
@@ -215,7 +216,7 @@ impl Frame {
         Ok(Self { axes, places })
     }
 
-    /// A polytope as a body; a flat one lies at `layer` in y.
+    /// A polytope as a body; a flat body lies at `layer` in y.
     fn solid(&self, polytope: &Polytope, places: &[usize], layer: f64) -> Solid {
         let in_a_layer = self.axes == LENGTHS && *places == [0, 2];
         let at = |point: &PolytopePoint| {
@@ -329,12 +330,12 @@ impl Maker<'_> {
     }
 }
 
-/// The middle of a layer; 0 for a solid, which has none.
+/// The middle of a layer; 0 for a solid, which has no layer.
 fn middle(slab: [f64; 2]) -> f64 {
     if slab == EVERYWHERE { 0.0 } else { f64::midpoint(slab[0], slab[1]) }
 }
 
-/// Between which slices a compartment of one angle lies.
+/// Slices between which a compartment of a single angle lies.
 fn span(number: usize, compartment: &Compartment) -> Option<(usize, [f64; 2])> {
     compartment.spans.first().map(|(_, angles)| (number, *angles))
 }

@@ -37,7 +37,7 @@ fn made(pair: &Pair, subject: SolidShape, slices: usize) -> Solids {
     shapes(pair, subject, &PartitionSettings { slices, strips: 1 }, &Exec::new()).unwrap()
 }
 
-/// What lies behind the planes of these (normal, offset) is the body.
+/// The half-spaces (normal, offset) whose intersection is the body.
 fn planes(solid: &Solid) -> Vec<(DVec3, f64)> {
     let at = |k: usize| solid.vertices[k];
     let area = |face: &[usize]| -> DVec3 {
@@ -63,7 +63,7 @@ fn planes(solid: &Solid) -> Vec<(DVec3, f64)> {
         .collect()
 }
 
-/// Where the upright line over x and y of the file meets the body.
+/// Intersection of the body with the upright line over x and y of the file.
 fn range(solid: &Solid, x: f64, y: f64) -> Option<[f64; 2]> {
     let [mut low, mut high] = [f64::NEG_INFINITY, f64::INFINITY];
     for (normal, offset) in planes(solid) {
@@ -296,8 +296,8 @@ fn the_upper_side_is_first_contact_and_the_lower_side_contact_from_below() {
     }
 }
 
-/// On slices exactly. Between them a corner runs along the chord of its circle: never above by more than the sagitta of the step plus
-/// what the edges bulge.
+/// On slices exactly. Between them a corner runs along the chord of its circle: never above by more than the
+/// sagitta of the step plus the bulge of the edges.
 #[test]
 fn with_a_rotation_the_upper_side_is_first_contact_on_every_slice() {
     let free = X_PITCH;

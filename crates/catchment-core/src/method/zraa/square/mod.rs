@@ -29,10 +29,11 @@ use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// Sides nearer to each other than this, in D, are the two sides of one seam; gaps below it are closed. Above the slivers that cutting
-/// leaves out.
+/// Sides closer to each other than this, in D, are the two sides of a seam; gaps below it are closed. Above
+/// the slivers that cutting removes.
 const JOIN: f64 = 1e-9;
-/// The same in seams of a region that was cut with coarse ones: what cutting leaves out is some tens of them wide.
+/// The same in seams of a region that was cut with coarse seams: the slivers removed by cutting are some tens
+/// of seams wide.
 const SEAMS: f64 = 40.0;
 /// Slack of comparisons, in D: a few roundings of numbers of the order of 1.
 const ROUNDING: f64 = 1e-13;
@@ -40,16 +41,17 @@ const ROUNDING: f64 = 1e-13;
 /// The largest axis-parallel square in the accepted offsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AcceptedSquare {
-    /// Its edge, in D; 0 where nothing is accepted.
+    /// Its edge, in D; 0 if nothing is accepted.
     pub edge: f64,
     /// Its middle, in D.
     pub center: DVec2,
-    /// Edge of the largest one whose middle is zero, in D.
+    /// Edge of the largest square centred on zero, in D.
     pub centered_edge: f64,
 }
 
 impl AcceptedSquare {
-    /// How far the edge may be from that of the tiling, in D; of a region with coarse seams, some tens of those.
+    /// Largest error of the edge relative to that of the tiling, in D; for a region with coarse seams, some
+    /// tens of seams.
     pub const TOLERANCE: f64 = 1e-8;
 
     /// The square of a zero-rotation area of acceptance; of an interval, the interval.
@@ -102,10 +104,10 @@ impl Plane {
     }
 }
 
-/// A stretch of the border.
+/// A segment of the border.
 ///
-/// A square around p keeps clear of it where an axis of the picture, or the stretch's own normal, separates the two: its distance is
-/// the largest of six linear functions.
+/// A square around p is clear of it if an axis of the picture, or the segment's own normal, separates the
+/// two: its distance is the maximum of six linear functions.
 #[derive(Debug, Clone, Copy)]
 struct Stretch([Plane; 6]);
 
@@ -130,8 +132,8 @@ impl Stretch {
         self.0.iter().map(|plane| plane.at(p)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The one linear function that is the distance all over a box, if there is one. Convex and equal to it at the corners means
-    /// equal inside.
+    /// The single linear function that equals the distance all over a box, if there is one. Convexity and
+    /// equality at the corners imply equality inside.
     fn linear(&self, middle: DVec2, corners: &[DVec2; 4]) -> Option<Plane> {
         let plane = *self.0.iter().max_by(|a, b| a.at(middle).total_cmp(&b.at(middle)))?;
         corners.iter().all(|&c| plane.at(c) >= self.distance(c) - ROUNDING).then_some(plane)
@@ -143,7 +145,7 @@ struct Search<'a> {
     polygons: &'a [Vec<DVec2>],
     index: RTree<Indexed>,
     border: Vec<Stretch>,
-    /// Sides nearer to each other than this are the two sides of one seam.
+    /// Sides closer to each other than this are the two sides of a seam.
     join: f64,
     low: DVec2,
     high: DVec2,
@@ -151,7 +153,7 @@ struct Search<'a> {
 
 type Indexed = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
-/// Places that are still to be looked at.
+/// Boxes of positions that are still to be examined.
 struct Place {
     middle: DVec2,
     half: f64,
@@ -189,13 +191,13 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// Polygons whose boxes come within a seam of this one.
+    /// Polygons whose boxes are within a seam of this polygon.
     fn around(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
         let boxed = AABB::from_corners((low - self.join).to_array(), (high + self.join).to_array());
         self.index.locate_in_envelope_intersecting(boxed).map(|found| found.data)
     }
 
-    /// Adds what no neighbour covers of a polygon's sides.
+    /// Adds the portions of a polygon's sides without a neighbour.
     fn border_of(&mut self, own: usize) {
         for [from, to] in sides(&self.polygons[own]) {
             let length = from.distance(to);
@@ -252,7 +254,7 @@ impl<'a> Search<'a> {
         near.iter().map(|&k| self.border[k as usize].distance(p)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Looks at the places of a box; what is left of it are its quarters, the most promising last, or nothing.
+    /// Examines the positions of a box; returns its remaining quarters, the most promising last, or nothing.
     fn look(&self, place: &Place, best: &mut Best) -> Vec<Place> {
         // Half of the edge's tolerance for the half edge, and the rest for seams.
         const ENOUGH: f64 = AcceptedSquare::TOLERANCE / 4.0;
@@ -295,8 +297,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Where in a box the lowest of the planes and the cap is highest, and how high. Plane after plane: one that cuts the best place so far
-/// carries the next.
+/// Position in a box at which the minimum of the planes and the cap is highest, and its height. Plane after
+/// plane is added: a plane that cuts off the best position so far contains the next.
 fn highest(planes: &[Plane], middle: DVec2, corners: &[DVec2; 4], cap: f64) -> (DVec2, f64) {
     let (mut at, mut top) = (middle, cap);
     for (k, plane) in planes.iter().enumerate() {
@@ -315,7 +317,8 @@ fn highest(planes: &[Plane], middle: DVec2, corners: &[DVec2; 4], cap: f64) -> (
     (at, top)
 }
 
-/// Which part of a side, as distances from its start, another side covers from across: none where it runs the same way, or is too far.
+/// Portion of a side, as distances from its start, that another side covers from across: `None` if that side
+/// runs in the same direction, or is too far.
 fn beside([c, d]: [DVec2; 2], from: DVec2, along: DVec2, length: f64, join: f64) -> Option<[f64; 2]> {
     let place = |p: DVec2| (along.dot(p - from), along.perp_dot(p - from));
     let ((tc, oc), (td, od)) = (place(c), place(d));

@@ -36,7 +36,7 @@ fn fits(polygons: &[Vec<DVec2>], middle: DVec2, half: f64) -> bool {
     4.0 * half * half - held(polygons, middle, half) < UNSEEN * half
 }
 
-/// Half edge of the largest box around a place, by bisection, where it is more than `least`.
+/// Half edge of the largest box around a position, by bisection, if it is more than `least`.
 fn widest(polygons: &[Vec<DVec2>], middle: DVec2, least: f64) -> Option<f64> {
     let (mut lo, mut hi) = (least, 1.0);
     if !fits(polygons, middle, lo) {
