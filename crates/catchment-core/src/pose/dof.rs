@@ -53,14 +53,14 @@ impl fmt::Display for Dof {
 /// A word that names no degree of freedom.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownDof {
-    /// What was written, cut to [`UnknownDof::LONGEST`] characters.
+    /// The text as written, cut to [`UnknownDof::LONGEST`] characters.
     pub name: String,
-    /// The one that was probably meant.
+    /// The name that was probably meant.
     pub meant: Option<Dof>,
 }
 
 impl UnknownDof {
-    /// Characters that are kept of what was written.
+    /// Number of characters that are kept of the text.
     pub const LONGEST: usize = 64;
 }
 

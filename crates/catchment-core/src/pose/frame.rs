@@ -81,7 +81,7 @@ impl Mount {
     }
 }
 
-/// Lateral position of the COR and rotation of the moving half: what the height of first contact depends on.
+/// Lateral position of the COR and rotation of the moving half: they determine the height of first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CorPose {
     /// x and y of the COR in the world, in D.
@@ -100,7 +100,7 @@ impl CorPose {
         Self { lateral: DVec2::new(x, y), rotation }
     }
 
-    /// The pose error of this COR pose (for a locked translation: where the face centre really is).
+    /// The pose error of this COR pose (for a locked translation: the actual position of the face centre).
     pub fn to_error(&self, cor: f64) -> PoseError {
         let (roll, pitch, yaw) = euler_angles(&self.rotation);
         let face = self.lateral + face_from_cor(&self.rotation, cor).truncate();

@@ -58,10 +58,10 @@ pub fn euler_rates(pitch: f64, yaw: f64, free: DofSet, rho: f64, torque: [f64; 3
     (gram.inverse() * DVec3::from_array(torque) / (rho * rho)).to_array()
 }
 
-/// The overdamped motion of a pose error at one rotation, as a linear map of the height's gradient.
+/// The overdamped motion of a pose error at a given rotation, as a linear map of the height's gradient.
 ///
-/// Column k is the velocity of the error (x, y of the *face centre*, roll, pitch, yaw) for a unit of the k-th component
-/// of the gradient: ∂h/∂x and ∂h/∂y at the COR, then ∂h/∂ω about the COR in world axes.
+/// Column k is the velocity of the error (x, y of the *face centre*, roll, pitch, yaw) for a unit of the k-th
+/// component of the gradient: ∂h/∂x and ∂h/∂y at the COR, then ∂h/∂ω about the COR in world axes.
 pub fn descent_map(error: &PoseError, cor: f64, rho: f64, free: DofSet) -> [[f64; 5]; 5] {
     let per_turn = rho.powi(-2);
     let rotation = error.rotation();

@@ -93,7 +93,7 @@ fn rotate(a: &mut Matrix, v: &mut Matrix, p: usize, q: usize) {
     }
 }
 
-/// z with L·z = `y`; where a row of L has nothing on its diagonal, 0.
+/// z with L·z = `y`; 0 for a row of L with a zero diagonal.
 pub fn solve_lower(l: &Matrix, y: &[f64; 5]) -> [f64; 5] {
     let mut z = [0.0; 5];
     for (i, y) in y.iter().enumerate() {
@@ -103,7 +103,7 @@ pub fn solve_lower(l: &Matrix, y: &[f64; 5]) -> [f64; 5] {
     z
 }
 
-/// w with Lᵀ·w = `z`; where a row of L has nothing on its diagonal, 0.
+/// w with Lᵀ·w = `z`; 0 for a row of L with a zero diagonal.
 pub fn solve_upper(l: &Matrix, z: &[f64; 5]) -> [f64; 5] {
     let mut w = [0.0; 5];
     for i in (0..5).rev() {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     proptest! {
-        /// B·Bᵀ is a covariance; its root gives it back, and what the root maps is found again.
+        /// B·Bᵀ is a covariance; its root reproduces it, and vectors mapped by the root are recovered.
         #[test]
         fn roots_give_the_covariance_back(b in prop::array::uniform5(prop::array::uniform5(-2.0f64..2.0)),
                                           y in prop::array::uniform5(-2.0f64..2.0)) {

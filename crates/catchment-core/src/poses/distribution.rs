@@ -59,15 +59,16 @@ impl Distribution {
     }
 }
 
-/// A size of each error, in D and radians; 0 where none is named.
+/// A size of each error, in D and radians; 0 for errors that are not named.
 fn sizes(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
     Ok(PoseError::from_array(parse_sizes(text, design)?.map(Option::unwrap_or_default)))
 }
 
-/// Reads sizes of errors such as `x=1 mm,yaw=2 deg`: in the order of [`Dof::ALL`], in D and radians, none of errors that are not named.
+/// Reads sizes of errors such as `x=1 mm,yaw=2 deg`: in the order of [`Dof::ALL`], in D and radians, `None`
+/// for errors that are not named.
 ///
 /// # Errors
-/// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
+/// All errors of the text: sizes must not be negative, and must belong to free errors of the design.
 pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diagnostics> {
     let mut found = PoseDiagnostics::default();
     let (written, spans) = terms(text, &mut found);

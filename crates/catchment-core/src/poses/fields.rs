@@ -3,7 +3,8 @@
 use csv::StringRecord;
 use std::ops::Range;
 
-/// The records of a table, each with the byte it starts at. Blank lines are none, and blanks around fields are left out.
+/// The records of a table, each with its first byte. Blank lines are skipped, and blanks around fields are
+/// removed.
 pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, StringRecord)> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -20,7 +21,8 @@ pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, StringRecord)>
     })
 }
 
-/// The bytes of every field of the record that starts at `start`, without the blanks around it. One pass over the record.
+/// The byte ranges of all fields of the record that starts at `start`, without the blanks around them. A
+/// single pass over the record.
 pub(super) fn spans(text: &str, start: usize) -> Vec<Range<usize>> {
     #[derive(Clone, Copy)]
     enum State {
@@ -50,7 +52,7 @@ pub(super) fn spans(text: &str, start: usize) -> Vec<Range<usize>> {
     found
 }
 
-/// The range without the blanks at its ends; all of it where it is blank.
+/// The range without the blanks at its ends; the whole range if it is blank.
 fn trimmed(text: &str, range: Range<usize>) -> Range<usize> {
     let inside = &text[range.clone()];
     let begin = range.start + (inside.len() - inside.trim_start().len());

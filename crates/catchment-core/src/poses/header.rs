@@ -34,10 +34,10 @@ const UNITS: [(&str, QuantityUnit); 8] = [
     ("deg", QuantityUnit::Degrees),
     ("rad", QuantityUnit::Radians),
 ];
-/// What people put around the name of an error.
+/// Common additions to the name of an error.
 const DECORATIONS: [&str; 12] =
     ["d", "delta", "δ", "e", "err", "error", "off", "offset", "misalignment", "pos", "position", "shift"];
-/// What people call a rotation, beside the axis that it is about.
+/// Common words for a rotation, used with its axis.
 const TURNS: [&str; 6] = ["theta", "θ", "rot", "rotation", "ang", "angle"];
 /// The axes of rotations, and their errors.
 const ABOUT: [(&str, Dof); 3] = [("x", Dof::Roll), ("y", Dof::Pitch), ("z", Dof::Yaw)];
@@ -48,7 +48,7 @@ const ADDED: [&str; 3] = ["outcome", "final_height", "contacts"];
 /// Longest name of a column, in bytes: it is repeated with every row of some answers.
 const LONGEST_NAME: usize = 200;
 
-/// The error and the unit that a column holds; `None` for one that is carried through.
+/// The error and the unit of a column; `None` for a column that is passed through.
 pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, PoseDefect> {
     if name.contains(is_hidden) {
         let message = format!("`{}` has a character that does not show", shortened(name));
@@ -107,7 +107,7 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Quantit
     }
 }
 
-/// The error that a name says in one of the known forms, and what stands in the place of its unit.
+/// The error that a name states in one of the known forms, and the text in place of its unit.
 fn split(name: &str) -> Option<(Dof, Option<&str>)> {
     let named = |name: &str| Dof::ALL.into_iter().find(|dof| dof.name() == name);
     if let Some(dof) = named(name) {
@@ -122,7 +122,7 @@ fn split(name: &str) -> Option<(Dof, Option<&str>)> {
     Some((named(base)?, Some(unit)))
 }
 
-/// The name that was probably meant, if this one is near an error.
+/// The name that was probably meant, if this name is near an error.
 fn near(name: &str) -> Option<String> {
     let words = words(name);
     let unit = |word: &str| UNITS.iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(word));
@@ -143,7 +143,7 @@ fn near(name: &str) -> Option<String> {
     Some(symbol.map_or_else(|| base.to_owned(), |(symbol, _)| format!("{base}_{symbol}")))
 }
 
-/// The angle that words say by a rotation and its axis.
+/// The angle described by words for a rotation and its axis.
 fn turn_in(words: &[String]) -> Option<Dof> {
     let about = |word: &str| ABOUT.iter().find(|(axis, _)| *axis == word).map(|(_, dof)| *dof);
     let is_turn = |word: &str| {
@@ -178,7 +178,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// The error that a word is the name of, and what is glued behind it.
+/// The error named by a word, and the text attached to it.
 fn error_in(word: &str) -> Option<(Dof, &str)> {
     if let Some(k) = SYNONYMS.iter().position(|synonym| *synonym == word) {
         return Some((Dof::ALL[k], ""));

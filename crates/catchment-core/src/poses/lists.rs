@@ -14,7 +14,7 @@ use crate::pose::Dof;
 
 /// Most angles of a list.
 pub const MOST_ANGLES: usize = 10_000;
-/// Most points along one error.
+/// Largest number of points along an error.
 const MOST_POINTS: f64 = 10_000.0;
 /// The last angle of a range may miss its end by this share of a step, which rounding does.
 const ROUNDING: f64 = 1e-9;
@@ -55,7 +55,7 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
 /// Reads `0..45:2.25 deg` or `0,20 deg`; without a unit radians. In radians.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The errors of the text.
 ///
 /// # Examples
 /// ```
@@ -72,7 +72,7 @@ pub fn parse_angles(text: &str) -> Result<Vec<f64>, Diagnostics> {
 /// Reads a length such as `72.9 mm`, or a number of D. In D.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The errors of the text.
 pub fn parse_length(text: &str, design: &Design) -> Result<f64, Diagnostics> {
     let told = |c: DesignDefect| one(text, PoseDefect { message: c.to_string(), help: c.help() });
     let quantity: Quantity = text.parse().map_err(told)?;

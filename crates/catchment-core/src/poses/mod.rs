@@ -58,7 +58,7 @@ use std::ops::Range;
 /// Most objections that are spelled out.
 const MOST_OBJECTIONS: usize = 20;
 
-/// What is wrong, before it is known where.
+/// An error, before its place is known.
 #[derive(Debug, Clone, PartialEq)]
 struct PoseDefect {
     message: String,
@@ -79,7 +79,7 @@ struct PoseDiagnostics {
 }
 
 impl PoseDiagnostics {
-    /// Adds one; `span` is asked for only if it is kept.
+    /// Adds an error; `span` is called only if it is kept.
     fn push(&mut self, fault: PoseDefect, span: impl FnOnce() -> Option<Range<usize>>) {
         if self.list.len() < MOST_OBJECTIONS {
             let PoseDefect { message, help } = fault;
@@ -99,14 +99,14 @@ impl PoseDiagnostics {
     }
 }
 
-/// The first characters, none of which steers a terminal or hides.
+/// The first characters, without control characters and invisible characters.
 fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     text.chars().take(LONGEST).map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// Whether a character is a control character or one that shows nothing: a byte order mark, a blank without width, a
-/// mark that turns the direction of writing.
+/// Whether a character is a control character or invisible: a byte order mark, a blank without width, a mark
+/// that changes the direction of writing.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')

@@ -29,8 +29,8 @@ impl OffsetsAt {
     /// The two translations.
     pub(super) const LATERAL: [Dof; 2] = [Dof::X, Dof::Y];
 
-    /// A pose error (of the face centre, in D and radians) with its offsets measured at this point. At the centre of
-    /// rotation, locked ones are 0.
+    /// A pose error (of the face centre, in D and radians) with its offsets measured at this point. At the
+    /// centre of rotation, locked offsets are 0.
     #[must_use]
     pub fn measure(self, error: &PoseError, alignment: &Alignment) -> PoseError {
         match self {

@@ -4,11 +4,12 @@ use super::written::resolve;
 use super::{OffsetsAt, PoseDefect, PoseDiagnostics};
 use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
 
-/// Refuses rows that cannot be tried, as a table of them would be: numbers that are none, out of range, or of errors that the design locks.
-/// Each row has the five errors in the order of [`Dof::ALL`](crate::pose::Dof::ALL), of the face centre, in D and radians.
+/// Rejects rows that cannot be followed, as for a table: numbers that are NaN, out of range, or nonzero for
+/// locked errors. Each row has the five errors in the order of [`Dof::ALL`](crate::pose::Dof::ALL), of the
+/// face centre, in D and radians.
 ///
 /// # Errors
-/// The first rows that are wrong, each by its number from 0, and how many more are.
+/// The first invalid rows, each with its number from 0, and the number of further invalid rows.
 pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Diagnostics> {
     let mut found = PoseDiagnostics::default();
     for (number, row) in rows.iter().enumerate() {

@@ -12,7 +12,8 @@ use std::ops::Range;
 
 /// Most poses of a table: minutes of computing, and far below any memory.
 pub const MOST_POSES: usize = 1_000_000;
-/// Most columns of a table: five are errors, and whoever carries more than this through has another file in hand.
+/// Largest number of columns of a table: five are errors, and a table with more than this is another kind of
+/// file.
 const MOST_COLUMNS: usize = 1000;
 
 /// A table of pose errors that was read.
@@ -25,7 +26,7 @@ pub struct PoseTable<'a> {
     errors: Vec<PoseError>,
 }
 
-/// The column of each error in the order of [`Dof::ALL`], where there is one.
+/// The column of each error in the order of [`Dof::ALL`], if present.
 type Columns = [Option<Column>; 5];
 
 /// A column that holds an error.
@@ -37,13 +38,13 @@ struct Column {
 }
 
 impl<'a> PoseTable<'a> {
-    /// Reads a table whose offsets are measured `at` a point. The header names the columns x, y, roll, pitch and yaw in any
-    /// order, in D and radians or in the unit that follows: `x_mm`, `x [mm]`, `x (mm)`. Missing ones are 0. Other columns
-    /// are carried through, unless their names are nearly those of errors.
+    /// Reads a table whose offsets are measured `at` a point. The header names the columns x, y, roll, pitch
+    /// and yaw in any order, in D and radians or in the unit that follows: `x_mm`, `x [mm]`, `x (mm)`.
+    /// Missing errors are 0. Other columns are passed through, unless their names are near those of errors.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, of which the first 20 objections are spelled out. More than 1000 columns or
-    /// [`MOST_POSES`] rows are not read. A locked error that is not as the lock has it is named once.
+    /// All errors of the text, of which the first 20 are given in full. More than 1000 columns or
+    /// [`MOST_POSES`] rows are not read. A locked error with another value than its lock is reported once.
     pub fn parse(text: &'a str, design: &'a Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
         Self::parse_beside(text, design, at, &[])
     }
@@ -114,7 +115,7 @@ impl<'a> PoseTable<'a> {
         self.text
     }
 
-    /// The pose errors of the face centre, one per row, in D and radians.
+    /// The pose errors of the face centre, for each row, in D and radians.
     pub fn errors(&self) -> &[PoseError] {
         &self.errors
     }
@@ -145,7 +146,7 @@ impl<'a> PoseTable<'a> {
         self.columns[dof.index()].is_some()
     }
 
-    /// What the columns of the errors are called, in the order of [`Dof::ALL`]; the plain name where there is none.
+    /// Names of the error columns, in the order of [`Dof::ALL`]; the plain name of a missing column.
     pub fn names(&self) -> [&str; 5] {
         Dof::ALL.map(|dof| self.columns[dof.index()].as_ref().map_or(dof.name(), |column| &column.name))
     }
@@ -214,7 +215,7 @@ fn columns(
     columns
 }
 
-/// The pose error of a row, or what is wrong with it and whether that is a lock.
+/// The pose error of a row, or its error and whether that is about a lock.
 fn row(
     record: &StringRecord,
     columns: &Columns,
@@ -276,7 +277,7 @@ mod tests {
         crate::design::read(text, Path::new("")).unwrap().design
     }
 
-    /// The places and messages of what is wrong.
+    /// The places and messages of the errors.
     fn wrong(text: &str) -> Vec<(String, String)> {
         let refusal = PoseTable::parse(text, &design(), OffsetsAt::Face).unwrap_err();
         let place = |span: Option<Range<usize>>| text[span.unwrap_or(0..0)].to_owned();

@@ -8,10 +8,11 @@ use crate::pose::{Dof, PoseError};
 use crate::suggest::odd;
 use std::ops::Range;
 
-/// Reads a pose error such as `x=0.2,pitch=10 deg`; what is not named is 0. Offsets are those of the face centre.
+/// Reads a pose error such as `x=0.2,pitch=10 deg`; errors that are not named are 0. Offsets are those of the
+/// face centre.
 ///
 /// # Errors
-/// Everything that is wrong with the text.
+/// All errors of the text.
 ///
 /// # Examples
 /// ```

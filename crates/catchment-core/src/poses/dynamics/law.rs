@@ -46,7 +46,7 @@ pub enum ScalarDistribution {
 const ATTEMPTS: u64 = 64;
 
 impl ScalarDistribution {
-    /// Numbers that are drawn for one value at most: two, as often as it has to be drawn again.
+    /// Largest number of random numbers for a value: two for every attempt.
     pub const DRAWN: u64 = 2 * ATTEMPTS;
 
     /// The number that is always the same.

@@ -74,7 +74,7 @@ impl Circumstance {
         self as usize
     }
 
-    /// What it is called in files.
+    /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Speed => "speed",
@@ -90,7 +90,7 @@ impl Circumstance {
         }
     }
 
-    /// What it is measured in.
+    /// Its unit.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Speed | Self::DriftX | Self::DriftY => "D/s",
@@ -108,7 +108,7 @@ impl Circumstance {
         /// Kilograms.
         const LIGHTEST: f64 = 1e-9;
         const HEAVIEST: f64 = 1e9;
-        /// What exact motions take, too.
+        /// As for exact motions.
         const ROUGHEST: f64 = 10.0;
         /// In D.
         const HIGHEST: f64 = 100.0;
@@ -144,13 +144,13 @@ impl Dynamics {
         self
     }
 
-    /// The mean of a circumstance, put into its range; none of what is not declared.
+    /// The mean of a parameter, clamped to its range; `None` if it is not declared.
     pub fn mean(&self, of: Circumstance) -> Option<f64> {
         let [lo, hi] = of.range();
         self.law(of).map(|law| law.mean().clamp(lo, hi))
     }
 
-    /// What is declared, in the order of [`Circumstance::ALL`].
+    /// The declared parameters, in the order of [`Circumstance::ALL`].
     pub fn declared(&self) -> impl Iterator<Item = (Circumstance, &ScalarDistribution)> {
         self.declared.iter().map(|(of, law)| (*of, law))
     }

@@ -20,7 +20,7 @@ const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { mea
 /// Reads `speed=50 ± 10 mm/s` for a design.
 ///
 /// # Errors
-/// What is wrong with the text, with its bytes.
+/// The errors of the text, with their byte ranges.
 pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Diagnostics> {
     let mut found = PoseDiagnostics::default();
     let read = draw(text, design);
@@ -69,7 +69,7 @@ pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, D
 
 struct Reader<'a> {
     found: PoseDiagnostics,
-    /// Where the text is no TOML: what is wrong there is an echo.
+    /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
     design: &'a Design,
     dynamics: Dynamics,
@@ -237,7 +237,7 @@ fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribut
     Ok(ScalarDistribution::constant(quantity(text, of, None, design)?))
 }
 
-/// What stands behind the number.
+/// The text after the number.
 fn unit_of(text: &str) -> &str {
     let is_unit = |c: char| c.is_alphabetic() || c == '°' || c == '/' || c == ' ';
     let number = text.trim_end_matches(is_unit);
@@ -253,7 +253,7 @@ fn plain(text: &str) -> Result<f64, PoseDefect> {
     })
 }
 
-/// A number of a circumstance, in its unit; one without a unit has that which is written beside it.
+/// A number of a parameter, in its unit; a number without a unit has the unit written beside it.
 fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, PoseDefect> {
     let (text, own) = (text.trim(), unit_of(text.trim()));
     let unit = if own.is_empty() { beside.unwrap_or_default() } else { own };
@@ -304,7 +304,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
     }
 }
 
-/// A law that is one, and lies in the range of what it describes.
+/// A valid distribution within the range of its parameter.
 fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, PoseDefect> {
     let name = of.name();
     match &law {

@@ -11,7 +11,7 @@ fn read(text: &str) -> Result<Dynamics, Diagnostics> {
     read_dynamics(&SourceText::new("dynamics.toml", text.to_owned()), &design())
 }
 
-/// What is said of a file, with the text that it is said of.
+/// The messages about a file, with the text to which each refers.
 fn wrong(text: &str) -> Vec<(String, String)> {
     let of = |diagnostic: &crate::design::Diagnostic| {
         let place = diagnostic.span.clone().map_or_else(String::new, |span| text[span].to_owned());
@@ -102,7 +102,8 @@ fn uniform(k: u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Mean and share in the range of what is drawn, within five standard errors; of laws that are cut, those of the cut law.
+/// Mean and share in the range of the sampled values, within five standard errors; for truncated
+/// distributions those of the truncated one.
 #[test]
 fn values_have_the_moments_of_their_law() {
     const COUNT: u64 = 40_000;

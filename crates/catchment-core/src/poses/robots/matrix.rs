@@ -9,7 +9,7 @@ use crate::pose::{Dof, PoseError};
 use std::ops::Range;
 use toml::de::DeValue;
 
-/// How far mirrored entries may differ, relative to the variances: what rounding to six digits leaves.
+/// Largest difference of mirrored entries, relative to the variances: that of rounding to six digits.
 const SYMMETRIC_WITHIN: f64 = 1e-6;
 /// Eigenvalue of a correlation matrix that rounding to six digits may leave below 0.
 const SEMIDEFINITE_WITHIN: f64 = 1e-5;
@@ -160,7 +160,7 @@ impl Reader<'_> {
         Some((PoseError::from_array(sigma), correlation))
     }
 
-    /// What one of the units of every axis is in D or radians.
+    /// Value of a unit of every axis in D or radians.
     fn units(&mut self, value: &Value<'_>, dofs: &[Dof]) -> Option<Vec<f64>> {
         let DeValue::Table(table) = value.get_ref() else { return None };
         let mut texts: Vec<(String, Range<usize>)> = vec![("1".to_owned(), value.span()); dofs.len()];

@@ -45,7 +45,7 @@ use serde::Serialize;
 /// A robot, and the errors that are expected of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How its errors spread.
     pub errors: Spread,
@@ -73,7 +73,7 @@ pub enum Spread {
     },
     /// As they were measured: each of these poses as likely as any other.
     Measured {
-        /// Where they come from.
+        /// Their source.
         source: String,
         /// The poses.
         poses: Vec<PoseError>,
@@ -92,7 +92,7 @@ pub struct Moments {
     pub correlation: Matrix,
 }
 
-/// A distribution whose numbers make none.
+/// A distribution whose numbers are not valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("row {row} of the covariance keeps it from being symmetric and positive semidefinite")]
 pub struct NotACovariance {
@@ -110,7 +110,7 @@ impl Spread {
     /// The spread of a distribution.
     ///
     /// # Errors
-    /// A covariance that is none.
+    /// An invalid covariance.
     pub fn of(distribution: &Distribution) -> Result<Self, NotACovariance> {
         Ok(match distribution {
             Distribution::Normal { mean, sigma } => {
@@ -135,7 +135,7 @@ impl Spread {
         read::measured(table, design)
     }
 
-    /// What it is called in reports.
+    /// Its name in reports.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Normal { .. } => "normal",

@@ -16,16 +16,17 @@ use toml::de::{DeTable, DeValue};
 pub const MOST_ROBOTS: usize = 100;
 /// Longest name of a robot, in characters.
 const LONGEST_NAME: usize = 80;
-/// Fewest rows of a table of measured errors: one says nothing of how they spread.
+/// Smallest number of rows of a table of measured errors: a single row does not define a spread.
 const FEWEST_ROWS: usize = 2;
-/// The ways to say how errors spread.
+/// The keys for the spread of errors.
 const KINDS: [&str; 4] = ["sigma", "covariance", "uniform", "measured"];
 const KEYS: [&str; 7] = ["name", "sigma", "correlation", "covariance", "uniform", "measured", "mean"];
 
-/// Reads a file of robots for a design. `table` gives the text of a table of measured errors by the path that the file names.
+/// Reads a file of robots for a design. `table` returns the text of a table of measured errors for the path
+/// in the file.
 ///
 /// # Errors
-/// Everything that is wrong with the file, each in its place; where nothing is, everything that is wrong with the first table.
+/// All errors of the file, each with its place; if it has no errors, all errors of the first table.
 pub fn read_robots(
     source: &SourceText,
     design: &Design,
@@ -50,12 +51,12 @@ pub fn read_robots(
 /// A value with its place.
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
-/// What is read so far.
+/// The result so far.
 pub(super) struct Reader<'a> {
     found: PoseDiagnostics,
-    /// Where the text is no TOML: what is wrong there is an echo.
+    /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
-    /// What is wrong with a table.
+    /// The errors of a table.
     foreign: Option<Diagnostics>,
     pub(super) design: &'a Design,
     table: &'a mut dyn FnMut(&str) -> Result<SourceText, String>,

@@ -18,7 +18,7 @@ fn read(text: &str) -> Result<Vec<Robot>, Diagnostics> {
     read_robots(&SourceText::new("r.toml", text), &design(), &mut { table })
 }
 
-/// The places and messages of what is wrong.
+/// The places and messages of the errors.
 fn wrong(text: &str) -> Vec<(String, String)> {
     let refused = read(text).unwrap_err();
     assert_eq!(refused.path(), Some(Path::new("r.toml")));
