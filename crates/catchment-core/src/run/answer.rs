@@ -16,7 +16,7 @@ use serde_json::Value;
 /// they belong to.
 #[derive(Debug)]
 pub struct Answer {
-    /// What was decided.
+    /// The decided problem.
     pub problem: Problem,
     /// How.
     pub run: Run,
@@ -24,21 +24,21 @@ pub struct Answer {
     pub acceptance: Acceptance,
     /// The settings of the method as they were used.
     pub settings: Value,
-    /// The Sum corrected by random poses, if any were drawn.
+    /// The Sum corrected by samples, if any were drawn.
     pub corrected: Option<RunCorrection>,
-    /// What else the method knows.
+    /// Other results of the method.
     pub by_products: ByProducts,
-    /// What the accepted cells are worth.
+    /// Figures of merit of the accepted cells.
     pub merits: Merits,
     /// The same with roll and pitch locked, of problems with all five errors free that exact motions answer.
     pub upright: Option<Upright>,
-    /// The success probability for the errors asked about.
+    /// The success probability for the given errors.
     pub success: Option<SuccessProbability>,
-    /// Where motions rest that do not dock, if that was asked.
+    /// Rests outside the seat, if requested.
     pub jams: Option<Jams>,
-    /// The largest box of errors that all dock, or why there is none, if that was asked.
+    /// The tolerance window, or the reason for its absence, if requested.
     pub window: Option<Result<ToleranceWindow, WindowError>>,
-    /// What the seat is like, and how far off accepted poses rest in it.
+    /// The seat, and the residual misalignment of accepted poses.
     pub seating: Seating,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
@@ -46,7 +46,7 @@ pub struct Answer {
     pub threads: usize,
 }
 
-/// An unbiased Sum, and what followed its random poses.
+/// An unbiased Sum, with the method that followed its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunCorrection {
     /// The estimate with its interval and strata.
@@ -60,12 +60,12 @@ pub struct RunCorrection {
 }
 
 impl Answer {
-    /// The measure of the accepted set, Dᵃ·radᵇ: the unbiased estimate where there is one.
+    /// Measure of the accepted set, Dᵃ·radᵇ: the unbiased estimate if available.
     pub fn sum(&self) -> f64 {
         self.corrected.as_ref().map_or(self.merits.sum.sum, |corrected| corrected.found.sum)
     }
 
-    /// Its 95 % interval; `None` where no random poses were drawn.
+    /// Its 95 % interval; `None` without samples.
     pub fn sum_ci95(&self) -> Option<[f64; 2]> {
         self.corrected.as_ref().map_or(self.merits.sum.ci95, |corrected| Some(corrected.found.ci95))
     }

@@ -36,14 +36,14 @@ pub struct EndContact {
     pub point_d: [f64; 3],
 }
 
-/// Lists the contacts of one end after another; keeps its buffers.
+/// Lists the contacts of ends in sequence; keeps its buffers.
 pub struct EndContacts<'a> {
     problem: &'a Problem,
     features: Features,
     nearby: Nearby<'a>,
-    /// How deep the halves overlap where they press on each other, in D.
+    /// Overlap of the halves under contact force, in D.
     give: f64,
-    /// The last answer: halves that dock rest in one pose, as a rule.
+    /// The last result: docked halves usually rest in the same pose.
     last: Option<(PoseError, f64, Vec<EndContact>)>,
     met: Vec<(Contact, Meeting)>,
 }
@@ -58,7 +58,7 @@ impl<'a> EndContacts<'a> {
         Self { problem, features: Features::of(pair), nearby, give, last: None, met: Vec::new() }
     }
 
-    /// The contacts in the last state of a motion, each pair of features once; none where it missed.
+    /// The contacts in the last state of a motion, each pair of features once; empty if it missed.
     pub fn of(&mut self, end: &End) -> Vec<EndContact> {
         let Some(height) = end.height else { return Vec::new() };
         if let Some((error, z, told)) = &self.last
@@ -129,8 +129,9 @@ mod tests {
         Draft::read(SourceText::new("roof.toml", text)).and_then(Draft::build).unwrap()
     }
 
-    /// The tip slides from z = 0.275 down to the wall at x = 0.7, where the slope is at 0.1; the face centre lies 0.1 above the tip, and the frame 0.1 below the
-    /// face centre of the fixed half: z = 0.1. First contact from above at x = 0.7 is on the roof, at z = 1.1.
+    /// The tip slides from z = 0.275 down to the wall at x = 0.7, with the slope at 0.1; the face centre lies
+    /// 0.1 above the tip, and the frame 0.1 below the face centre of the fixed half: z = 0.1. First contact
+    /// from above at x = 0.7 is on the roof, at z = 1.1.
     #[test]
     fn a_half_that_slid_under_a_roof_is_reported_where_it_lies() {
         let problem = beside_a_roof();

@@ -8,36 +8,37 @@ use crate::pose::PoseError;
 use crate::problem::Problem;
 use std::sync::{Mutex, PoisonError};
 
-/// What became of listed poses.
+/// Outcomes of listed poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FollowedPoses {
     /// The outcomes of those that were finished.
     pub acceptance: Acceptance,
-    /// Where each of them ended.
+    /// The end of each of them.
     pub ends: Vec<End>,
-    /// Their numbers in the list, ascending, where it was stopped before all of them were; `None`: all.
+    /// Numbers of the finished poses in the list, ascending, if the computation was stopped early; `None`:
+    /// all.
     pub finished: Option<Vec<usize>>,
 }
 
 impl Problem {
-    /// Where one pose comes to rest, by exact quasi-static motion.
+    /// The rest of a pose, by exact quasi-static motion.
     pub fn follow(&self, pose: &PoseError) -> End {
         Follower::new(self.pair(), &descent::DescentSettings::default()).rest(pose)
     }
 
-    /// Where every pose comes to rest, in their order, on all threads of `exec`.
+    /// The rests of all poses, in order, on all threads of `exec`.
     ///
     /// # Errors
-    /// It was asked to stop.
+    /// The computation was cancelled.
     pub fn follow_many(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<End>, Cancelled> {
         let domain = Domain::Poses(poses.to_vec());
         Ok(descent::rests(self.pair(), domain, &descent::DescentSettings::default(), exec)?.1)
     }
 
-    /// Where every pose comes to rest by a method of one's choice, and their outcomes.
+    /// The rests of all poses by a given method, and their outcomes.
     ///
     /// # Errors
-    /// The method decides cells from one another, gave up, or was asked to stop.
+    /// The cells of the method depend on each other, it failed, or the computation was cancelled.
     pub fn follow_by(
         &self,
         method: &Method,
@@ -48,10 +49,11 @@ impl Problem {
         follow.rest(self, Domain::Poses(poses.to_vec()), exec)
     }
 
-    /// The same; where it is asked to stop, what is finished until then is kept.
+    /// The same; if the computation is cancelled, the poses finished until then are kept.
     ///
     /// # Errors
-    /// The method decides cells from one another, gave up, or was asked to stop before any pose was finished.
+    /// The cells of the method depend on each other, it failed, or the computation was cancelled before any
+    /// pose was finished.
     pub fn follow_keeping(
         &self,
         method: &Method,
@@ -61,7 +63,7 @@ impl Problem {
         self.follow_telling(method, poses, exec, &|_, _| {})
     }
 
-    /// The same; `told` is told of every pose as soon as it is decided.
+    /// The same; `told` is called for every pose as soon as it is decided.
     ///
     /// # Errors
     /// As for [`Problem::follow_keeping`].
@@ -99,7 +101,8 @@ impl Problem {
         }
     }
 
-    /// The path of one pose from first contact to where it rests, and why it does not dock, where that can be determined.
+    /// The trajectory of a pose from first contact to its rest, and the reason for a failure to dock, if it
+    /// can be determined.
     pub fn trace(
         &self,
         start: &PoseError,
@@ -126,7 +129,7 @@ mod tests {
         Draft::read(SourceText::new("v.toml", text)).and_then(Draft::build).unwrap()
     }
 
-    /// What is finished when it is stopped is what the whole has there, for any number of threads.
+    /// The results kept after a stop equal those of the complete computation, for any number of threads.
     #[test]
     fn what_was_finished_is_kept() {
         let problem = v_face();

@@ -153,13 +153,13 @@ pub enum RunError {
     /// There are no figures of merit.
     #[error(transparent)]
     Merit(#[from] MeritError),
-    /// There are no jams to tell.
+    /// The jams could not be computed.
     #[error(transparent)]
     Jams(#[from] JamsError),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -181,8 +181,8 @@ impl Run {
         Self { method, ..Self::default() }
     }
 
-    /// Computes the run. Many of them at once: by [`Exec::each`], and not as tasks of one pool of `rayon`, whose waiting threads begin one
-    /// inside of another until the stack is full.
+    /// Computes the run. For many runs use [`Exec::each`] instead of tasks in a common pool of `rayon`, whose
+    /// waiting threads start further tasks until the stack is full.
     ///
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
@@ -190,7 +190,8 @@ impl Run {
         self.on_with(problem, exec, |_| {})
     }
 
-    /// The same; `first` receives what the connector tolerates with roll and pitch locked, which is known long before the rest.
+    /// The same; `first` receives the results with roll and pitch locked, which are known long before the
+    /// rest.
     ///
     /// # Errors
     /// See [`RunError`]; nothing is left behind.

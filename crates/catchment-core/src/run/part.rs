@@ -39,7 +39,7 @@ pub struct RunPart {
 }
 
 impl RunPart {
-    /// The poses of this part among `count`; parts differ by one pose at most.
+    /// The poses of this part among `count`; the sizes of parts differ by at most 1.
     pub fn range(self, count: usize) -> Range<usize> {
         let of = self.of.max(1);
         let (each, more) = (count / of, count % of);
@@ -65,7 +65,7 @@ pub struct PartAnswer {
 /// Why a run cannot be divided, or its parts make no whole.
 #[derive(Debug, thiserror::Error)]
 pub enum RunPartError {
-    /// The method decides cells from one another.
+    /// The cells of the method depend on each other.
     #[error(
         "{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses, \
          or the grid of a method that follows each pose by itself, such as descent"
@@ -95,7 +95,7 @@ pub enum RunPartError {
     Incomplete {
         /// Its number.
         number: usize,
-        /// What is wrong with it.
+        /// The error.
         what: &'static str,
     },
     /// The run itself gives no answer.
@@ -104,10 +104,10 @@ pub enum RunPartError {
 }
 
 impl Run {
-    /// Decides one part of this run.
+    /// Decides a part of this run.
     ///
     /// # Errors
-    /// The run cannot be divided, there is no such part, or it gives no answer.
+    /// The run cannot be divided, the part does not exist, or the run fails.
     pub fn part(&self, problem: &Problem, part: RunPart, exec: &Exec) -> Result<PartAnswer, RunPartError> {
         if part.number >= part.of {
             return Err(RunPartError::NoSuchPart { number: part.number, of: part.of });
@@ -126,10 +126,10 @@ impl Run {
         })
     }
 
-    /// Puts the parts of this run together, whatever their order, and goes on as [`Run::on`] does.
+    /// Merges the parts of this run, in any order, and continues as [`Run::on`] does.
     ///
     /// # Errors
-    /// The parts do not belong to this run and problem, or do not make a whole.
+    /// The parts do not belong to this run and problem, or are incomplete.
     pub fn merge(
         &self,
         problem: &Problem,
@@ -175,7 +175,7 @@ impl Run {
         Ok(stages::finish(self, &plan, problem, (upright, decided), started, exec)?)
     }
 
-    /// The plan, where it can be divided.
+    /// The plan, if it can be divided.
     fn divisible(&self, problem: &Problem) -> Result<RunPlan, RunPartError> {
         let plan = self.plan(problem)?;
         match plan.method.follows() {

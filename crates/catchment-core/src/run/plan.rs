@@ -20,38 +20,43 @@ pub struct RunPlan {
     pub method: Method,
     /// Which poses.
     pub domain: Domain,
-    /// Random poses that correct the Sum, if any shall.
+    /// Sampled poses that correct the Sum, if any.
     pub sample: Option<correction::CorrectionSettings>,
-    /// Whether the heights are computed beside what the method needs.
+    /// Whether the heights are computed even if the method does not need them.
     pub heights: bool,
-    /// What deciding will take.
+    /// Cost of the decision.
     pub cost: Cost,
-    /// What is followed after it.
+    /// Motions that follow it.
     pub afterwards: Afterwards,
 }
 
-/// Motions that follow a decision, where exact ones can: as many as suit the halves, and no more than the time has.
+/// Motions that follow a decision, if exact motions are possible: their number depends on the halves, and is
+/// limited by the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Afterwards {
     /// Poses along either side of an axis for its limit.
     pub steps: usize,
-    /// Random poses all over a box of which none may fail; as many again, and more, look for what fails.
+    /// Number of sampled poses in a box that must contain no failure; as many again, and more, search for
+    /// failures.
     pub random: usize,
 }
 
-/// One in so many parts of a budget of time is the most that the grid takes of it; random poses, which make the Sum, have the others.
+/// Largest part of a time budget for the grid, as a divisor; the samples, which give the Sum, have the rest.
 pub(super) const GRID_PART: u32 = 2;
 
-/// Fewest cells per axis of a grid that nobody asked for: of an error box that is four times the tolerance wide two of eight are accepted.
+/// Smallest number of cells per axis of a default grid: with an error box four times the tolerance wide two
+/// of eight are accepted.
 const LEAST_CELLS: usize = 8;
-/// The accepted set spans at least so many cells of such a grid on one side of the mated pose, along every axis: else the grid shows next to nothing of it.
+/// Smallest number of cells of a default grid that the accepted set spans on one side of the mated pose,
+/// along every axis: with fewer the grid shows almost nothing of it.
 const SPANNED: f64 = 1.5;
 
-/// Core-seconds that random poses take in the place of such a grid, and the most of them.
+/// Core-seconds for samples in place of such a grid, and their largest number.
 const SAMPLED_SECONDS: f64 = 15.0;
 const SAMPLED: usize = 4000;
 
-/// Poses on either side of an axis for the limits of simple halves, of other halves, and where even these would take too long.
+/// Poses on either side of an axis for the limits of simple halves, of other halves, and if even these would
+/// take too long.
 const STEPS: f64 = 48.0;
 const LEAST_STEPS: f64 = 12.0;
 const FEWEST_STEPS: f64 = 4.0;
@@ -63,11 +68,11 @@ const STAGE_SHARE: f64 = 0.2;
 const LEAST_STAGE_SECONDS: f64 = 2.0;
 
 impl Run {
-    /// What this run will do on a problem.
+    /// Plan of this run for a problem.
     ///
     /// # Errors
-    /// The mated pose does not hold, the method does not apply to the design, its settings are out of range, or the resolution does not suit the
-    /// free errors.
+    /// The mated pose is not stable, the method does not apply to the design, its settings are out of range,
+    /// or the resolution does not suit the free errors.
     pub fn plan(&self, problem: &Problem) -> Result<RunPlan, RunError> {
         problem.ensure_held()?;
         let pair = problem.pair();
@@ -115,7 +120,7 @@ impl Run {
         Ok(RunPlan { method, domain, sample, heights, cost, afterwards })
     }
 
-    /// What is followed after the decision.
+    /// The motions after the decision.
     fn afterwards(&self, problem: &Problem, method: &Method, domain: &Domain) -> Afterwards {
         let pair = problem.pair();
         let seconds = match self.sample {
@@ -136,7 +141,8 @@ impl Run {
         Afterwards { steps: steps.min(steps_in_time) as usize, random }
     }
 
-    /// Which poses answer: those that were asked for, or random ones where a grid that can be afforded is too coarse to resolve the accepted set.
+    /// The poses to decide: the requested ones, or random ones if an affordable grid is too coarse to resolve
+    /// the accepted set.
     fn resolved(&self, method: &Method, problem: &Problem) -> Result<Over, RunError> {
         let pair = problem.pair();
         let is_sampled =
@@ -156,13 +162,13 @@ impl Run {
         Ok(Over::Stream(poses.min(SAMPLED)))
     }
 
-    /// How the window is looked for: in the proportions of the error box, with the friction of the method.
+    /// Settings of the window: with the proportions of the error box, and the friction of the method.
     pub(crate) fn window_settings(&self) -> window::WindowSettings {
         let friction = self.method.motions().friction;
         window::WindowSettings { seed: self.seed, friction, ..window::WindowSettings::default() }
     }
 
-    /// How jams are looked for: by poses of the same seed and errors, with the friction of the method.
+    /// Settings of the jams: with poses of the same seed and errors, and the friction of the method.
     pub fn jams_settings(&self) -> jams::JamsSettings {
         let friction = self.method.motions().friction;
         jams::JamsSettings {
@@ -190,7 +196,8 @@ fn spans_cells(problem: &Problem, method: &Method, grid: &Grid) -> bool {
 impl RunPlan {
     /// Core-seconds that everything takes, about: the decision and the motions that follow it (Sum, limits, window, seat).
     pub fn seconds(&self, problem: &Problem) -> f64 {
-        /// Motions of a window, as a multiple of its random poses; those of the seat and of what depends on the step.
+        /// Number of motions of a window, as a multiple of its samples; those of the seat and of the
+        /// step-dependence test.
         const WINDOW: f64 = 3.0;
         const OTHERS: f64 = 60.0;
         let pair = problem.pair();
@@ -217,10 +224,10 @@ impl RunPlan {
         decided + motions * seconds_per_motion(pair)
     }
 
-    /// Refuses what would not fit into memory, with what would.
+    /// Rejects a run that does not fit into memory, with sizes that would.
     ///
     /// # Errors
-    /// It would not.
+    /// It does not fit.
     pub fn ensure_fits(&self, exec: &Exec) -> Result<(), OutOfBudget> {
         let (cells, axes) = match &self.domain {
             Domain::Grid(grid) => {

@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 /// How deep references may lead; those of results lead three deep.
 const DEEPEST: usize = 32;
 
-/// The schema of reports of one kind, among those of all.
+/// The schema of reports of a kind, among those of all kinds.
 #[derive(Debug, Clone, Copy)]
 pub struct ReportSchema<'a> {
     root: &'a Value,
@@ -21,7 +21,8 @@ pub struct ReportSchema<'a> {
 }
 
 impl<'a> ReportSchema<'a> {
-    /// Of a kind, in a document whose `$defs` have every kind under its name; none where there is no such kind.
+    /// The schema of a kind, in a document whose `$defs` contain every kind under its name; `None` for an
+    /// unknown kind.
     pub fn of(root: &'a Value, kind: &str) -> Option<Self> {
         let kind = root.get("$defs")?.get(kind)?;
         Some(Self { root, kind })
@@ -57,7 +58,7 @@ impl<'a> ReportSchema<'a> {
         found
     }
 
-    /// What is one step further; nothing where there is no such place.
+    /// The schemas after a step; empty if the step does not exist.
     pub fn step(&self, here: &[&'a Value], step: &str) -> Vec<&'a Value> {
         let next = here.iter().filter_map(|schema| self.below(schema, step));
         next.flat_map(|schema| self.alternatives(schema)).collect()
@@ -99,7 +100,8 @@ impl<'a> ReportSchema<'a> {
         }
     }
 
-    /// The names by which items of a list are stepped into: their axes; `None` where any name may be, as of robots.
+    /// The names by which items of a list are accessed: their axes; `None` if any name is possible, as for
+    /// robots.
     fn names(&self, items: &'a Value) -> Option<Vec<String>> {
         let item = self.alternatives(items);
         let are_objects = item.iter().all(|schema| schema.get("properties").is_some());
@@ -110,7 +112,7 @@ impl<'a> ReportSchema<'a> {
         Some(axis.iter().flat_map(|axis| words(axis)).collect())
     }
 
-    /// The names of what is one step further, as far as the schema says them.
+    /// The names of the possible steps, as far as the schema defines them.
     pub fn known(&self, here: &[&'a Value]) -> Vec<String> {
         let properties = |schema: &&'a Value| {
             let fields = schema.get("properties").and_then(Value::as_object);
@@ -122,7 +124,7 @@ impl<'a> ReportSchema<'a> {
         here.iter().flat_map(properties).chain(items.flatten()).collect()
     }
 
-    /// The types that stand at a place, `integer` as `number`; empty where anything may stand.
+    /// The types at a place, `integer` as `number`; empty if any type is possible.
     pub fn types(&self, here: &[&'a Value]) -> Vec<&'a str> {
         let mut found = Vec::new();
         for schema in here {
@@ -137,7 +139,7 @@ impl<'a> ReportSchema<'a> {
         found
     }
 
-    /// What stands at a place where no number can be.
+    /// The type at a place that cannot hold a number.
     pub fn other_than_a_number(&self, here: &[&'a Value]) -> Option<&'static str> {
         let types = self.types(here);
         if types.is_empty() || types.contains(&"number") {

@@ -35,7 +35,7 @@ const RELATIONS: [(Relation, &str); 5] = [
     (Relation::Below, "<"),
 ];
 
-/// A demand on one number of a report.
+/// A requirement on a number of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requirement {
     path: String,
@@ -43,7 +43,7 @@ pub struct Requirement {
     bound: Quantity,
 }
 
-/// Why a requirement cannot be judged.
+/// Reason why a requirement cannot be evaluated.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RequirementError {
     /// Not `PATH OP NUMBER`.
@@ -51,7 +51,7 @@ pub enum RequirementError {
         "`{text}` is no requirement; write PATH OP NUMBER such as onaa.edge>=0.3, OP one of >= <= > < =="
     )]
     Syntax {
-        /// What was written.
+        /// The text of the requirement.
         text: String,
     },
     /// A report has no such place.
@@ -59,7 +59,7 @@ pub enum RequirementError {
     NoSuchPath {
         /// The path as far as it leads nowhere.
         path: String,
-        /// What there is instead.
+        /// The existing names.
         known: Vec<String>,
         /// The nearest of these.
         meant: Option<String>,
@@ -69,10 +69,10 @@ pub enum RequirementError {
     NotANumber {
         /// The path.
         path: String,
-        /// What it is.
+        /// Its type.
         what: &'static str,
     },
-    /// A unit that says nothing there.
+    /// A unit without a meaning there.
     #[error("`{path}` and {bound}: {reason}")]
     Unit {
         /// The path.
@@ -143,7 +143,7 @@ impl<'de> Deserialize<'de> for Requirement {
     }
 }
 
-/// What became of a requirement.
+/// Result of a requirement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RequirementCheck {
     /// The requirement.
@@ -162,7 +162,7 @@ impl fmt::Display for RequirementCheck {
 }
 
 impl Requirement {
-    /// Judges a report.
+    /// Evaluates the requirement on a report.
     ///
     /// # Errors
     /// If the report has no such place, or no number there.
@@ -244,11 +244,11 @@ impl Requirement {
         Ok(here)
     }
 
-    /// Refuses a requirement on a place that no report of a JSON schema has, or where it has no number. `absent` are places that are null in the report
-    /// at hand.
+    /// Rejects a requirement on a place that no report of a JSON schema has, or that holds no number.
+    /// `absent` are places that are null in the report at hand.
     ///
     /// # Errors
-    /// If there is no such place, no number there, or a unit that has no meaning there.
+    /// If there is no such place, no number there, or a unit without a meaning there.
     pub fn check(&self, schema: &ReportSchema<'_>, absent: &[&str]) -> Result<(), RequirementError> {
         let mut here = schema.of_kind();
         for (before, step) in self.steps() {
@@ -298,7 +298,7 @@ fn no_such_path(before: &str, step: &str, mut known: Vec<String>) -> Requirement
     RequirementError::NoSuchPath { path: format!("{before}{step}"), known, meant }
 }
 
-/// What can be stepped into, under each of its names, the one for messages last.
+/// The possible steps from a value, under each of their names, the name for messages last.
 fn steps(value: &Value) -> Vec<(Vec<String>, &Value)> {
     match value {
         Value::Object(map) => map.iter().map(|(key, next)| (vec![key.clone()], next)).collect(),

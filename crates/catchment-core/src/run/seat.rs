@@ -64,20 +64,20 @@ pub struct Residual {
     pub most: f64,
 }
 
-/// Of so many random descents that a Sum takes, one is followed to its rest; but no fewer than show a 95 % quantile, unless these take longer than
-/// this on one core, in seconds.
+/// One motion of this many behind a Sum is followed to its rest; at least as many as determine a 95 %
+/// quantile, unless these take longer than this on one core, in seconds.
 const SHARE: usize = 20;
 const FEWEST: usize = 40;
 const LONGEST: f64 = 12.0;
-/// Cells looked at for every accepted one that is wanted.
+/// Cells tried for every wanted accepted cell.
 const LOOKS: u64 = 50;
-/// Rests nearer than this are the mated pose, in D and radians: what the ends of motions leave.
+/// Rests closer than this are the mated pose, in D and radians: the accuracy of motion ends.
 const NONE: f64 = tolerance::TOUCHING;
 /// The poses have random numbers of their own.
 const BRANCH: u64 = 0x5ea7;
 
 impl Seating {
-    /// The seat of a problem, and where accepted poses come to rest in it.
+    /// The seat of a problem, and the rests of accepted poses in it.
     pub(super) fn of(
         problem: &Problem,
         acceptance: &Acceptance,
@@ -113,7 +113,7 @@ impl Seating {
         Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual, deeper })
     }
 
-    /// The doubts that it raises: halves that rest farther off than the seat was found to allow.
+    /// Its warnings: halves that rest farther off than the computed play of the seat.
     pub fn warnings(&self, problem: &Problem) -> Vec<Warning> {
         let docked = &problem.alignment().docked;
         let far =
@@ -145,7 +145,7 @@ impl Seating {
 }
 
 impl Deeper {
-    /// The deepest of these places of rest, if it is below the mated pose by more than drawings are rounded.
+    /// The deepest of these rests, if it is below the mated pose by more than the rounding of drawings.
     fn of(pair: &Pair, rests: &[End]) -> Option<Self> {
         let sinks = |end: &End| Some((pair.mated_height() - end.height?, end.error));
         let (sinks, error) = rests.iter().filter_map(sinks).max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -184,7 +184,7 @@ fn accepted(acceptance: &Acceptance, count: u64, seed: u64) -> Vec<PoseError> {
 }
 
 impl Problem {
-    /// Where a half let go without any error comes to rest: where it began, if the mated pose is one.
+    /// The rest of a half released at zero error: its start, if the mated pose is a rest.
     pub fn settled(&self) -> End {
         Follower::new(self.pair(), &descent::DescentSettings::default()).rest(&PoseError::default())
     }
@@ -198,10 +198,11 @@ impl Problem {
         Ok(self)
     }
 
-    /// Refuses a mated pose that does not hold: no motion ends in it, so that an area of acceptance around it says nothing.
+    /// Rejects a mated pose that is not stable: no motion ends in it, so that an area of acceptance around it
+    /// has no meaning.
     ///
     /// # Errors
-    /// It does not hold, with how far away the half comes to rest.
+    /// It is not stable, with the distance to the rest of the half.
     pub fn ensure_held(&self) -> Result<(), Diagnostics> {
         let (message, advice) = match self.doubts().iter().find(|doubt| is_unstable(doubt)) {
             Some(doubt) => (self.sentence(doubt), self.advice(doubt)),
@@ -213,7 +214,8 @@ impl Problem {
         Err(self.refused("alignment.free", message, advice))
     }
 
-    /// What speaks against the mated pose, as sentences: with where the half settles instead, if it does not hold.
+    /// Warnings about the mated pose, as sentences: with the rest that the half reaches instead, if it is not
+    /// stable.
     pub fn objections(&self) -> Vec<String> {
         let mut said = self.said();
         if !self.doubts().iter().any(is_unstable) {
@@ -222,12 +224,13 @@ impl Problem {
         said
     }
 
-    /// The doubts, in the unit of the design.
+    /// The warnings, in the unit of the design.
     fn said(&self) -> Vec<String> {
         self.doubts().iter().map(|doubt| self.sentence(doubt)).collect()
     }
 
-    /// A doubt as a sentence; where the mated pose does not hold, with the distance to where the half comes to rest and the remedy.
+    /// A warning as a sentence; for an unstable mated pose with the distance to the rest of the half and the
+    /// remedy.
     fn sentence(&self, doubt: &MatedProblem) -> String {
         let told = DisplayUnit::of(self.design());
         let said = doubt.told(told);
@@ -263,7 +266,7 @@ impl Problem {
         )
     }
 
-    /// That halves which are a little off come to rest below the seat, if they do.
+    /// A warning that halves slightly off come to rest below the seat, if they do.
     fn fallen(&self) -> Option<String> {
         let fall = descent::fall(self.pair())?;
         let told = DisplayUnit::of(self.design());

@@ -13,8 +13,8 @@ use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError,
 use crate::method::{CellFractions, Method, MethodOutput, PoseMethod, descent};
 use crate::problem::Problem;
 
-/// Follows sampled poses and ambiguous cells: the method itself where it decides each pose by itself (descents would know
-/// nothing of the friction of a drop test), else exact descent.
+/// Follows sampled poses and ambiguous cells: the method itself if it decides each pose separately
+/// (quasi-static motions would miss the friction of a drop test), else exact motion.
 pub(super) fn follower(method: &Method) -> ExactFollower<'_> {
     ExactFollower { own: method.follows(), descent: method.motions() }
 }
@@ -41,7 +41,7 @@ pub(super) fn decide(plan: &RunPlan, problem: &Problem, exec: &Exec) -> Result<M
     Ok(plan.method.decide(problem, &plan.domain, exec)?)
 }
 
-/// What the connector tolerates with roll and pitch locked, where five errors are free and exact motions answer beside a grid.
+/// Results with roll and pitch locked, if five errors are free and exact motions accompany a grid.
 pub(super) fn upright(
     run: &Run,
     plan: &RunPlan,
@@ -58,10 +58,11 @@ pub(super) fn upright(
     Upright::of(problem, steps, &by, &exec.part([0.0, 1.0], "roll and pitch locked"))
 }
 
-/// How the time after the decision is divided, about: up to which share the Sum, what depends on the step, limits, boxes and the seat reach.
+/// Approximate division of the time after the decision: the shares at the end of the Sum, the step-dependence
+/// test, limits, boxes and the seat.
 const SHARES: [f64; 5] = [0.15, 0.3, 0.5, 0.95, 1.0];
 
-/// Everything after the decision: each stage gets what the stages before it gave, and gives one value.
+/// All stages after the decision: each stage receives the results of the earlier ones, and returns a value.
 pub(super) fn finish(
     run: &Run,
     plan: &RunPlan,
@@ -114,7 +115,7 @@ pub(super) fn finish(
     })
 }
 
-/// What every stage after the decision needs.
+/// Data for every stage after the decision.
 struct Stages<'a> {
     run: &'a Run,
     plan: &'a RunPlan,
@@ -123,7 +124,7 @@ struct Stages<'a> {
     motions: descent::DescentSettings,
 }
 
-/// The window of a run that computes one, or why there is none.
+/// The window of a run that computes a window, or the reason for its absence.
 type WindowOrNot = Result<window::ToleranceWindow, WindowError>;
 
 impl Stages<'_> {
@@ -159,7 +160,8 @@ impl Stages<'_> {
         }
     }
 
-    /// The figures of merit: by exact motions along the axes and about the largest cubes, where the follower's motions are behind the answer.
+    /// The figures of merit: by exact motions along the axes and about the largest cubes, if the result rests
+    /// on the follower's motions.
     fn merits(
         &self,
         acceptance: &Acceptance,
@@ -197,10 +199,10 @@ impl Stages<'_> {
     }
 }
 
-/// Single-axis limits below this share of the error box leave few random poses that dock.
+/// Single-axis limits below this share of the error box leave few sampled poses that dock.
 const SMALL: f64 = 0.2;
 
-/// That little of the error box can dock, where random poses answer.
+/// Warning that a small part of the error box docks, for results from samples.
 fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
     let share = |tolerance: &Tolerance| {
         let axis = grid.axes.iter().find(|axis| axis.dof == tolerance.dof)?;
@@ -216,7 +218,7 @@ fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
     (!shares.is_empty()).then_some(Warning::Note { text })
 }
 
-/// What the grid has left of a budget of time, of which random poses have their part in any case.
+/// Remaining part of a time budget after the grid; samples always have a part.
 fn left(settings: correction::CorrectionSettings, started: Stopwatch) -> correction::CorrectionSettings {
     let stop = match settings.stop {
         Stop::Budget(budget) => {
@@ -228,7 +230,7 @@ fn left(settings: correction::CorrectionSettings, started: Stopwatch) -> correct
     correction::CorrectionSettings { stop, ..settings }
 }
 
-/// The Sum, made unbiased by random poses, most of them where the method is in doubt.
+/// The Sum, made unbiased by samples, most of them where the method is uncertain.
 pub fn correct(
     method: &Method,
     problem: &Problem,

@@ -24,10 +24,10 @@ use crate::method::descent;
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
 
-/// What a connector tolerates whose roll and pitch are locked.
+/// Tolerances of a connector with roll and pitch locked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Upright {
-    /// How far each error may go alone.
+    /// Single-axis limits of each error.
     pub tolerances: Vec<Tolerance>,
     /// The largest box around zero, in their proportions.
     pub window: CenteredBox,
@@ -37,10 +37,11 @@ pub struct Upright {
 const LEVEL: [Dof; 3] = [Dof::X, Dof::Y, Dof::Yaw];
 
 impl Upright {
-    /// Of a problem with all five errors free; `None` of others, and where the mated pose does not hold with roll and pitch locked.
+    /// For a problem with all five errors free; `None` for others, and if the mated pose is not stable with
+    /// roll and pitch locked.
     ///
     /// # Errors
-    /// It was asked to stop.
+    /// The computation was cancelled.
     pub(super) fn of(
         problem: &Problem,
         steps: usize,

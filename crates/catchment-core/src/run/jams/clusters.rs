@@ -16,29 +16,31 @@ use crate::problem::Problem;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Rests nearer than this are at one place, in the metric of the motion, in D: far above where motions end, far below a part's features.
+/// Rests closer than this are at the same place, in the metric of the motion, in D: far above the accuracy of
+/// motion ends, far below a part's features.
 const SAME: f64 = 0.01;
 /// Places nearer than this belong together.
 const NEAR: f64 = 0.1;
 /// More places on the same features than this lie all over.
 const MOST_PLACES: usize = 48;
-/// Level rests by which a place is known, on an average: of fewer, chance leaves gaps that part what is one level (of so many in one of some hundred).
+/// Mean number of level rests per place: with fewer, random gaps would divide a single level place (once in
+/// some hundred with this number).
 const ENOUGH: usize = 4;
-/// Rests of a jam that are asked until one is level and does not lie at an edge.
+/// Number of rests of a jam that are tested until a level one away from an edge is found.
 const LEVEL_TRIES: usize = 16;
 
-/// Rests that are one jam.
+/// Rests that form a single jam.
 #[derive(Debug, Clone)]
 pub(in crate::run) struct Cluster {
     /// Their numbers, ascending.
     pub(in crate::run) members: Vec<usize>,
-    /// The one in the middle, or of level ones one that does not lie at an edge.
+    /// The central rest, or for level rests one that does not lie at an edge.
     pub(in crate::run) middle: usize,
-    /// From where to where they lie, images laid upon each other.
+    /// Range of the rests, with symmetric images mapped onto each other.
     pub(in crate::run) extent: [[f64; 2]; 5],
     /// At how many places that are images of each other they lie.
     pub(in crate::run) places: usize,
-    /// How firmly the middle one holds, where it was asked.
+    /// Stability of the central rest, if it was tested.
     pub(in crate::run) held: Option<RestStability>,
 }
 
@@ -191,7 +193,7 @@ impl Cluster {
     }
 }
 
-/// The first of some rests that lies level, and how, of as many as are asked.
+/// The first level rest among the given rests, with its stability, of at most the given number of tests.
 fn level(
     problem: &Problem,
     rests: &[RestEnd],
@@ -202,7 +204,8 @@ fn level(
     held.find(|(_, held)| held.firmness == Stability::Level)
 }
 
-/// On how many levels that are images of each other these places lie, each [`NEAR`] another of its level; 1 where they are no images, or lie all over.
+/// Number of symmetric level regions that contain these places, each place within [`NEAR`] of another; 1 if
+/// they are not images, or lie all over.
 fn levels(rests: &[RestEnd], places: &[usize], images: &Images) -> usize {
     if places.len() > MOST_PLACES {
         return 1;

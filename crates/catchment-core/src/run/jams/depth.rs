@@ -14,10 +14,10 @@ use crate::method::flood::{self, FloodError, flood};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 
-/// Why no depths can be told.
+/// Reason why no escape heights are available.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DepthError {
-    /// The grid is none.
+    /// The resolution is invalid.
     #[error(transparent)]
     Resolution(#[from] ResolutionError),
     /// The grid has no merge tree.
@@ -26,7 +26,7 @@ pub enum DepthError {
     /// Nothing can be certified.
     #[error(transparent)]
     Certified(#[from] CertifiedError),
-    /// What is certified knows no friction.
+    /// Certified bounds do not support friction.
     #[error("what is certain of depths is so without friction alone: leave out one of the two")]
     Friction,
 }
@@ -40,7 +40,8 @@ pub(in crate::run) fn check(problem: &Problem, certified: bool, friction: f64) -
     }
 }
 
-/// Tells places of rest the depths that are asked for: of all by a grid, of those that were examined at least.
+/// Sets the requested escape heights of rests: of all rests by a grid, and lower bounds for the examined
+/// rests.
 pub(in crate::run) fn tell(
     problem: &Problem,
     mut places: Vec<&mut RestGroup>,
@@ -60,13 +61,13 @@ pub(in crate::run) fn tell(
     Ok(())
 }
 
-/// Pose errors and heights of places of rest.
+/// Pose errors and heights of rests.
 fn at(places: &[&mut RestGroup]) -> Vec<(PoseError, f64)> {
     places.iter().map(|place| (place.pose, place.height)).collect()
 }
 
-/// Depths of rests at pose errors and heights of the centre of rotation, in D; none outside of the box, in the only basin, and where a cell's basin was merged into that of
-/// cells without contact.
+/// Escape heights of rests at pose errors and heights of the centre of rotation, in D; `None` outside of the
+/// box, in a single basin, and if a cell's basin was merged into that of cells without contact.
 fn on_grid(
     problem: &Problem,
     resolution: &Resolution,

@@ -10,11 +10,11 @@ use crate::pose::{Dof, PoseError};
 const ON_ITS_SIDE: f64 = 0.0175;
 /// Heights below this are nothing, in D: rounding.
 const NOTHING: f64 = 1e-8;
-/// Heights nearer than this are one, in D.
+/// Heights closer than this are equal, in D.
 const ONE_HEIGHT: f64 = 1e-4;
 /// Contacts whose places are shown.
 const MOST_CONTACTS: usize = 4;
-/// Rests within this are at one place, in D or radians.
+/// Rests within this are at the same place, in D or radians.
 const ONE_PLACE: f64 = 0.01;
 /// Dry halves have no more friction than this, mostly: wedging beyond it is not shown.
 const MOST_COMMON: f64 = 1.0;
@@ -72,7 +72,8 @@ pub fn contact_in_words(fixed: &NamedFeature, moving: &NamedFeature) -> String {
     format!("{} of the moving half on {} of the fixed one", moving.name, fixed.name)
 }
 
-/// What touches, in words, the same pairs once: `rim of the moving half on wall of the fixed one, twice`.
+/// The contacts in words, with equal pairs combined:
+/// `rim of the moving half on wall of the fixed one, twice`.
 pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
     let mut pairs: Vec<(String, usize)> = Vec::new();
     for contact in contacts {
@@ -90,7 +91,7 @@ pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
     pairs.into_iter().map(|(words, count)| words + &times(count)).collect()
 }
 
-/// How far a half must be lifted, in words.
+/// The escape height in words.
 pub fn lifted(design: &Design, climb: f64) -> String {
     if climb < NOTHING {
         "not lifted at all".to_owned()
@@ -99,7 +100,7 @@ pub fn lifted(design: &Design, climb: f64) -> String {
     }
 }
 
-/// Places of rest of a design in words.
+/// Rests of a design in words.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::run) struct RestDescriptions<'a> {
     units: DesignUnits<'a>,
@@ -126,7 +127,7 @@ impl<'a> RestDescriptions<'a> {
         }
     }
 
-    /// `, 1.2 mm above the mated pose`; nothing where it is as high.
+    /// `, 1.2 mm above the mated pose`; empty for equal height.
     fn above(self, above: f64) -> String {
         if above.abs() < ONE_HEIGHT {
             return String::new();
@@ -135,7 +136,7 @@ impl<'a> RestDescriptions<'a> {
         format!(", {} {side} the mated pose", self.units.length(above.abs()))
     }
 
-    /// From where to where rests lie where that is more than a place.
+    /// The range of the rests, if they are at more than a single place.
     fn extent(self, pose: &PoseError, extent: &[Extent]) -> String {
         // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
         let on_its_side = pose.pitch.cos().abs() < ON_ITS_SIDE;
@@ -162,7 +163,8 @@ impl<'a> RestDescriptions<'a> {
         }
     }
 
-    /// How firmly it is held, and by how much friction: with friction, or where contacts alone do not hold it.
+    /// The stability, and the friction thresholds: with friction, or if the contacts alone do not hold the
+    /// half.
     pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
         document.row("  neighbours", self.firmness(examined));
         let matters = self.friction > 0.0 || examined.immobility.is_none();
@@ -198,7 +200,7 @@ impl<'a> RestDescriptions<'a> {
         format!("{rise}; {back} of {pushed} neighbouring poses return")
     }
 
-    /// How far it must be lifted to get out, and where that leads.
+    /// The escape height, with the end of the escape path.
     pub(in crate::run) fn escape(self, climb: f64, to: &str) -> String {
         if climb < NOTHING {
             format!("0; without lifting it {to}")
@@ -207,7 +209,7 @@ impl<'a> RestDescriptions<'a> {
         }
     }
 
-    /// Escape heights beside that of the way that was found: from below, and on a grid, where the settings want them.
+    /// Other bounds on the escape height: from below, and on a grid, if the settings request them.
     pub(in crate::run) fn depths(
         self,
         document: &mut Document,
@@ -231,7 +233,7 @@ impl<'a> RestDescriptions<'a> {
         }
     }
 
-    /// What touches, and where on either half.
+    /// The contacts, with their positions on both halves.
     pub(in crate::run) fn contacts(self, document: &mut Document, contacts: &[FeatureContact]) {
         for (k, words) in contacts_in_words(contacts).into_iter().enumerate() {
             document.row(if k == 0 { "  contact" } else { "" }, words);

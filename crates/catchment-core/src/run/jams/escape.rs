@@ -23,23 +23,23 @@ use crate::tolerance;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// How closely a way is looked at, in the metric of the motion, in D.
+/// Spacing of the samples of a path, in the metric of the motion, in D.
 const STEP: f64 = 0.02;
 /// How much more closely the best, and how often: up to 2·10⁻⁶ D about its highest place.
 const FINER: usize = 10;
 const LOOKS: usize = 4;
-/// How far ways are followed, in D: from one side of a connector to the other.
+/// Largest length of paths, in D: from one side of a connector to the other.
 const FARTHEST: f64 = 1.5;
 /// Random ways and moves about the best, of simple halves, per free error: of few errors more, so that the lowest way hardly hangs on chance.
 const WAYS: f64 = 24.0;
 const WAYS_OF_FEW: f64 = 96.0;
 const FEW: usize = 3;
 const LEAST_WAYS: f64 = 4.0;
-/// Rests farther apart than this are two, in the metric of the motion, in D: rests as near are gathered into one.
+/// Rests farther apart than this are different, in the metric of the motion, in D: closer rests are merged.
 const ELSEWHERE: f64 = 0.1;
 /// Motions keep so far from walls, in D, and heights beside a wall differ by that on its slope.
 const OPEN: f64 = tolerance::TOUCHING;
-/// What counts as lower, in D: above what motions leave.
+/// Height difference that counts as lower, in D: above the accuracy of motions.
 const LOWER: f64 = 1e-5;
 
 /// An escape path from a jam.
@@ -55,26 +55,27 @@ pub struct EscapePath {
     pub over: PoseError,
 }
 
-/// What counts as out.
+/// Condition for an escape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::run) enum EscapeCriterion {
     /// Docked, off, or a lower rest; walls are in the way.
     Jam,
     /// Off, or any other rest; walls may be lifted over.
     Rest {
-        /// Whether it may lie anywhere on what carries it: another rest then is one that is lower, or turned.
+        /// Whether it may lie anywhere on its supporting features: another rest is then one that is lower, or
+        /// rotated.
         is_level: bool,
     },
 }
 
-/// One way, as far as it leads out.
+/// A path, up to the escape.
 #[derive(Debug, Clone, Copy)]
 struct EscapeAttempt {
     along: [f64; 5],
-    /// How far along the half is out.
+    /// Length at which the half has escaped.
     length: f64,
     out: EscapePath,
-    /// Where the motion ends that leads out.
+    /// End of the motion after the escape.
     end: PoseError,
 }
 
@@ -89,7 +90,8 @@ struct Search<'a> {
     open: bool,
 }
 
-/// The lowest way out that is found, and where the motion ends that leads out; none where all that are tried climb on, or end at walls.
+/// The lowest escape path found, and the end of the motion after it; `None` if all tried paths continue to
+/// climb, or end at walls.
 pub(in crate::run) fn way_out(
     pair: &Pair,
     rest: &RestEnd,
@@ -189,7 +191,7 @@ impl Search<'_> {
         self.best = Some(EscapeAttempt { along: *way, length, out: EscapePath { climb, to, over }, end });
     }
 
-    /// Where motion leads from a place on a way, if that is out.
+    /// Outcome of the motion from a point of a path, if that is an escape.
     fn leads_out(&mut self, way: &[f64; 5], length: f64) -> Option<(Outcome, PoseError)> {
         let from = self.space.error(self.rest, way, length);
         let end = match self.leaving {
@@ -206,7 +208,7 @@ impl Search<'_> {
         is_out.then_some((end.outcome, end.error))
     }
 
-    /// Whether a rest is another one.
+    /// Whether a rest is a different one.
     fn is_elsewhere(&self, end: &PoseError, is_level: bool) -> bool {
         let pose = self.space.pose(end);
         let turned = angle_between(&pose.rotation, &self.rest.pose.rotation);
@@ -214,7 +216,7 @@ impl Search<'_> {
         step_length(lateral, turned, self.space.rho()) > ELSEWHERE
     }
 
-    /// The climb of a way, looked at more and more closely about its highest place.
+    /// The climb of a path, sampled more and more densely around its highest point.
     fn finer(&mut self, best: &EscapeAttempt) -> EscapePath {
         let mut top = best.out.climb;
         let (mut from, mut to, mut last) = (0.0, best.length, self.rest.height);
@@ -241,7 +243,7 @@ impl Search<'_> {
     }
 }
 
-/// Whether a half lowered from far above comes to the rest: nothing is above it.
+/// Whether a half lowered from far above reaches the rest: nothing is above it.
 fn is_open(pair: &Pair, rest: &RestEnd) -> bool {
     pair.height(&rest.pose).is_some_and(|height| height <= rest.height + OPEN)
 }

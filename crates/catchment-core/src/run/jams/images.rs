@@ -11,12 +11,12 @@ use crate::pose::{CorPose, Dof, DofSet, PoseError, ROTATIONS, angle_between, eul
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// What is locked may move by less than this, in D or radians: rounding.
+/// Largest change of a locked error, in D or radians: rounding.
 const LOCKED: f64 = 1e-6;
-/// Pairs of symmetries that are looked at, at most: those of two rounds.
+/// Largest number of pairs of symmetries that are tested: those of two round halves.
 const MOST: usize = 600;
 
-/// A pose no farther from a mated one is docked, in D: motions end nearer.
+/// A pose within this distance of a mated pose is docked, in D: motions end closer.
 const DOCKED: f64 = 0.01;
 
 /// The largest number that divides both.
@@ -49,7 +49,8 @@ impl Images {
         self.pairs.iter().map(image).filter(|image| self.keeps_locks(image))
     }
 
-    /// Whether what is locked is where it was. Told by the axes of the half and not by angles, which say nothing at a pitch of 90°.
+    /// Whether the locked errors are unchanged. Tested by the axes of the half and not by angles, which are
+    /// undefined at a pitch of 90°.
     fn keeps_locks(&self, pose: &CorPose) -> bool {
         let DVec2 { x, y } = pose.lateral;
         let DMat3 { x_axis, y_axis, z_axis } = pose.rotation;
@@ -85,10 +86,11 @@ impl Images {
         best
     }
 
-    /// The order n of the turns about the approach axis that lead from the mated pose to its images, where this pose, so high above the mated one, is one
-    /// of them: as good as docked where the design has n-fold symmetry.
+    /// The order n of the rotations about the approach axis that map the mated pose to its images, if this
+    /// pose, at this height above the mated pose, is one of them: it would dock if the design had n-fold
+    /// symmetry.
     pub(in crate::run) fn symmetry(&self, pose: &CorPose, above: f64) -> Option<u32> {
-        /// A turn in parts of 15°, of which all that are looked for are made.
+        /// Number of parts of a full turn, 15° each: rotations are multiples of a part.
         const PARTS: u32 = 24;
         let mated = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         let is_near = |other: &CorPose| self.distance(other, pose) <= DOCKED;
@@ -102,8 +104,9 @@ impl Images {
         Some(PARTS / parts.fold(PARTS, common_divisor))
     }
 
-    /// How far a pose is off another one, whose error is given: lateral offset of the COR, and the turns of the Euler angles that lead there
-    /// to first order, about their own axes; in D and radians. Exact for one rotation.
+    /// Difference of a pose from another, whose error is given: lateral offset of the COR, and the rotations
+    /// of the Euler angles that lead there to first order, about their own axes; in D and radians. Exact for
+    /// a single rotation.
     pub(in crate::run) fn off(&self, pose: &CorPose, from: &CorPose, error: &PoseError) -> [f64; 5] {
         let lateral = pose.lateral - from.lateral;
         let turn = DQuat::from_mat3(&(pose.rotation * from.rotation.transpose())).to_scaled_axis();
@@ -115,12 +118,12 @@ impl Images {
         off
     }
 
-    /// The rotation length, in D.
+    /// The characteristic length, in D.
     pub(in crate::run) const fn rho(&self) -> f64 {
         self.rho
     }
 
-    /// Whether an image of `pose` may be as near to `to` as this: what no symmetry changes is compared.
+    /// Whether an image of `pose` may be this close to `to`: compares the invariants of the symmetries.
     pub(in crate::run) fn may_be_near(&self, pose: &CorPose, to: &CorPose, near: f64) -> bool {
         let tilt = |pose: &CorPose| pose.rotation.z_axis.z.clamp(-1.0, 1.0).acos();
         (pose.lateral.length() - to.lateral.length()).abs() <= near

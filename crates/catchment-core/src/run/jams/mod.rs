@@ -95,7 +95,7 @@ impl Default for JamsSettings {
     }
 }
 
-/// How far a half is pushed aside to see how much it rises, in the metric of the motion, in D.
+/// Displacement of a half in the test of its rise, in the metric of the motion, in D.
 pub const PUSH: f64 = 0.01;
 
 /// The jams of a pair: rests outside the seat.
@@ -241,10 +241,10 @@ pub struct Examined {
     pub back: usize,
 }
 
-/// A group of rests that are one place, or places alike, before it is a share of anything.
+/// A group of rests at the same place, or at equivalent places, before shares are computed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RestGroup {
-    /// Random poses of the error box that end here.
+    /// Number of sampled poses of the error box that end here.
     pub(super) count: usize,
     /// Poses drawn from the errors that a robot makes that end here.
     expected: Option<usize>,
@@ -252,7 +252,7 @@ pub(super) struct RestGroup {
     pub(super) pose: PoseError,
     /// z of the COR there, in D.
     pub(super) height: f64,
-    /// How far that is above the mated pose, in D.
+    /// Height above the mated pose, in D.
     pub(super) above: f64,
     /// Per error, in the order of [`Dof::ALL`].
     extent: [[f64; 2]; 5],
@@ -273,12 +273,12 @@ pub enum JamsError {
     /// No motions.
     #[error("no motions, no jams: follow one random pose at least")]
     Nothing,
-    /// A size that is none.
+    /// An invalid size.
     #[error("{}: {value} is no size of an error: finite, 0 or more", axis.name())]
     NoSize {
         /// Which error.
         axis: Dof,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// An error that does not vary.
@@ -326,8 +326,8 @@ pub fn run(problem: &Problem, settings: &JamsSettings, exec: &Exec) -> Result<Ja
     by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
-/// The same; and the poses that a robot is expected to come at are those of its spread, each measured one once where there are no more of them than
-/// motions.
+/// The same; the poses expected of a robot are those of its spread, each measured pose once if there are at
+/// most as many as motions.
 ///
 /// # Errors
 /// See [`JamsError`].
@@ -354,7 +354,7 @@ fn motions_of(problem: &Problem, settings: &JamsSettings) -> usize {
     settings.motions.unwrap_or_else(|| descent::DescentSettings::default().default_samples(problem.pair()))
 }
 
-/// The same by motions of one's own, whose friction is that of the settings.
+/// The same by given motions, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
     settings: &JamsSettings,
@@ -471,7 +471,7 @@ impl Jams {
 }
 
 impl RestGroup {
-    /// From where to where its rests lie, along free errors.
+    /// Range of its rests, along free errors.
     pub(super) fn extent(&self, free: DofSet) -> Vec<Extent> {
         let of = |axis: Dof| {
             let [from, to] = self.extent[axis.index()];

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub struct TouchingPair {
     /// In so many.
     pub count: usize,
-    /// The feature of the fixed half, where it was met first; all of its name count as one.
+    /// The feature of the fixed half, at its first contact; all features with its name are counted together.
     pub fixed: NamedFeature,
     /// The same of the moving half.
     pub moving: NamedFeature,
@@ -30,7 +30,8 @@ pub struct Sticks {
     pub critical: Vec<f64>,
 }
 
-/// The features that touch where poses stick, each followed at a friction of its own, with those frictions; how many of them stick there.
+/// The features in contact at stuck poses, each followed at its own friction coefficient, with these
+/// coefficients; and the number of stuck poses.
 pub fn what_sticks(
     problem: &Problem,
     poses: &[(PoseError, f64)],
@@ -57,8 +58,8 @@ pub fn what_sticks(
     Ok((rests.len(), sticks.collect()))
 }
 
-/// The pairs of features that touch in rests and the numbers of these rests, by their names, in the order of how many do: a person changes all features of
-/// a name, or none.
+/// The pairs of features in contact in rests and the numbers of these rests, by name, most frequent first: a
+/// designer changes all features with the same name together.
 pub(super) fn touching(
     problem: &Problem,
     features: &Features,

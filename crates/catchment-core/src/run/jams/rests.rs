@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Places of a contact nearer than this are one, in D.
+/// Contact points closer than this are equal, in D.
 const SAME_PLACE: f64 = tolerance::TOUCHING;
 /// Descents between two reports of progress.
 const BETWEEN: usize = 64;
-/// How far off rests are pushed to see whether they come back, in the metric of the motion, in D.
+/// Displacement of rests in the test whether they come back, in the metric of the motion, in D.
 const OFF: f64 = 5e-3;
 /// Pushes per free error.
 const PUSHES: usize = 4;
 
-/// Which ends are places of rest.
+/// The ends that count as rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::run) enum RestFilter {
     /// Those that did not dock.
@@ -34,7 +34,7 @@ pub(in crate::run) enum RestFilter {
     All,
 }
 
-/// What follows poses.
+/// Parameters for following poses.
 pub(in crate::run) struct PoseFollower<'a> {
     pub(in crate::run) problem: &'a Problem,
     pub(in crate::run) features: &'a Features,
@@ -43,7 +43,7 @@ pub(in crate::run) struct PoseFollower<'a> {
     pub(in crate::run) which: RestFilter,
 }
 
-/// Where a motion came to rest.
+/// The rest at the end of a motion.
 #[derive(Debug, Clone)]
 pub(in crate::run) struct RestEnd {
     pub(in crate::run) outcome: Outcome,
@@ -52,7 +52,7 @@ pub(in crate::run) struct RestEnd {
     pub(in crate::run) height: f64,
     /// Gaps up to this touch, in D.
     pub(in crate::run) touching: f64,
-    /// What touches, by pairs of features in their order.
+    /// The contacts, by pairs of features in their order.
     pub(in crate::run) met: Vec<FeatureMeeting>,
     /// The classes of these pairs, sorted.
     pub(in crate::run) signature: Vec<[u32; 2]>,
@@ -71,7 +71,7 @@ pub(in crate::run) fn classes(features: &Features, [fixed, moving]: [u32; 2]) ->
 }
 
 impl PoseFollower<'_> {
-    /// Follows every pose; where it rests, if that is asked.
+    /// Follows every pose; to its rest, if requested.
     pub(in crate::run) fn all(
         &self,
         poses: &[PoseError],
@@ -97,7 +97,7 @@ impl PoseFollower<'_> {
         })
     }
 
-    /// Follows one pose as far as it matters.
+    /// Follows a pose as far as needed.
     fn end(&self, follower: &mut Follower<'_>, pose: &PoseError) -> Rest {
         match self.which {
             RestFilter::Jams => follower.settle(pose),
@@ -130,7 +130,8 @@ impl PoseFollower<'_> {
         Some(RestEnd { outcome, error, pose, height, touching, met, signature })
     }
 
-    /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed; and where the motion ends that leads out.
+    /// Stability of a rest, its escape path, and whether it comes back after a displacement; with the end of
+    /// the motion after the escape.
     pub(in crate::run) fn examine(
         &self,
         rest: &RestEnd,
@@ -232,7 +233,7 @@ impl RestEnd {
     }
 }
 
-/// The number of the part on which a point of a half lies, in its frame; where every part is one solid.
+/// The number of the part that contains a point of a half, in its frame; if every part is a single solid.
 fn part_of(problem: &Problem, side: HalfRole, point: DVec3) -> Option<usize> {
     use crate::design::{ConnectorSpec, HalfSpec};
     let ConnectorSpec::Own(own) = &problem.design().connector else { return None };

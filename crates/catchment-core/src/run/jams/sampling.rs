@@ -57,7 +57,7 @@ pub(super) fn poses(
     Ok((0..count).map(pose).collect())
 }
 
-/// A spread as settings have it; none of measured errors, which are no law.
+/// A spread in the form of the settings; `None` for measured errors.
 pub(super) fn law(spread: &Spread, samples: u32, seed: u64) -> Option<Distribution> {
     match spread {
         Spread::Normal { mean, sigma, correlation } if *correlation == IDENTITY => {

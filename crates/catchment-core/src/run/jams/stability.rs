@@ -20,10 +20,11 @@ use serde::{Deserialize, Serialize};
 
 /// A slope below this is level: 0.06°, less than any friction.
 const LEVEL: f64 = 1e-3;
-/// Of a tenth of the push a rounded rest rises by a hundredth, a sharp one by a tenth: the border in between.
+/// Rise for a tenth of the displacement: a hundredth for a rounded rest, a tenth for a sharp one; the limit
+/// between them.
 const TENTH: f64 = 0.1;
 const ROUNDED: f64 = 0.03;
-/// A fall of so much is one, in D: rounding of heights aside.
+/// A fall of this much counts, in D: above the rounding of heights.
 const FALL: f64 = 1e-7;
 
 /// Random directions that are tried, per free error, and moves about the best.
@@ -57,18 +58,20 @@ impl Stability {
     }
 }
 
-/// How firmly a half rests.
+/// Stability of a rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::run) struct RestStability {
     /// In a word.
     pub(in crate::run) firmness: Stability,
-    /// Least rise found of the COR when pushed by [`PUSH`], in D; none where walls stop it all around.
+    /// Smallest rise found of the COR for a displacement of [`PUSH`], in D; `None` if walls block every
+    /// direction.
     pub(in crate::run) rise: Option<f64>,
-    /// The direction of that push: offset of the COR in D and turns in radians, per error; 0 where walls stop it.
+    /// The direction of that displacement: offset of the COR in D and rotations in radians, per error; 0 if
+    /// walls block it.
     pub(in crate::run) weakest: PoseError,
 }
 
-/// What becomes of the height aside of a rest.
+/// Change of the height around a rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::run) enum HeightAside {
     /// z of the COR, in D.
@@ -103,7 +106,7 @@ impl Space {
         CorPose::from_error(error, self.cor, self.free.iter().copied().collect())
     }
 
-    /// The rotation length, in D.
+    /// The characteristic length, in D.
     pub(in crate::run) const fn rho(&self) -> f64 {
         self.rho
     }
@@ -113,7 +116,7 @@ impl Space {
         self.free.len()
     }
 
-    /// Along one error alone, either way.
+    /// Along each single error, in both directions.
     pub(in crate::run) fn axes(&self) -> Vec<[f64; 5]> {
         let along = |dof: &Dof| {
             [1.0, -1.0].map(|sign| {
@@ -137,7 +140,7 @@ impl Space {
         unit(way)
     }
 
-    /// From a rest towards another pose error, and how far that is; none where it is the same.
+    /// Direction and distance from a rest to another pose error; `None` if they are equal.
     pub(in crate::run) fn towards(&self, rest: &RestEnd, to: &PoseError) -> Option<[f64; 5]> {
         let (from, to) = (rest.error.to_array(), to.to_array());
         let mut way = [0.0; 5];
@@ -148,7 +151,7 @@ impl Space {
         way.iter().any(|part| part.abs() > FALL).then(|| unit(way))
     }
 
-    /// Where a push by `length` in a direction leads from a rest.
+    /// The pose after a displacement by `length` in a direction from a rest.
     pub(in crate::run) fn displaced(&self, rest: &RestEnd, way: &[f64; 5], length: f64) -> CorPose {
         let lateral = rest.pose.lateral + DVec2::new(way[0], way[1]) * length;
         let turn = [way[2], way[3], way[4]].map(|part| part * length / self.rho);
@@ -164,7 +167,8 @@ impl Space {
         CorPose { lateral, rotation }
     }
 
-    /// The pose error there. Of angles that are not all free it is their sum, also beyond 90° of pitch; what is locked stays exactly 0.
+    /// The pose error of that pose. For angles that are not all free it is their sum, also beyond 90° of
+    /// pitch; locked errors stay exactly 0.
     pub(in crate::run) fn error(&self, rest: &RestEnd, way: &[f64; 5], length: f64) -> PoseError {
         let pose = self.displaced(rest, way, length);
         let error = pose.to_error(self.cor);
@@ -216,7 +220,7 @@ pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f
 /// Rises that count as climbing and not as a wall, per length: a slope of 87°.
 pub(in crate::run) const STEEPEST: f64 = 20.0;
 
-/// How firmly a half rests.
+/// Stability of a rest.
 pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStability {
     let space = Space::of(pair);
     let mut nearby = pair.about(2.0 * PUSH);

@@ -44,7 +44,7 @@ fn every_pose_is_in_one_outcome_and_every_jammed_one_in_one_jam() {
     );
 }
 
-/// The tip lies on its side in the notch, to either side: images of each other, both found, one jam.
+/// The tip lies on its side in the notch, to either side: symmetric images, both found, a single jam.
 #[test]
 fn a_tip_on_its_side_is_one_jam_at_two_places() {
     let problem = v_face();
@@ -99,7 +99,8 @@ fn the_two_rests_are_mirror_images() {
     }
 }
 
-/// A rigid body that is let go where the atlas says that a half jams stays there, and so does one that starts a little aside, either of the two images.
+/// A rigid body released at a computed jam stays there, and so does one that starts slightly aside, at either
+/// of the two images.
 #[cfg(feature = "drop")]
 #[test]
 fn a_rigid_body_stays_where_it_jams() {
@@ -212,7 +213,8 @@ fn friction_above_the_slope_jams_all_over_it() {
     );
 }
 
-/// A V-Face of AR ½ on its side, one slope flush on another: held by contacts alone, and as deep on a grid as its way out climbs, to a cell.
+/// A V-Face of AR ½ on its side, one slope flush on another: held by contacts alone, with an escape height on
+/// a grid equal to the climb of its escape path, to a cell.
 #[test]
 fn a_jam_has_an_order_and_a_depth_on_a_grid() {
     let wide = problem(
@@ -230,7 +232,8 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
     assert!((on_grid - climb).abs() < 0.02, "{on_grid} {climb}");
 }
 
-/// At least as far as boxes of poses say it must be lifted, and no farther than a way that was found; next to nothing where it is near-level. With friction nothing is certain.
+/// The escape height lies between the certified bound and the climb of a path; it is almost zero for an
+/// almost level rest. With friction nothing is certified.
 #[test]
 fn a_jam_is_as_deep_as_is_certain() {
     let problem = v_face();
@@ -250,7 +253,7 @@ fn a_jam_is_as_deep_as_is_certain() {
     assert_eq!(run(&problem, &rough, &Exec::new()).unwrap_err(), JamsError::Depth(DepthError::Friction));
 }
 
-/// On one facet both thresholds of a rest that friction holds are its slope.
+/// On a single facet both thresholds of a rest held by friction equal its slope.
 #[test]
 fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";

@@ -221,7 +221,7 @@ pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<R
     Ok(Rests { settings, motions, outcomes: shares(counts), rests })
 }
 
-/// The rest that is nearest to the end of a way out.
+/// The rest nearest to the end of an escape path.
 fn leads_to(
     problem: &Problem,
     images: &Images,

@@ -75,7 +75,7 @@ impl Rests {
         places.contacts(document, &rest.contacts);
     }
 
-    /// How far it must be lifted to leave, and where that leads, in words.
+    /// The escape height and the end of the escape path, in words.
     fn escape(&self, design: &Design, rest: &RestPlace) -> String {
         let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
         RestDescriptions::of(design, 0.0).escape(depth, &self.leads_to(rest))

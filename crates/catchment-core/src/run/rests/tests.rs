@@ -43,7 +43,8 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
     assert_eq!(found.rests.iter().map(|place| place.of_box.count).sum::<usize>(), 600);
 }
 
-/// A cube let go of a little aside falls back, beyond half a right angle on its side: as a trial by rigid bodies does.
+/// A cube released slightly aside falls back, beyond half a right angle onto its side: as a trial with rigid
+/// bodies does.
 #[cfg(feature = "drop")]
 #[test]
 fn a_rigid_body_comes_to_the_same_rests() {
@@ -148,7 +149,8 @@ fn plate_on_fingers() -> String {
     )
 }
 
-/// Let go where the atlas says that it rests a rigid body stays, and pushed aside it comes back: a ball in its cone, a peg in its hole, a plate on three fingers.
+/// A rigid body released at a computed rest stays, and returns after a displacement: a ball in its cone, a
+/// peg in its hole, a plate on three fingers.
 #[cfg(feature = "drop")]
 #[test]
 fn a_rigid_body_comes_back_to_every_kind_of_rest() {
@@ -177,7 +179,8 @@ fn a_rigid_body_comes_back_to_every_kind_of_rest() {
     }
 }
 
-/// Over an edge of a cube, and over the rim of a V: at least, certainly, is hardly less than what a way that exists climbs at most.
+/// Over an edge of a cube, and over the rim of a V: the certified lower bound is hardly less than the climb
+/// of an existing path.
 #[test]
 fn certified_depths_are_below_those_of_ways_and_near_them() {
     let settings = RestsSettings { motions: Some(200), certified: true, ..RestsSettings::default() };
@@ -204,7 +207,7 @@ fn a_peg_is_as_deep_as_its_hole() {
     assert!(home.examined.unwrap().way_out.unwrap().climb > 0.05);
 }
 
-/// The merge tree of a fine grid says the same, over an edge of a cube.
+/// The merge tree of a fine grid agrees, over an edge of a cube.
 #[test]
 fn the_merge_tree_agrees() {
     let resolution = Some(Resolution::uniform(801).unwrap());
@@ -217,7 +220,7 @@ fn the_merge_tree_agrees() {
     }
 }
 
-/// What second order says is what a push of a hundredth shows.
+/// The second-order result equals the rise for a displacement of a hundredth.
 #[test]
 fn curvature_is_the_rise_of_a_push() {
     let text = "[connector]\nwidth = 1.0\nfixed = { pieces = [[[0.2, -0.5, 1], [0.2, 0.5, 1], [0.22, -0.5, 0], [0.22, 0.5, 0], [0.18, -0.5, 0], \

@@ -34,13 +34,14 @@ use crate::problem::Problem;
 /// With which motions cubes are sought, and with how many.
 pub(in crate::run) struct Effort<'a> {
     pub(in crate::run) seed: u64,
-    /// Random poses of a cube of which none may fail. After twice as many motions only random poses look for failures.
+    /// Number of samples of a cube, none of which may fail. After twice as many motions only samples search
+    /// for failures.
     pub(in crate::run) random: usize,
     pub(in crate::run) motions: &'a descent::DescentSettings,
 }
 
-/// Puts the cubes that motions find in the place of those of the cells; without cells there is the centred one alone. It may be known: as a
-/// window in the proportions of the error box.
+/// Replaces the cubes of cells by those from motions; without cells only the centred cube exists. It may be
+/// known already: as a window in the proportions of the error box.
 pub(in crate::run) fn follow(
     merits: &mut Merits,
     centered: Option<CenteredBox>,
@@ -77,7 +78,7 @@ pub(in crate::run) fn follow(
     Ok(())
 }
 
-/// The box, made smaller where one of its errors alone does not dock as far as it reaches.
+/// The box, reduced if a single-axis limit is smaller than its extent.
 pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> CenteredBox {
     let share = |limit: &Tolerance| {
         let half_width = found.half_widths.iter().find(|(axis, _)| *axis == limit.dof)?.1;
@@ -88,7 +89,7 @@ pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> Cente
     CenteredBox { scale: share * found.scale, half_widths, ..*found }
 }
 
-/// The largest box in the proportions of `settings`, by as many motions as a cube; `None` where there is none.
+/// The largest box in the proportions of `settings`, by as many motions as a cube; `None` if there is none.
 pub(in crate::run) fn window_of(
     problem: &Problem,
     settings: &WindowSettings,
@@ -160,8 +161,8 @@ mod tests {
         assert_eq!(smaller.sampled, Some(7));
     }
 
-    /// A search that has spent its motions on the first directions is certified by random poses all the same: other random poses of it dock, too, but for
-    /// the few that these leave open.
+    /// A search that has used its motions on the first directions is still certified by samples: other
+    /// sampled poses of it dock, too, except for the few that the certificate permits.
     #[test]
     fn a_box_is_certified_when_the_search_has_taken_its_motions() {
         let problem = problem(Family::Pyramid, DofSet::ALL);

@@ -131,7 +131,7 @@ pub struct WindowAxis {
     pub beside_reaches_border: bool,
 }
 
-/// How far one error may go, either way.
+/// Limits of a single error, in both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Reach {
     /// ± so far, in D or radians.
@@ -176,7 +176,7 @@ pub enum WindowError {
     /// Not even zero docks.
     #[error("the mated pose itself is {}: there is no window around it", outcome.name())]
     NotDocked {
-        /// What becomes of it.
+        /// Its outcome.
         outcome: Outcome,
     },
     /// A given half-width beyond the error box.
@@ -184,17 +184,17 @@ pub enum WindowError {
     BeyondBox {
         /// Which error.
         axis: Dof,
-        /// What was given.
+        /// The given value.
         half_width: f64,
         /// The half range of the box.
         most: f64,
     },
-    /// A size that is none.
+    /// An invalid size.
     #[error("{}: {value} is no half-width and no proportion: finite, 0 or more", axis.name())]
     NoSize {
         /// Which error.
         axis: Dof,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// An error that does not vary.
@@ -206,12 +206,12 @@ pub enum WindowError {
     /// Nothing grows.
     #[error("nothing is asked: every error is given, or has the proportion 0; leave one to be found")]
     Nothing,
-    /// Within what was given some pose fails already.
+    /// A pose within the given half-widths already fails.
     #[error("what is given is too much by itself: with {} it is {}", place(error), outcome.name())]
     GivenFails {
         /// The pose error.
         error: PoseError,
-        /// What becomes of it.
+        /// Its outcome.
         outcome: Outcome,
     },
     /// Right beside the mated pose some pose fails.
@@ -219,10 +219,10 @@ pub enum WindowError {
     AtHome {
         /// The pose error.
         error: PoseError,
-        /// What becomes of it.
+        /// Its outcome.
         outcome: Outcome,
     },
-    /// Random poses failed again and again.
+    /// Sampled poses failed repeatedly.
     #[error(
         "after {windows} windows, each smaller, some random pose failed in every one, at last {}: poses that fail lie all over",
         place(error)
@@ -233,7 +233,7 @@ pub enum WindowError {
         /// The last pose that failed.
         error: PoseError,
     },
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -315,18 +315,18 @@ fn place(error: &PoseError) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// Allowed chance that the certificate of the first window is wrong, and of all later ones together: 5 %.
+/// Permitted error probability of the certificate of the first window, and of all later ones: together 5 %.
 const FIRST_CHANCE: f64 = 0.0498;
 const LATER_CHANCE: f64 = 0.0002;
 
-/// Of the random poses of the certificate so many are drawn again beyond the window, per error that goes on while the others stay in it: one in 20, and no fewer
-/// than these, but one in 4 at most.
+/// Number of samples beyond the window, per error that exceeds it while the others stay in it: one in 20 of
+/// those of the certificate, at least this number, but at most one in 4.
 const BESIDE_SHARE: usize = 20;
 const BESIDE_LEAST: usize = 2000;
 const BESIDE_MOST_SHARE: usize = 4;
 
-/// Core-seconds that the search for the window takes at most, and that for the reach of one error, before random poses alone look on: halves whose motions take
-/// a quarter of a second are answered in minutes.
+/// Largest core-seconds of the search for the window, and of that for the reach of a single error; then only
+/// samples continue: halves whose motions take a quarter of a second are finished within minutes.
 const SEARCH_SECONDS: f64 = 120.0;
 const REACH_SECONDS: f64 = 15.0;
 
@@ -362,7 +362,7 @@ pub fn run(
     by(problem, settings, &descent::DescentSettings::with_friction(settings.friction)?, exec)
 }
 
-/// The same by motions of one's own, whose friction is that of the settings.
+/// The same by given motions, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
     settings: &WindowSettings,
@@ -443,14 +443,15 @@ pub(super) fn by(
     })
 }
 
-/// Random poses beyond a window of which so many were drawn in it.
+/// Number of samples beyond a window with this number of samples.
 fn beyond(motions: usize) -> usize {
     (motions / BESIDE_SHARE).max((motions / BESIDE_MOST_SHARE).min(BESIDE_LEAST))
 }
 
 /// Core-seconds that it takes, to within a factor of two or three: motions as counted for grids of three and five errors.
 pub fn seconds(problem: &Problem, settings: &WindowSettings) -> f64 {
-    /// Per direction of {−1, 0, 1}ⁿ: looks along it, and bisections where it fails. Per error: its reach.
+    /// For each direction of {−1, 0, 1}ⁿ: poses along it, and bisections at failures. For each error: its
+    /// reach.
     const DIRECTION: usize = 12;
     const ERROR: usize = 250;
     let pair = problem.pair();

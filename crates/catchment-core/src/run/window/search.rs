@@ -18,23 +18,25 @@ use rayon::prelude::*;
 
 /// Relative width to which the scale of a failing pose is bisected.
 const SHARP: f64 = 2e-4;
-/// Moves are tried this much inside the nearest failing pose: what they find makes the box smaller by at least as much.
+/// Variations are tried at this fraction of the distance of the nearest failure: a new failure then reduces
+/// the box by at least as much.
 const INSIDE: f64 = 0.998;
-/// Scales at which every direction is looked at, between zero and the error box.
+/// Number of scales at which every direction is tried, between zero and the error box.
 const LOOKS: usize = 8;
-/// The same along one error alone, where looking costs little, and from a window on, in which all is known to dock.
+/// The same along a single error, at small cost, and beyond a window in which all poses are known to dock.
 const LOOKS_ALONE: usize = 64;
 /// No fewer of halves whose motions take long.
 const LEAST_LOOKS_ALONE: usize = 16;
 const LOOKS_BESIDE: usize = 4;
-/// Moves per batch, of halves whose motions take long fewer: what one batch finds spares the next one looks; and how many in a row that find nothing end
-/// the search.
+/// Variations per batch, fewer for halves with slow motions: the result of a batch reduces the work of the
+/// next; and the number of consecutive batches without a new failure that ends the search.
 const BATCH: usize = 64;
 const LEAST_BATCH: f64 = 8.0;
 const QUIET: usize = 512;
 /// The same of halves whose motions take long.
 const LEAST_QUIET: usize = 128;
-/// Core-seconds that moves, and looks along the directions of one error beside the others, take at most: of halves whose motions take very long fewer are tried.
+/// Largest core-seconds of variations, and of trials along the directions of a single error beside the
+/// others: for very slow motions fewer are tried.
 const LONGEST: f64 = 10.0;
 /// The window is so much smaller than the nearest pose that was seen to fail.
 const MARGIN: f64 = 1e-3;
@@ -43,10 +45,10 @@ const MOST_MARGIN: f64 = 0.1;
 pub(super) const WINDOWS: usize = 50;
 /// Below this scale, as a share of the largest, there is no window.
 const NONE: f64 = 1e-4;
-/// Random poses between two looks at whether one failed.
+/// Samples between two checks whether one failed.
 const CERTIFIED_AT_ONCE: usize = 4096;
 const CERTIFIED_WHERE_SPENT: usize = 64;
-/// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
+/// Largest number of batches of variations; the certificate decides after that.
 const MOST_BATCHES: u64 = 200;
 
 /// A direction, and the least scale at which its pose was seen to fail.
@@ -56,22 +58,22 @@ struct Failing {
     along: Direction,
 }
 
-/// A window in which no random pose failed.
+/// A window without a failed sample.
 pub(super) struct Shrunk {
     pub(super) scale: f64,
-    /// How many before it had one that did.
+    /// Number of earlier windows with a failed sample.
     pub(super) redrawn: usize,
 }
 
-/// The search, and what it knows.
+/// The search, and its state.
 pub(super) struct Search<'a> {
     problem: &'a Problem,
     settings: descent::DescentSettings,
     space: Space,
     nearest: Option<Failing>,
-    /// No window below this scale is asked for.
+    /// Windows below this scale are not needed.
     least: f64,
-    /// After so many motions what is found is good enough.
+    /// Largest number of motions; then the current result is used.
     most: usize,
     random: Stream,
     batches: u64,
@@ -105,7 +107,7 @@ impl<'a> Search<'a> {
         self
     }
 
-    /// Gives up on what is not above this scale.
+    /// Ends the search at results not above this scale.
     #[must_use]
     pub(super) const fn above(mut self, least: f64) -> Self {
         self.least = least;
@@ -125,7 +127,7 @@ impl<'a> Search<'a> {
         self.nearest.map_or(self.space.border(), |failing| failing.scale)
     }
 
-    /// The same, by a margin less where something did.
+    /// The same, reduced by a margin if a pose failed.
     fn window(&self, margin: f64) -> f64 {
         self.nearest.map_or(self.space.border(), |failing| failing.scale * (1.0 - margin))
     }
@@ -145,9 +147,10 @@ impl<'a> Search<'a> {
         self.nearest.map(|failing| self.space.pose(&failing.along, failing.scale))
     }
 
-    /// Looks for what fails, and makes the window smaller until no random pose of it does. None where poses fail however small it is, or lie all
-    /// over ([`Self::worst`] has one of them), and where it is no larger than asked for. Once it has taken enough motions, random poses alone look for what
-    /// fails, and the window gets smaller by more each time.
+    /// Searches for failures, and reduces the window until no sampled pose of it fails. `None` if poses fail
+    /// however small it is, or lie all over ([`Self::worst`] is one of them), and if it is no larger than
+    /// required. After the motion limit, only samples search for failures, and the window shrinks by larger
+    /// steps.
     pub(super) fn shrink(&mut self, motions: usize, exec: &Exec) -> Result<Option<Shrunk>, Cancelled> {
         self.directions(exec)?;
         let mut margin = MARGIN;
@@ -176,8 +179,8 @@ impl<'a> Search<'a> {
         self.try_batches(&all, 0.0, LOOKS, exec)
     }
 
-    /// How far the only error that grows may go, which it is known to do up to `from`: beyond it so many random poses dock, if others occur. It is looked
-    /// along what `hints` say of these, too.
+    /// The limit of the only growing error, which is known to dock up to `from`: beyond it this many sampled
+    /// poses dock, if other errors occur. The directions in `hints` for the others are searched, too.
     pub(super) fn reach(
         &mut self,
         from: f64,
@@ -212,12 +215,13 @@ impl<'a> Search<'a> {
         Ok(Reach { to, is_border: self.nearest.is_none() })
     }
 
-    /// A direction with 1 or −1 for what grows.
+    /// A direction with 1 or −1 for the growing error.
     fn facing(&self, along: &Direction, sign: f64) -> Direction {
         std::array::from_fn(|k| if self.space.grows(k) { sign } else { along[k] })
     }
 
-    /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
+    /// Tries variations of the nearest failure, and other directions, until many in a row find no nearer
+    /// failure.
     fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let mut quiet = 0;
         let pair = self.problem.pair();
@@ -238,7 +242,8 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// A direction to try: four of five near the worst one, by one or two of its parts or by all, the others anywhere.
+    /// A direction to try: four of five near the nearest failure, varied in one or two components or in all,
+    /// the others anywhere.
     fn moved(&self, random: Stream) -> Option<Direction> {
         const NEAR: f64 = 0.8;
         const SPREAD: f64 = 0.15;
@@ -356,8 +361,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Follows random poses all over the window of this scale, of what grows beyond another one, a stream of their own for every round; where one fails
-    /// of so many at once, the nearest failing pose is sought from it on, and true is returned.
+    /// Follows samples all over the window of this scale, or of the region beyond another window, a separate
+    /// stream for every round; if one of a batch fails, the nearest failure is searched from it on, and true
+    /// is returned.
     fn certify(
         &mut self,
         [from, scale]: [f64; 2],

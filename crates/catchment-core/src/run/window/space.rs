@@ -68,7 +68,7 @@ impl Space {
         Self { fixed: [0.0; 5], growing, border, center }
     }
 
-    /// One error grows, the others are within these half-widths.
+    /// A space in which a single error grows, and the others are within these half-widths.
     pub(super) fn along(problem: &Problem, axis: Dof, others: [f64; 5]) -> Self {
         let mut growing = [0.0; 5];
         growing[axis.index()] = 1.0;
@@ -107,7 +107,7 @@ impl Space {
         (0..5).filter(|k| self.grows(*k)).map(|k| u[k].abs()).fold(0.0, f64::max)
     }
 
-    /// The direction whose largest growing part is 1 or −1; none where nothing grows.
+    /// The direction scaled so that its largest growing component is 1 or −1; `None` if no error grows.
     pub(super) fn onto_surface(&self, mut u: Direction) -> Option<Direction> {
         let largest = self.largest(&u);
         for (k, part) in u.iter_mut().enumerate() {

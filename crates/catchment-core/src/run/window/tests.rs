@@ -25,13 +25,14 @@ fn of_one_offset_it_is_the_closed_form() {
     assert!(worst.outcome != Outcome::Aligned && (worst.error.x.abs() - 0.5).abs() < 2e-4);
 }
 
-/// One of the gallery.
+/// A design of the gallery.
 fn of_gallery(name: &str) -> Problem {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/gallery");
     Problem::open(folder.join(name)).unwrap()
 }
 
-/// Whatever is given, of halves with play, too, at least 999 in 1000 poses of the window dock, and a box 2 % larger along its tight error holds one that does not.
+/// For any given half-widths, and for halves with play, at least 999 in 1000 poses of the window dock, and a
+/// box 2 % larger along its tight error contains a failure.
 #[test]
 fn no_pose_of_it_fails_and_a_larger_one_does() {
     const POSES: u64 = 10_000;
