@@ -33,7 +33,7 @@ pub fn escaped(text: &str) -> String {
     shown
 }
 
-/// A path as messages name it: [`escaped`], on one line.
+/// A path for messages: [`escaped`], on a single line.
 pub fn shown(path: &Path) -> impl fmt::Display {
     Shown(path)
 }
@@ -47,7 +47,7 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Passes on what is written, escaped.
+/// A writer that escapes its input.
 struct Escaping<'a, 'b>(&'a mut fmt::Formatter<'b>);
 
 impl Write for Escaping<'_, '_> {

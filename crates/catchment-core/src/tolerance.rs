@@ -23,10 +23,12 @@ pub const ROUNDING: f64 = 1e-12;
 /// lost all but seven of its sixteen digits.
 pub const PARALLEL: f64 = 1e-9;
 
-/// Ten times the rounding of numbers in single precision (binary STL, 3MF), in D or as a sine: facets bent by less are one plane, corners as near are one.
+/// Ten times the rounding of numbers in single precision (binary STL, 3MF), in D or as a sine: facets bent by
+/// less are coplanar, corners within it are equal.
 pub const SINGLE: f64 = 1e-6;
 
-/// Gap up to which features are in contact, in D: what the end of a motion leaves, and drawings rounded to four digits. No fit is as close.
+/// Largest gap of features in contact, in D: the accuracy of motion ends, and of drawings rounded to four
+/// digits. Designed fits have larger gaps.
 pub const TOUCHING: f64 = 1e-4;
 
 #[cfg(test)]

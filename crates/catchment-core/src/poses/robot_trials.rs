@@ -49,15 +49,15 @@ impl ObservedOutcome {
 /// A row: a trial, made or not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotTrial {
-    /// Its number; that of the row where the table has none.
+    /// Its number; the number of the row if the table has no numbers.
     pub trial: u64,
-    /// The line it belongs to; 0 for none.
+    /// Its line; 0 without a line.
     pub line: u64,
     /// The pose error of the face centre, in D and radians.
     pub error: PoseError,
-    /// What was seen; nothing where the trial was not made.
+    /// The observed outcome; `None` if the trial was not made.
     pub observed: Option<ObservedOutcome>,
-    /// What the plan predicted, where it is known.
+    /// The prediction of the plan, if known.
     pub predicted: Option<ObservedOutcome>,
 }
 
@@ -80,8 +80,9 @@ impl RobotTrialTable {
     /// Reads a table whose offsets are measured `at` a point.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, each with its bytes: that of [`PoseTable::parse`], an error without a column, no column of outcomes,
-    /// an outcome that is none, a number of a trial or line that is none, and a trial that is there twice.
+    /// All errors of the text, each with its byte range: those of [`PoseTable::parse`], a free error without
+    /// a column, a missing column of outcomes, an invalid outcome, an invalid number of a trial or line, and
+    /// a repeated trial.
     pub fn parse(text: &str, design: &Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
         let mut found = PoseDiagnostics::default();
         let errors = match PoseTable::parse_beside(text, design, at, &[OUTCOME]) {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Read};
 
-/// Largest text, in bytes: read whole, so that what is wrong with it can be shown in place.
+/// Largest text, in bytes: it is read completely, so that errors in it can be shown in place.
 pub const LARGEST_TEXT: u64 = 64 << 20;
 
 /// Why there is no text.
@@ -17,15 +17,15 @@ pub enum TextError {
     /// It is no text.
     #[error("line {line}: not UTF-8 text")]
     NotUtf8 {
-        /// The line where it stops being one, from 1.
+        /// The first line that is not text, from 1.
         line: usize,
     },
 }
 
-/// Reads a text to its end, without the byte order mark that spreadsheets begin with.
+/// Reads a text to its end, without the byte order mark of spreadsheets.
 ///
 /// # Errors
-/// See [`TextError`]. What is too large is refused after the limit, not after its end.
+/// See [`TextError`]. A text that is too large is rejected at the limit, not at its end.
 pub fn read_text(reader: impl Read) -> Result<String, TextError> {
     let mut bytes = Vec::new();
     reader.take(LARGEST_TEXT + 1).read_to_end(&mut bytes)?;

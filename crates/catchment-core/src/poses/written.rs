@@ -9,16 +9,17 @@ use std::f64::consts::PI;
 const FARTHEST: f64 = 100.0;
 /// Angles written as 180 deg, or rounded to six digits, are still half a turn.
 const HALF_TURN: f64 = PI + 1e-5;
-/// How far a locked offset of the face centre may be from where the centre of rotation holds it, in D: what rounding to
-/// six digits leaves.
+/// Largest distance of a locked offset of the face centre from its value for the locked centre of rotation,
+/// in D: that of rounding to six digits.
 const LOCKED_WITHIN: f64 = 1e-6;
 
 /// A pose error as written: a quantity for each error that was, in the order of [`Dof::ALL`].
 pub(super) type Written = [Option<Quantity>; 5];
 
-/// The pose error of the face centre, in D and radians, or all that is wrong with the one written.
+/// The pose error of the face centre, in D and radians, or all errors of the written pose.
 ///
-/// Locked rotations are 0. A locked offset is 0, or at the face centre what the locked centre of rotation makes of it.
+/// Locked rotations are 0. A locked offset is 0, or at the face centre its value for the locked centre of
+/// rotation.
 pub(super) fn resolve(
     written: &Written,
     at: OffsetsAt,
@@ -61,7 +62,7 @@ pub(super) fn resolve(
     if faults.is_empty() { Ok(at.to_face(&measured, alignment)) } else { Err(faults) }
 }
 
-/// The error in D or radians, if it is one that may be tried.
+/// The error in D or radians, if it is permitted.
 pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, PoseDefect> {
     let read = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
     let value = read.map_err(|c| PoseDefect { message: format!("{}: {c}", dof.name()), help: c.help() })?;
@@ -88,7 +89,7 @@ fn locked(dof: Dof, quantity: Quantity, stays: &str) -> PoseDefect {
     PoseDefect::new(format!("{name} = {quantity}, but {name} is locked: {stays}"), help)
 }
 
-/// What a locked offset of the face centre is, in the unit it was written in.
+/// The value of a locked offset of the face centre, in the unit of the text.
 fn implied_by(implied: f64, unit: QuantityUnit, design: &Design) -> String {
     let quantity = Quantity { value: nine_digits(from_d(implied, unit, design)), unit };
     if quantity.value == 0.0 {
@@ -106,7 +107,8 @@ pub(super) fn from_d(value: f64, unit: QuantityUnit, design: &Design) -> f64 {
     }
 }
 
-/// The number rounded to nine digits: far finer than what is asked of a locked offset. Less than 10⁻¹² is rounding.
+/// The number rounded to nine digits: far finer than the required accuracy of a locked offset. Less than
+/// 10⁻¹² is rounding.
 fn nine_digits(value: f64) -> f64 {
     const NOTHING: f64 = 1e-12;
     if value.abs() < NOTHING { 0.0 } else { format!("{value:.8e}").parse().unwrap_or(value) }

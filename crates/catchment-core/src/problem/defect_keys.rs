@@ -16,7 +16,7 @@ pub(super) const fn of_change(defect: &DesignDefect) -> &'static str {
     }
 }
 
-/// The key that a mated pose which is none is about.
+/// The key to which a problem of the mated pose refers.
 pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
     match problem {
         MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
@@ -30,7 +30,8 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
     }
 }
 
-/// Key, message and advice of geometric problems; those that say the same of one mesh are one, with the others as advice.
+/// Key, message and advice of geometric problems; equal problems of the same mesh are merged, with the others
+/// as advice.
 pub(super) fn of_geometry(
     problems: &[GeometryDefect],
     told: DisplayUnit,
@@ -70,7 +71,8 @@ pub fn diagnostics(problems: &[GeometryDefect]) -> Diagnostics {
     Diagnostics { source: None, list, omitted: 0 }
 }
 
-/// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
+/// Whether two problems of a mesh are equivalent: a hole opens several edges, but it is a single hole to
+/// close.
 fn same_kind(a: &GeometryDefect, b: &GeometryDefect) -> bool {
     match (a, b) {
         (GeometryDefect::Mesh { side: a, error: first, .. }, GeometryDefect::Mesh { side: b, error, .. }) => {
@@ -90,7 +92,7 @@ fn same_kind(a: &GeometryDefect, b: &GeometryDefect) -> bool {
     }
 }
 
-/// The other places of one kind of problem.
+/// The other places of a kind of problem.
 fn likewise(rest: &[GeometryDefect]) -> Option<String> {
     let places: Vec<String> = rest
         .iter()

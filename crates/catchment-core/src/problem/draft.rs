@@ -24,7 +24,7 @@ pub struct Draft {
 }
 
 impl From<Design> for Draft {
-    /// A design without a text: what is wrong with it has no place.
+    /// A design without a text: its errors have no place.
     fn from(design: Design) -> Self {
         Self { design, source: None, places: Sources::default(), files: FilesInMemory::default() }
     }
@@ -34,12 +34,12 @@ impl Draft {
     /// Reads a design file.
     ///
     /// # Errors
-    /// The file cannot be read, or everything that is wrong with what it says.
+    /// The file cannot be read, or all errors of its content.
     pub fn open(path: &Path) -> Result<Self, ProblemError> {
         Self::open_on(path, &Exec::new())
     }
 
-    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    /// The same, cancelled if a stop is requested while a STEP file is meshed.
     ///
     /// # Errors
     /// As [`Draft::open`].
@@ -47,16 +47,16 @@ impl Draft {
         Self::read_on(SourceText::new(path, load(path)?), exec)
     }
 
-    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file, unless the text leaves D out, which is
-    /// then measured from the halves.
+    /// Reads the text of a design file; meshes are searched beside `source.path`. Uses no file, unless the
+    /// text omits D, which is then measured from the halves.
     ///
     /// # Errors
-    /// Everything that is wrong with what the text says; where D is left out, with the geometry.
+    /// All errors of the text; if D is omitted, also those of the geometry.
     pub fn read(source: SourceText) -> Result<Self, ProblemError> {
         Self::read_on(source, &Exec::new())
     }
 
-    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    /// The same, cancelled if a stop is requested while a STEP file is meshed.
     ///
     /// # Errors
     /// As [`Draft::read`].
@@ -65,12 +65,13 @@ impl Draft {
         if is_measured { measure::measured(draft, exec) } else { Ok(draft) }
     }
 
-    /// The text of a design without a D, which nobody asks for: lengths in its unit, what is round drawn roughly.
+    /// The text of a design without D, if D is not needed: lengths in its unit, round surfaces drawn
+    /// coarsely.
     pub fn read_roughly(source: SourceText) -> Result<Self, ProblemError> {
         Self::read_as(source, Width::Provisional(None)).map(|(draft, _)| draft)
     }
 
-    /// The same with what is known of D; and whether that was needed.
+    /// The same with the known state of D; and whether that was needed.
     pub(super) fn read_as(source: SourceText, width: Width) -> Result<(Self, bool), ProblemError> {
         let folder = source.path.parent().unwrap_or_else(|| Path::new(""));
         match read_as(&source.text, folder, width) {
@@ -100,13 +101,13 @@ impl Draft {
         self.source.as_ref()
     }
 
-    /// This one with the files in memory of another.
+    /// This draft with the files in memory of another.
     pub(super) fn beside(self, other: &Self) -> Self {
         Self { files: other.files.clone(), ..self }
     }
 
-    /// The design with something changed. A refused change is reported beside the key that forbids it, with `what`, the
-    /// name under which the change was asked for, before it.
+    /// The design with a change. A rejected change is reported beside the key that forbids it, prefixed with
+    /// `what`, the name of the change.
     ///
     /// # Errors
     /// The change is not allowed.
@@ -127,8 +128,8 @@ impl Draft {
         }
     }
 
-    /// This design, refused for one thing about the key at `place` (such as `connector.fixed.pieces[2]`), or about what the
-    /// file mentions around it.
+    /// This design, rejected for an error of the key at `place` (such as `connector.fixed.pieces[2]`), or of
+    /// the nearest item in the file.
     pub fn refused(self, place: &str, message: String, help: Option<String>) -> Diagnostics {
         let diagnostic = self.diagnostic(place, message, help);
         Diagnostics { source: self.source, list: vec![diagnostic], omitted: 0 }
@@ -138,16 +139,16 @@ impl Draft {
         Diagnostic::new(message, help).at(self.places.span(place))
     }
 
-    /// Loads the meshes, builds the halves and asks whether the mated pose holds.
+    /// Loads the meshes, builds the halves and checks the mated pose.
     ///
     /// # Errors
-    /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
-    /// meets but does not hold is a doubt ([`Problem::doubts`]).
+    /// All errors of the geometry; halves that do not meet in the aligned pose. An aligned pose with contact
+    /// that is not stable is a warning ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
         self.build_on(&Exec::new())
     }
 
-    /// The same with its progress; where a stop is asked for while a STEP file is meshed, it is given up.
+    /// The same with progress; cancelled if a stop is requested while a STEP file is meshed.
     ///
     /// # Errors
     /// As [`Draft::build`].
@@ -158,10 +159,11 @@ impl Draft {
         }
     }
 
-    /// The same, with the problem also where it is refused for its mated pose alone: something to draw, and nothing to decide about.
+    /// The same, with the problem even if it is rejected only for its mated pose: for drawing, not for
+    /// computing.
     ///
     /// # Errors
-    /// Everything that is wrong with the geometry.
+    /// All errors of the geometry.
     pub fn judged_on(self, exec: &Exec) -> Result<(Problem, Option<Diagnostics>), ProblemError> {
         exec.report(0.0, "halves");
         match Connector::build_on(&self.design, &self.files, exec) {
@@ -191,7 +193,7 @@ impl Draft {
         (Problem::assembled(self, connector, pair, Vec::new()), Some(refusal))
     }
 
-    /// What is wrong with the geometry, in its places.
+    /// The errors of the geometry, with their places.
     pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Diagnostics {
         let list = defect_keys::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
@@ -205,7 +207,7 @@ impl Draft {
         !matches!(problem, MatedProblem::NotMinimum { .. } | MatedProblem::LimitCutsPlay { .. })
     }
 
-    /// The problem of halves that were built, unless their mated pose is none.
+    /// The problem of built halves, unless their mated pose is invalid.
     pub(super) fn with_halves(self, connector: Connector, exec: &Exec) -> Result<Problem, ProblemError> {
         match self.judged(connector, exec) {
             (problem, None) => Ok(problem),
@@ -213,7 +215,7 @@ impl Draft {
         }
     }
 
-    /// The problem of halves that were built, and why their mated pose is none.
+    /// The problem of built halves, and the errors of their mated pose.
     fn judged(mut self, connector: Connector, exec: &Exec) -> (Problem, Option<Diagnostics>) {
         exec.report(0.0, "contact");
         self.design = self.design.with_contents(&connector.contents);
@@ -229,7 +231,7 @@ impl Draft {
         (Problem::assembled(self, connector, pair, doubts), refusal)
     }
 
-    /// Refused for its mated pose; what helps beside what the problems say themselves stands with the first.
+    /// Rejection for the mated pose; additional advice is attached to the first error.
     pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Diagnostics {
         let told = DisplayUnit::of(&self.design);
         let diagnostic = |problem: &MatedProblem| {

@@ -25,17 +25,18 @@ impl Problem {
         Draft::from(design).with_halves(connector, &crate::exec::Exec::new())
     }
 
-    /// The problem of a design whose halves were built before, such as by the program that wrote a page: no file is read. The halves are in the
-    /// frames of a [`Connector`]; where they were drawn is forgotten, so that [`Problem::drawn`] knows those frames alone.
+    /// The problem of a design whose halves were built before, for example by the program that wrote a page:
+    /// no file is read. The halves are in the frames of a [`Connector`]; the original coordinates are lost,
+    /// so that [`Problem::drawn`] only knows those frames.
     ///
     /// # Errors
-    /// What is wrong with the mated pose.
+    /// Errors of the mated pose.
     pub fn of_halves(design: Design, fixed: Half, moving: Half) -> Result<Self, ProblemError> {
         Draft::from(design).with_halves(Connector::from_halves(fixed, moving), &crate::exec::Exec::new())
     }
 }
 
-/// What a design says of a half that came from a source.
+/// Description of a half from a source for a design.
 fn spec(source: HalfSource, contents: &[MeshContent], built: &Half) -> HalfSpec {
     match source {
         HalfSource::Pieces(pieces) => {

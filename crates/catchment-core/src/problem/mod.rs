@@ -58,7 +58,7 @@ pub enum ProblemError {
     /// There is no text.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// Something is wrong with what the design says, with its geometry, or with its mated pose.
+    /// Errors of the design, of its geometry, or of its mated pose.
     #[error(transparent)]
     Diagnostics(#[from] Diagnostics),
 }
@@ -75,16 +75,16 @@ impl Problem {
     /// The problem of a design, such as one that a study changed.
     ///
     /// # Errors
-    /// Everything that is wrong with its geometry or its mated pose.
+    /// All errors of its geometry or its mated pose.
     pub fn of(design: Design) -> Result<Self, ProblemError> {
         Draft::from(design).build()
     }
 
-    /// This problem with another design, such as one with its centre of rotation elsewhere. Where the halves stay as they are they
-    /// are not built again, and no file is read.
+    /// This problem with another design, for example with another centre of rotation. If the halves are
+    /// unchanged they are not built again, and no file is read.
     ///
     /// # Errors
-    /// Everything that is wrong with its geometry or its mated pose.
+    /// All errors of its geometry or its mated pose.
     pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
         let own = self.design();
         // Where halves settle depends on the alignment.
@@ -107,7 +107,7 @@ impl Problem {
         self.0.draft.design()
     }
 
-    /// The text it was read from, if it was read from one.
+    /// The text from which it was read, if any.
     pub fn source(&self) -> Option<&SourceText> {
         self.0.draft.source()
     }
@@ -132,7 +132,7 @@ impl Problem {
         self.pair().mirrors()
     }
 
-    /// What speaks against the mated pose without making it impossible.
+    /// Warnings about the mated pose.
     pub fn doubts(&self) -> &[MatedProblem] {
         &self.0.doubts
     }
@@ -142,8 +142,8 @@ impl Problem {
         &self.0.digest
     }
 
-    /// Whether a layer of the moving half can meet one that is not its partner: the halves come in layers, and an error leads out of
-    /// their plane.
+    /// Whether a layer of the moving half can meet a layer that is not its partner: the halves have layers,
+    /// and some error leads out of their plane.
     pub fn may_cross(&self) -> bool {
         let out_of_plane = [Dof::Y, Dof::Roll, Dof::Yaw];
         self.design().family_spec().is_some_and(FamilySpec::is_layered)
@@ -160,7 +160,7 @@ impl Problem {
         }
     }
 
-    /// What helps against one of the doubts of its mated pose, beside what the doubt says itself.
+    /// Additional advice for a warning about its mated pose.
     pub(crate) fn advice(&self, doubt: &MatedProblem) -> Option<String> {
         remedies::advice(self.connector(), self.pair(), self.design(), doubt)
     }

@@ -27,10 +27,10 @@ const DEEPER: f64 = 0.01;
 /// Halves drawn no farther than this from touching, in D, may be meant to rest there.
 const NEAR: f64 = 0.01;
 
-/// Cells across either half, at most, of the lattice on which something narrow is looked for.
+/// Largest number of cells across either half of the lattice for the search of narrow features.
 const MOST_CELLS: f64 = 400.0;
 
-/// What helps beside what the problem says itself.
+/// Additional advice for a problem.
 pub(super) fn advice(
     connector: &Connector,
     pair: &Pair,
@@ -62,7 +62,7 @@ pub(super) fn advice(
     Some(format!("{told}{mirrored}{settles}"))
 }
 
-/// Where halves come to rest that are drawn a little too deep, or not deep enough, as a remedy.
+/// Remedy for halves drawn slightly too deep, or not deep enough: the rest that they reach.
 fn settles(pair: &Pair, design: &Design, problem: &MatedProblem) -> Option<String> {
     let (MatedProblem::Collision { overlap: off } | MatedProblem::Gap { gap: off }) = problem else {
         return None;
@@ -77,7 +77,7 @@ fn settles(pair: &Pair, design: &Design, problem: &MatedProblem) -> Option<Strin
     ))
 }
 
-/// Whether something narrow of one part keeps the other from a seat.
+/// Whether a narrow feature of one part keeps the other from a seat.
 fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let halves = [&connector.fixed, &connector.moving];
     let cell = height_map::NARROW * halves.map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
@@ -94,7 +94,7 @@ fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     Some(height_map::in_words(&found, &at, DisplayUnit::of(design)))
 }
 
-/// Where the halves first touch without any error, and how far above where they are drawn.
+/// First contact of the halves at zero error, and its height above the drawn pose.
 fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f64>) -> Option<String> {
     let height = pair.mated_height();
     let mut nearby = pair.about(CONTACT_TOLERANCE);
@@ -116,7 +116,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
     ))
 }
 
-/// How far each half reaches in plan view.
+/// Extent of each half in plan view.
 fn beside(connector: &Connector, design: &Design) -> String {
     let DisplayUnit { scale, unit } = DisplayUnit::of(design);
     let reach = |half: &Half| {
@@ -131,7 +131,8 @@ fn beside(connector: &Connector, design: &Design) -> String {
     )
 }
 
-/// Whether the moving half reflected across a plane along the approach holds where the drawn one does not.
+/// Whether the moving half reflected across a plane along the approach has a stable mated pose although the
+/// drawn half has none.
 fn fits_mirrored(connector: &Connector, pair: &Pair, problem: &MatedProblem) -> bool {
     let deeper = match problem {
         // As deep as drawn.

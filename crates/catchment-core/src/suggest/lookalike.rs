@@ -4,7 +4,7 @@
 //! *Not promised:* completeness. Unicode lists thousands (UTS 39, confusables); this table has the scripts of
 //! common keyboards, and the blocks of styled letters.
 
-/// Characters that look alike, the one of ASCII first.
+/// Lookalike characters, the ASCII character first.
 const ALIKE: [(char, &str); 46] = [
     ('a', "аɑ"),
     ('c', "сⅽ"),
@@ -58,12 +58,12 @@ const ALIKE: [(char, &str); 46] = [
 const WIDE: std::ops::RangeInclusive<u32> = 0xff01..=0xff5e;
 /// From a character in full width to that of ASCII.
 const WIDE_OFFSET: u32 = 0xff01 - '!' as u32;
-/// Letters of formulas, bold, italic, …: alphabets of capitals and small letters, one behind the other.
+/// Letters of formulas, bold, italic, …: alphabets of capitals and small letters in sequence.
 const FORMULA_LETTERS: std::ops::RangeInclusive<u32> = 0x1d400..=0x1d6a3;
 /// The same of digits.
 const FORMULA_DIGITS: std::ops::RangeInclusive<u32> = 0x1d7ce..=0x1d7ff;
 
-/// The character of ASCII that another one looks like.
+/// The ASCII character that a character looks like.
 fn looks_like(c: char) -> Option<char> {
     if c.is_ascii() {
         return None;
@@ -80,7 +80,7 @@ fn looks_like(c: char) -> Option<char> {
     }
 }
 
-/// The text as an eye reads it: what looks like ASCII as ASCII.
+/// The text as it appears to a reader: with lookalikes replaced by ASCII.
 ///
 /// # Examples
 /// ```
@@ -90,8 +90,8 @@ pub fn as_it_looks(text: &str) -> String {
     text.chars().map(|c| looks_like(c).unwrap_or(c)).collect()
 }
 
-/// What is odd about a name that no key or column has: the first character in it that is not the one it looks like, as a clause that
-/// ends a message; empty where there is none.
+/// Note on a name that is no known key or column: its first lookalike character, as a clause that ends a
+/// message; empty without a lookalike.
 ///
 /// # Examples
 /// ```

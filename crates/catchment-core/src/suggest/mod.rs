@@ -7,8 +7,8 @@ mod number;
 pub use lookalike::{as_it_looks, odd};
 pub use number::{number_help, value_help};
 
-/// The word of `known` that `written` most likely stands for: at most one third of its letters wrong (and at
-/// least one is allowed). `None` when nothing is near; the first of equals wins.
+/// The word of `known` that was most likely meant by `written`: with at most a third of its letters wrong (at
+/// least one is allowed). `None` if no word is near; the first of equally near words is returned.
 pub fn nearest<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 64;
     if written.len() > LONGEST {

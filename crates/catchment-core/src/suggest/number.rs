@@ -6,9 +6,11 @@ use super::{as_it_looks, odd};
 const NOTHING: [&str; 12] =
     ["nan", "inf", "infinity", "∞", "na", "n/a", "#n/a", "none", "null", "nil", "-", "?"];
 
-/// What to write in the place of `text`, as a sentence: `write 0.5: decimals follow a point`. `None` where nothing sensible was meant.
+/// The correct form in place of `text`, as a sentence: `write 0.5: decimals follow a point`. `None` if no
+/// number was meant.
 ///
-/// A unit behind the number is kept. Words for no number, and numbers that are none (`nan`, `inf`), are to be left out.
+/// A unit after the number is kept. Words for missing numbers, and invalid numbers (`nan`, `inf`), give the
+/// advice to omit them.
 ///
 /// # Examples
 /// ```
@@ -43,7 +45,8 @@ pub fn number_help(text: &str) -> Option<String> {
     (!reason.is_empty()).then(|| format!("write {value}{unit}: {reason}"))
 }
 
-/// The same for the value of a key: for what stands behind the `=` on the line of byte `at` of a text that is no TOML there.
+/// The same for the value of a key: for the text after the `=` on the line of byte `at`, if the text is not
+/// TOML there.
 pub fn value_help(text: &str, at: usize) -> Option<String> {
     let (before, behind) = text.split_at_checked(at)?;
     let start = before.rfind('\n').map_or(0, |line| line + 1);
@@ -58,7 +61,8 @@ fn hexadecimal(text: &str) -> Option<(u64, &'static str)> {
     Some((u64::from_str_radix(digits, 16).ok()?, "numbers are decimal"))
 }
 
-/// The number that was meant, as it should be written, and why it was not read; no reason where it is one.
+/// The number that was meant, in its correct form, and the reason why it was not read; no reason for a valid
+/// number.
 fn read(text: &str) -> Option<(String, &'static str)> {
     let is_number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
     if is_number(text) {

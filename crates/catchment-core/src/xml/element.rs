@@ -25,7 +25,7 @@ impl Prefixes {
         Self { root: root.prefix().map(ToOwned::to_owned), others: bound.map(ToString::to_string).collect() }
     }
 
-    /// Whether an element is one of SVG.
+    /// Whether an element belongs to SVG.
     fn has(&self, tag: &Tag<'_>) -> bool {
         let prefix = tag.prefix();
         let is_bound = prefix.is_none()
@@ -35,13 +35,13 @@ impl Prefixes {
     }
 }
 
-/// An element that is open, and what its members inherit.
+/// An open element, and the properties that its members inherit.
 #[derive(Clone, Default)]
 pub(super) struct Open {
     pub(super) frame: Affine,
     pub(super) moved: Option<Range<usize>>,
     is_hidden: bool,
-    /// Whether it, or what it is in, is not to be seen through its opacity.
+    /// Whether it, or an enclosing element, is invisible by its opacity.
     is_clear: bool,
     fill: Paint,
     stroke: Paint,
@@ -61,14 +61,14 @@ impl Paint {
     }
 }
 
-/// What becomes of an element.
+/// Handling of an element.
 pub(super) enum Entered {
     /// Draws nothing: whether because it is hidden.
     Left(bool),
     Open(Open),
 }
 
-/// Enters an element; what is not read is refused.
+/// Enters an element; unsupported features are rejected.
 pub(super) fn entered(
     tag: &Tag<'_>,
     outer: Option<&Open>,
@@ -147,7 +147,7 @@ impl Style<'_, '_> {
         Some((value.trim().to_ascii_lowercase(), span))
     }
 
-    /// What members inherit from the element.
+    /// The properties that members inherit from the element.
     fn inherited(&self, outer: &Open) -> Open {
         let mut open = outer.clone();
         let value = |name| self.value(name).map(|(value, _)| value).filter(|value| value != "inherit");
@@ -174,7 +174,7 @@ impl Style<'_, '_> {
         open
     }
 
-    /// Refuses properties that change what is drawn.
+    /// Rejects properties that change the drawing.
     fn refuse_changes(&self, is_shape: bool) -> Result<(), UnsupportedSvg> {
         let refused = |name: &str, value: &str, at: Range<usize>, help| {
             let message = format!(
@@ -208,7 +208,7 @@ impl Style<'_, '_> {
         Ok(())
     }
 
-    /// Its transform about its origin, and where it is written.
+    /// Its transform about its origin, and the place of it.
     fn transform(&self) -> Result<Option<(Affine, Range<usize>)>, UnsupportedSvg> {
         let Some(XmlAttribute { value, span }) = self.tag.attribute("transform") else { return Ok(None) };
         let t = Transform::from_str(&value).map_err(|error| UnsupportedSvg {

@@ -23,7 +23,7 @@ use std::borrow::Cow;
 use std::io::{self, BufRead, BufReader, Read};
 use std::ops::Range;
 
-/// What a document may have.
+/// Limits of a document.
 #[derive(Debug, Clone, Copy)]
 pub struct XmlLimits {
     /// Elements.
@@ -36,15 +36,15 @@ pub struct XmlLimits {
     pub piece: Limit,
 }
 
-/// What is wrong with a document, and where.
+/// An error of a document, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct XmlError {
     /// Byte at which the piece begins, from 0.
     pub at: usize,
-    /// What is wrong, with its remedy where there is one.
+    /// Description, with a remedy if there is one.
     pub message: String,
-    /// The limit, where it is one that is exceeded.
+    /// The limit, if the error is an exceeded limit.
     pub over: Option<Overspent>,
 }
 
@@ -61,7 +61,7 @@ impl XmlError {
 /// A piece of a document.
 #[derive(Debug)]
 pub enum Piece<'b> {
-    /// An element begins. An empty one ends with the next piece.
+    /// Start of an element. An empty element ends with the next piece.
     Start(Tag<'b>),
     /// An element ends.
     End,
@@ -74,7 +74,7 @@ pub enum Piece<'b> {
 pub struct Tag<'b> {
     start: BytesStart<'static>,
     parent: Option<&'b [u8]>,
-    /// Where its bytes lie in the document.
+    /// Its byte range in the document.
     span: Range<usize>,
 }
 
@@ -83,7 +83,7 @@ pub struct Tag<'b> {
 pub struct XmlAttribute<'t> {
     /// With its entities replaced.
     pub value: Cow<'t, str>,
-    /// Where it stands in the document, without its quotes.
+    /// Its byte range in the document, without quotes.
     pub span: Range<usize>,
 }
 
@@ -117,7 +117,7 @@ impl<'b> Tag<'b> {
         self.start.name().prefix().map(|prefix| std::str::from_utf8(prefix.into_inner()).unwrap_or_default())
     }
 
-    /// Where it begins, from `<` to the end of its name.
+    /// Its start, from `<` to the end of its name.
     pub fn head(&self) -> Range<usize> {
         let end = self.span.start + 1 + self.start.name().into_inner().len();
         self.span.start..end.min(self.span.end)
@@ -163,7 +163,7 @@ impl<'b> Tag<'b> {
     }
 }
 
-/// Ends where one piece is too long.
+/// A reader that ends if a piece is too long.
 struct Metered<R> {
     inner: BufReader<R>,
     piece: u64,
@@ -212,7 +212,7 @@ impl<R: Read> Walk<R> {
     /// The next piece; `None` at the end of a document.
     ///
     /// # Errors
-    /// Where the document is broken, was cut off, or exceeds one of its limits. Do not go on after that.
+    /// If the document is malformed, truncated, or exceeds a limit. Do not continue after that.
     #[expect(clippy::should_implement_trait, reason = "a piece borrows from the walk")]
     pub fn next(&mut self) -> Result<Option<Piece<'_>>, XmlError> {
         loop {

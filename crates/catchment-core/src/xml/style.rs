@@ -75,7 +75,7 @@ impl Selector {
         [usize::from(self.id.is_some()), self.classes.len(), usize::from(self.name.is_some())]
     }
 
-    /// From its text; `None` where it is of another kind.
+    /// From its text; `None` if it is of another kind.
     fn parse(text: &str) -> Option<Self> {
         let mut selector = Self::default();
         let is_word = |c: char| c.is_alphanumeric() || c == '-' || c == '_' || !c.is_ascii();
@@ -206,7 +206,7 @@ fn at_rule(head: &str, body: &str, at: Range<usize>) -> Result<(), UnsupportedSv
     Ok(())
 }
 
-/// The properties of a block that count; `start` is where it begins in the picture.
+/// The relevant properties of a block; `start` is its position in the picture.
 pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>, UnsupportedSvg> {
     let block = without_comments(block);
     let mut found = Vec::new();
@@ -250,7 +250,7 @@ fn without_comments(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// Where the block that opens at a byte ends, behind its brace; the end of the text where it does not.
+/// End of the block that opens at a byte, after its brace; the end of the text if it is not closed.
 fn end_of_block(text: &str, opens: usize) -> usize {
     let (mut depth, mut quote) = (0_usize, None);
     for (k, byte) in text.bytes().enumerate().skip(opens) {
@@ -270,7 +270,7 @@ fn end_of_block(text: &str, opens: usize) -> usize {
     text.len()
 }
 
-/// Where the declaration that begins at a byte ends: at a semicolon outside of quotes and parentheses.
+/// End of the declaration that begins at a byte: at a semicolon outside of quotes and parentheses.
 fn end_of_declaration(text: &str, begins: usize) -> usize {
     let (mut depth, mut quote) = (0_usize, None);
     for (k, byte) in text.bytes().enumerate().skip(begins) {

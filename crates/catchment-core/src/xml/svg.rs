@@ -23,11 +23,11 @@ use std::ops::{ControlFlow, Range};
 
 /// The namespace of SVG.
 pub(super) const NAMESPACE: &str = "http://www.w3.org/2000/svg";
-/// Elements that hold what is drawn.
+/// Elements that contain drawn elements.
 pub(super) const HOLDERS: [&str; 3] = ["svg", "g", "a"];
 /// Elements that draw a line.
 pub(super) const SHAPES: [&str; 7] = ["path", "rect", "circle", "ellipse", "polygon", "polyline", "line"];
-/// Elements that draw nothing where they stand, nor do their members.
+/// Elements that draw nothing in place, with their members.
 pub(super) const NOT_DRAWN: [&str; 15] = [
     "defs",
     "clipPath",
@@ -45,7 +45,7 @@ pub(super) const NOT_DRAWN: [&str; 15] = [
     "view",
     "font",
 ];
-/// What a picture may have.
+/// Limits of a picture.
 const LIMITS: XmlLimits = XmlLimits {
     elements: Limit { most: 100_000, of: "elements", remedy: "delete what is no outline" },
     depth: Limit { most: 256, of: "elements within each other", remedy: "ungroup them" },
@@ -54,7 +54,7 @@ const LIMITS: XmlLimits = XmlLimits {
 };
 /// Numbers of a transform above this lead nowhere: arcs take longer the larger they are.
 pub(super) const LARGEST: f64 = 1e9;
-/// What can be done about whatever is not read.
+/// Advice for unsupported features.
 pub(super) const INTO_PATHS: &str = "turn everything into paths in the drawing program";
 
 /// A shape that is drawn.
@@ -64,18 +64,18 @@ pub struct SvgShape<'s> {
     pub tag: &'s Tag<'s>,
     /// From its coordinates to those of the picture, y down.
     pub frame: Affine,
-    /// Where the transform is written that is nearest around it, if there is one.
+    /// Byte range of the nearest enclosing transform, if any.
     pub moved: Option<Range<usize>>,
 }
 
 /// Why a picture, or a part of it, is not read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnsupportedSvg {
-    /// Where, in bytes of the text.
+    /// Byte range in the text.
     pub at: Range<usize>,
-    /// What is not read.
+    /// The unsupported feature.
     pub message: String,
-    /// What to do about it.
+    /// Advice.
     pub help: &'static str,
 }
 
@@ -98,10 +98,10 @@ impl UnsupportedSvg {
     }
 }
 
-/// The attributes of the picture itself, by their whole names, each with its place.
+/// The attributes of the picture itself, by their full names, each with its place.
 ///
 /// # Errors
-/// Where the text does not begin like an SVG picture.
+/// If the text does not begin like an SVG picture.
 pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>, UnsupportedSvg> {
     const READ: [&str; 5] = ["width", "height", "viewBox", "preserveAspectRatio", "data-unit"];
     let mut walk = Walk::new(text.as_bytes(), LIMITS);
