@@ -38,7 +38,8 @@ pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics>
     Ok(error)
 }
 
-/// What each error is said to be, and the bytes that say it. An error that is named twice is what it is said to be first.
+/// The value of each error, and its byte range in the text. Of an error that is named twice the first value
+/// counts.
 pub(super) fn terms(text: &str, found: &mut PoseDiagnostics) -> (Written, [Range<usize>; 5]) {
     let (mut written, mut spans) = (Written::default(), <[Range<usize>; 5]>::default());
     let mut start = 0;
