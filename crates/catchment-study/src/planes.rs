@@ -25,23 +25,25 @@ use catchment_core::pose::Dof;
 
 /// Cells per axis of a plane that is shown alone.
 const MAIN_CELLS: usize = 71;
-/// Cells per axis of one plane among many, at least.
+/// Smallest number of cells per axis of a plane among many.
 const CELLS: usize = 25;
 
-/// Cells per axis where so many planes are shown beside each other: odd, so that one cell is centred on zero.
+/// Cells per axis for this many planes beside each other: odd, so that a cell is centred on zero.
 fn cells_of(planes: usize) -> usize {
     let each = (MAIN_CELLS as f64 / (planes.max(1) as f64).sqrt()) as usize;
     (each | 1).max(CELLS)
 }
 
-/// The pair to show where only one can be: x with the rotation that goes with it; the first pair where the grid has neither.
+/// The pair for a single plane: x with the rotation in the same plane; the first pair if the grid has
+/// neither.
 pub fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
     let pairs = slice::pairs(grid);
     let favourites = [[Dof::X, Dof::Pitch], [Dof::X, Dof::Yaw]];
     favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
 }
 
-/// The grids of planes over these pairs of axes; none for a grid of fewer than three axes, which is a plane itself.
+/// The grids of planes over these pairs of axes; empty for a grid of fewer than three axes, which is a plane
+/// itself.
 fn grids(pair: &Pair, motions: &descent::DescentSettings, grid: &Grid, planes: &[[Dof; 2]]) -> Vec<Grid> {
     if grid.axes.len() < 3 {
         return Vec::new();
@@ -62,10 +64,11 @@ pub fn bytes(pair: &Pair, motions: &descent::DescentSettings, grid: &Grid) -> u6
     planes.iter().map(cells).fold(largest.saturating_mul(pose_bytes()), u64::saturating_add)
 }
 
-/// Follows every pose of every plane: one acceptance per pair of axes of `grid`, each over a grid of two axes; none for a grid of fewer than three.
+/// Follows every pose of every plane: an acceptance for each pair of axes of `grid`, over a grid of two axes;
+/// empty for a grid of fewer than three.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub fn through_zero(
     pair: &Pair,
     motions: &descent::DescentSettings,
@@ -75,10 +78,10 @@ pub fn through_zero(
     follow(pair, motions, grid, &slice::pairs(grid), exec)
 }
 
-/// The plane of the [`main_pair`] alone, finer than beside others; `None` for a grid of fewer than three axes.
+/// Only the plane of the [`main_pair`], finer than among others; `None` for a grid of fewer than three axes.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub fn main_through_zero(
     pair: &Pair,
     motions: &descent::DescentSettings,

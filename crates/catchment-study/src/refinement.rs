@@ -53,7 +53,7 @@ pub enum RefinementError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The method gave up.
@@ -99,7 +99,7 @@ impl GridDecision {
         Ok(Self { method: method.clone(), grid, decided, seconds })
     }
 
-    /// What it says.
+    /// Result of the method.
     ///
     /// # Errors
     /// See [`RefinementError`].
@@ -118,7 +118,7 @@ impl GridDecision {
         })
     }
 
-    /// The Sum made unbiased by random poses, as a run does.
+    /// The Sum made unbiased by samples, as in a run.
     ///
     /// # Errors
     /// See [`CorrectionError`].

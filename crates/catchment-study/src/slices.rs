@@ -30,10 +30,10 @@ use catchment_core::problem::Problem;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlicesSettings {
-    /// Cells per axis; [`SlicesSettings::CELLS`] on axes of which it says nothing.
+    /// Cells per axis; [`Settings::CELLS`] by default.
     pub resolution: Resolution,
     /// The pairs of errors to vary, the first to the right in pictures; empty: all pairs of free errors.
     pub pairs: Vec<[Dof; 2]>,
@@ -53,7 +53,7 @@ impl Serialize for SlicesSettings {
 }
 
 impl SlicesSettings {
-    /// Cells per axis: what the dissertation's drop tests used. Odd, so that a cell is centred on the mated pose.
+    /// Cells per axis, as in the dissertation's drop tests. Odd, so that a cell is centred on the mated pose.
     pub const CELLS: usize = 71;
 }
 
@@ -64,7 +64,7 @@ impl Default for SlicesSettings {
     }
 }
 
-/// One slice.
+/// A slice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slice {
     /// The two errors that vary, in the order of [`Dof::ALL`].
@@ -73,20 +73,20 @@ pub struct Slice {
     pub acceptance: Acceptance,
     /// Its area, Dᵃ·radᵇ.
     pub sum: Sum,
-    /// The same with one cell of doubt on either side of the border.
+    /// The same if the border moves by one cell to either side.
     pub bracket: [f64; 2],
     /// Its largest axis-oriented square.
     pub onaa: Onaa,
-    /// The doubts that it raises.
+    /// Its warnings.
     pub warnings: Vec<Warning>,
 }
 
-/// Slices of one design.
+/// Slices of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slices {
-    /// One per pair, in the order asked for.
+    /// A slice for each pair, in the requested order.
     pub slices: Vec<Slice>,
-    /// What they say about the whole; `None` where the x-y slice or one of x with a free rotation is missing.
+    /// Estimate of the ONAA edge; `None` if the x-y slice or a slice of x with a free rotation is missing.
     pub estimate: Option<Estimate>,
 }
 
@@ -99,7 +99,7 @@ pub enum SlicesError {
         /// How many there are.
         free: usize,
     },
-    /// An error is asked for that the design locks.
+    /// A requested error is locked in the design.
     #[error("{} is not free in this design, so it has no slice", dof.name())]
     NotFree {
         /// The error.
@@ -114,7 +114,7 @@ pub enum SlicesError {
     /// A resolution for an axis that is not there.
     #[error(transparent)]
     Resolution(#[from] ResolutionError),
-    /// A method that decides cells from one another.
+    /// A method whose cells depend on each other.
     #[error("slices are decided cell by cell, which {method} does not do")]
     NotByPose {
         /// Which method.
@@ -129,12 +129,12 @@ pub enum SlicesError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Refuses slices that do not fit into memory, before they are computed; says how many cells they have.
+/// Rejects slices that do not fit into memory, before they are computed; returns their number of cells.
 ///
 /// # Errors
 /// They do not fit, or a pair is not free in the design.

@@ -24,14 +24,14 @@ use catchment_core::run::{Answer, Over, Run, RunError, Sample};
 use serde::Serialize;
 use std::time::Duration;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AgreementSettings {
     /// The methods, each with its settings.
     pub methods: Vec<Method>,
-    /// Cells per axis; an even number that exact descent affords where nothing is said.
+    /// Cells per axis; by default an even number that exact descent can afford.
     pub resolution: Resolution,
-    /// Random poses that correct the Sum.
+    /// Samples that correct the Sum.
     pub sample: Sample,
     /// Their seed.
     pub seed: u64,
@@ -132,13 +132,13 @@ pub enum AgreementError {
     /// They could not be counted.
     #[error(transparent)]
     Merit(#[from] MeritError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] catchment_core::exec::Cancelled),
 }
 
-/// Cells per axis where several methods share a grid and nothing was said, for one to five axes: what exact descent can
-/// afford, and even, which keeps cells off the mirror planes where transport is weak.
+/// Default cells per axis of a grid shared by several methods, for one to five axes: affordable for exact
+/// descent, and even, which keeps cells off the mirror planes, at which transport is weak.
 pub fn even_cells(problem: &Problem) -> [usize; 5] {
     let odd = descent::DescentSettings::default().default_cells(problem.pair());
     odd.map(|cells| (cells - 1).max(Resolution::LEAST))
@@ -147,7 +147,7 @@ pub fn even_cells(problem: &Problem) -> [usize; 5] {
 /// Decides a problem by every method.
 ///
 /// # Errors
-/// The resolution does not suit the problem, or it was asked to stop.
+/// The resolution does not suit the problem, or the computation was cancelled.
 pub fn run(
     problem: &Problem,
     settings: &AgreementSettings,
@@ -213,7 +213,7 @@ impl From<&Answer> for MethodResult {
     }
 }
 
-/// One method, unless it does not apply or takes too long.
+/// Runs a method, unless it does not apply or takes too long.
 fn within(run: &Run, problem: &Problem, limit: Duration, exec: &Exec) -> Result<Answer, LeftOut> {
     let timed = exec.clone().with_time_limit(limit);
     run.on(problem, &timed).map_err(|error| match error {

@@ -73,7 +73,7 @@ pub struct ChanceSettings {
     pub seed: u64,
 }
 
-/// Rate at which velocities decay where nothing is said, in 1/s: an arm under force control gives way within a tenth of a second.
+/// Default decay rate of velocities, in 1/s: an arm under force control yields within a tenth of a second.
 pub const DAMPING: f64 = 10.0;
 
 impl Default for ChanceSettings {
@@ -88,19 +88,19 @@ impl Default for ChanceSettings {
 }
 
 impl ChanceSettings {
-    /// How far a half coasts that comes with the mean speed, in D; none without damping or speed.
+    /// Distance that a half with the mean speed coasts, in D; `None` without damping or speed.
     pub fn coasting(&self) -> Option<f64> {
         let speed = self.dynamics.mean(Circumstance::Speed).unwrap_or(self.drop.launch.speed);
         (speed > 0.0 && self.drop.damping > 0.0).then(|| speed / self.drop.damping)
     }
 }
 
-/// What is asked; nothing of it has to be.
+/// The requested results; all parts are optional.
 #[derive(Debug, Clone, Default)]
 pub struct Question {
     /// These poses, each by itself.
     pub poses: Vec<PoseError>,
-    /// A map over two errors, or one, all others 0.
+    /// A map over one or two errors, with all others 0.
     pub map: Vec<GridAxis>,
     /// The errors that are expected.
     pub errors: Option<Spread>,
@@ -111,10 +111,10 @@ pub struct Question {
 /// Why there is no chance.
 #[derive(Debug, thiserror::Error)]
 pub enum ChanceError {
-    /// Nothing is asked.
+    /// The question is empty.
     #[error("nothing is asked: name poses, errors to expect, or the axes of a map")]
     Nothing,
-    /// A held speed that is none.
+    /// A held speed of 0.
     #[error(
         "the approach speed may be 0: held speed needs one above 0; declare it, or give a push or gravity in its place"
     )]
@@ -124,27 +124,27 @@ pub enum ChanceError {
         "without damping no force holds a speed: give a damping above 0, or a push or gravity in the place of held speed"
     )]
     Undamped,
-    /// The law of what the design locks.
+    /// A distribution of a locked parameter.
     #[error("{} is declared, and the design locks {}: it would not count; leave it out", of.name(), axis.name())]
     Locked {
-        /// What is declared.
+        /// The parameter.
         of: Circumstance,
-        /// What is locked.
+        /// The locked error.
         axis: Dof,
     },
-    /// Errors of what the design locks.
+    /// Errors that the design locks.
     #[error("{} does not vary in this design, which locks it", axis.name())]
     LockedError {
         /// The error.
         axis: Dof,
     },
-    /// None of the errors varies.
+    /// No error varies.
     #[error("none of the expected errors varies: ask about the pose itself")]
     Still,
-    /// A factor of speeds that is none.
+    /// An invalid factor of speeds.
     #[error("speeds cannot be multiplied by {factor}: give a number above 0, and at most {MOST_FACTOR}")]
     Factor {
-        /// What was given.
+        /// The given value.
         factor: f64,
     },
     /// Too few trials.
@@ -152,7 +152,7 @@ pub enum ChanceError {
     TooFew {
         /// How many.
         trials: usize,
-        /// Of what.
+        /// The counted item.
         what: &'static str,
         /// How many it takes.
         least: usize,
@@ -171,10 +171,10 @@ pub enum ChanceError {
     /// No friction of exact motions.
     #[error(transparent)]
     Friction(#[from] FrictionOutOfRange),
-    /// The grid that says where to look was not decided.
+    /// The guiding grid could not be decided.
     #[error(transparent)]
     Decide(#[from] DecideError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -188,16 +188,17 @@ impl From<drop::DropError> for ChanceError {
     }
 }
 
-/// Most trials of one question: at 5 ms some fourteen hours on one core.
+/// Largest number of trials of a question: at 5 ms some fourteen hours on one core.
 pub const MOST_TRIALS: usize = 10_000_000;
 /// Largest factor of speeds.
 const MOST_FACTOR: f64 = 1e3;
 /// Fewest trials of a probability under errors: a few for each stratum.
 const FEWEST_OVERALL: usize = 100;
-/// What a trial takes, about, in seconds on one core: 3 ms between planar faces, 6 ms between pyramids, 15 ms between saddles.
+/// Estimated seconds of a trial on one core: 3 ms between planar faces, 6 ms between pyramids, 15 ms between
+/// saddles.
 const TRIAL_SECONDS: f64 = 0.005;
 
-/// Beyond this it is said how long it takes, in seconds.
+/// A computation longer than this is announced, in seconds.
 const LONG: f64 = 600.0;
 
 impl Question {
@@ -213,7 +214,8 @@ impl Question {
         self
     }
 
-    /// The same with errors even over the whole error box, where speeds are asked about, or nothing at all, and no errors are expected.
+    /// The same with errors uniform over the whole error box, if speeds or no particular results are
+    /// requested, and no errors are given.
     #[must_use]
     pub fn or_box(mut self, problem: &Problem) -> Self {
         let nothing = self.poses.is_empty() && self.map.is_empty();

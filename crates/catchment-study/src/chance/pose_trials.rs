@@ -28,7 +28,7 @@ pub(super) struct Trials<'a> {
     pub(super) nominal: f64,
 }
 
-/// Answers what is asked.
+/// Runs the trials for a question.
 ///
 /// # Errors
 /// See [`ChanceError`].
@@ -128,7 +128,7 @@ fn sound(problem: &Problem, asked: &Question, settings: &ChanceSettings) -> Resu
 }
 
 impl Trials<'_> {
-    /// What becomes of a pose with a draw, every velocity times `factor`.
+    /// Outcome of a pose with a draw, with every velocity multiplied by `factor`.
     pub(super) fn fall(
         &self,
         error: &PoseError,
@@ -161,7 +161,7 @@ impl Trials<'_> {
         move |trial| Draw::of(dynamics, stream.branch(trial as u64))
     }
 
-    /// Tries each pose as often as the settings say.
+    /// Tries each pose as often as set in the settings.
     fn poses(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<PoseChance>, ChanceError> {
         let trials = self.settings.trials;
         let all = poses.len() * trials;

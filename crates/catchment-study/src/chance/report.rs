@@ -13,7 +13,7 @@ use catchment_core::poses::{Circumstance, ScalarDistribution};
 
 /// Poses that people see.
 const MOST_POSES: usize = 40;
-/// A shorter way of coasting, in D, is a warning: speed then changes nothing that one sees.
+/// A shorter coasting distance, in D, gives a warning: speed then has no visible effect.
 const FAINT_COAST: f64 = 0.003;
 /// A larger share of a law that is drawn again is a warning.
 const MUCH_CUT: f64 = 0.01;

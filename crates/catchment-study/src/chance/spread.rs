@@ -22,7 +22,7 @@ use catchment_core::poses::Spread;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Exact motions for each trial: one takes a tenth of a millisecond, a trial some.
+/// Exact motions for each trial: a motion takes a tenth of a millisecond, a trial some milliseconds.
 const MOTIONS_PER_TRIAL: usize = 4;
 /// Shares of the time that the grid and the exact motions take.
 const PARTS: [f64; 2] = [0.04, 0.1];

@@ -43,8 +43,9 @@ fn holds([lo, hi]: [f64; 2], value: f64) -> bool {
     lo <= value && value <= hi
 }
 
-/// A half that drifts at u where it is let go has moved by u/γ when it lands, if it falls for much longer than 1/γ (here 50 times): of drifts
-/// even within 0 and 4 D/s, those below 2 D/s leave an offset of 0.3 D below D/2 at γ = 10/s.
+/// A half that drifts at u at its release has moved by u/γ when it lands, if it falls for much longer than
+/// 1/γ (here 50 times): of drifts uniform within 0 and 4 D/s, those below 2 D/s leave an offset of 0.3 D
+/// below D/2 at γ = 10/s.
 #[test]
 fn what_drifts_lands_where_the_closed_form_says() {
     let dynamics = speed(0.1)
@@ -58,8 +59,8 @@ fn what_drifts_lands_where_the_closed_form_says() {
     assert_eq!(of_poses(&sliding(), &[x(-0.3)], &settings)[0].probability, 1.0);
 }
 
-/// Slow halves fare as exact motions do; under normal offsets P = erf(1/(2σ√2)), and 20 intervals miss it at most 4 times (one test in 400
-/// would, were 95 % exact).
+/// Slow halves have the outcomes of exact motions; under normal offsets P = erf(1/(2σ√2)), and 20 intervals
+/// miss it at most 4 times (one test in 400 would fail with exact 95 % coverage).
 #[test]
 fn slow_halves_have_the_probability_of_the_closed_form() {
     let exact = libm::erf(0.5 / (0.3 * 2f64.sqrt()));
@@ -76,7 +77,7 @@ fn slow_halves_have_the_probability_of_the_closed_form() {
     assert!(held >= 16, "{held} of 20 hold {exact}");
 }
 
-/// As v → 0 the curve meets exact motion, rotations, friction and all; fast halves fare otherwise.
+/// As v → 0 the curve converges to exact motion, including rotations and friction; fast halves differ.
 #[test]
 fn the_curve_meets_exact_motion_where_speed_vanishes() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
@@ -102,7 +103,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
     }
 }
 
-/// A pushed half is let go at the speed that is drawn, in its own time: the same trial as by hand.
+/// A pushed half is released at the sampled speed, in its own time: the same trial as with explicit settings.
 #[test]
 fn a_given_push_is_taken_as_it_is() {
     let problem = sliding();
@@ -209,7 +210,7 @@ fn mirror_images_are_as_likely() {
     }
 }
 
-/// The majority of three errs where two or three of them do.
+/// The majority of three is wrong if two or three of them are.
 #[test]
 fn the_majority_of_three_errs_seldom() {
     for single in [0.0, 0.0008, 0.1, 0.5, 1.0f64] {

@@ -7,13 +7,14 @@ use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::{Circumstance, Dynamics, ScalarDistribution};
 use catchment_core::problem::Problem;
 
-/// Approach speed at which trials of held speed are computed, in D/s of their own time: with the engine's default step 0.005 D per step, what
-/// its contacts are made for.
+/// Approach speed at which trials of held speed are computed, in D/s of their own time: 0.005 D per step with
+/// the engine's default step, for which its contacts are tuned.
 const PACE: f64 = 5.0;
 /// Numbers for the start of a trial, before those of its circumstances.
 const START: u64 = 8;
 
-/// What is drawn for a trial, in the order of [`Circumstance::ALL`]; none of what is not declared.
+/// The random draw of a trial, in the order of [`Circumstance::ALL`]; `None` for parameters that are not
+/// declared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Draw {
     values: [Option<f64>; Circumstance::ALL.len()],
@@ -41,7 +42,7 @@ impl Draw {
         self.get(Circumstance::Friction).unwrap_or(settings.drop.friction)
     }
 
-    /// Where a trial starts that is of this pose.
+    /// Start of a trial of this pose.
     pub(super) fn start(&self, problem: &Problem, settings: &ChanceSettings, error: &PoseError) -> PoseError {
         let alignment = problem.alignment();
         let mut start = error.to_array();
@@ -98,7 +99,7 @@ impl Draw {
     }
 }
 
-/// The mass whose damping is declared: the mean of the law, or what the settings say, in kg.
+/// The mass for the declared damping: the mean of the distribution, or the mass of the settings, in kg.
 pub(super) fn nominal(settings: &ChanceSettings, bench: &Bench<'_>) -> f64 {
     settings.dynamics.mean(Circumstance::Mass).unwrap_or_else(|| bench.mass(&settings.drop))
 }

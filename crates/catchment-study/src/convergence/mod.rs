@@ -133,7 +133,7 @@ pub enum ConvergenceError {
     /// No share.
     #[error("a tolerance of {tolerance} cannot be reached; give a share above 0, such as 1%")]
     Tolerance {
-        /// What was given.
+        /// The given value.
         tolerance: f64,
     },
     /// Not even the coarsest grid can be computed.
@@ -141,13 +141,13 @@ pub enum ConvergenceError {
     Refinement(#[from] RefinementError),
 }
 
-/// Cells per axis to begin with, for one to five axes: some thousand cells at most.
+/// Initial cells per axis, for one to five axes: at most some thousand cells.
 const FIRST: [usize; 5] = [51, 11, 9, 7, 5];
 
 /// Refines until stable.
 ///
 /// # Errors
-/// A tolerance that is none, a coarsest grid that does not fit into memory, a cancelled run.
+/// An invalid tolerance, a coarsest grid that does not fit into memory, or a cancelled run.
 pub fn run(
     problem: &Problem,
     settings: &ConvergenceSettings,

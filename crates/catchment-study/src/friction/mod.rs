@@ -70,9 +70,10 @@ impl Default for FrictionSettings {
 const FEWER: usize = 4;
 /// To so much the critical friction of a pose is found.
 const EXACT: f64 = 1e-3;
-/// Shares of what docks without friction whose critical friction is told.
+/// Shares of the poses that dock without friction whose critical friction is reported.
 const SHARES: [f64; 4] = [0.99, 0.95, 0.9, 0.5];
-/// What sticks first: of the poses that are lost, the first so many of a hundred of all that dock without friction, and at least so many.
+/// Poses for the contacts that stick first: this percentage of all poses that dock without friction, those
+/// that are lost first, and at least this number.
 const FIRST: usize = 10;
 const AT_LEAST: usize = 20;
 
@@ -180,26 +181,29 @@ pub enum FrictionError {
     /// An empty ladder.
     #[error("no friction above 0 is named; name some, such as 0.1 and 0.2")]
     NoFrictions,
-    /// Nothing was asked.
+    /// The number of motions is zero.
     #[error("no motions, no answer: follow one random pose at least")]
     NoMotions,
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// What becomes of one pose.
+/// Results for a single pose.
 struct Way {
-    /// Without friction, and at each of the ladder with what Coulomb's law leaves open.
+    /// Outcome without friction, and at each coefficient together with the cases that Coulomb's law leaves
+    /// open.
     without: Outcome,
     at: Vec<(Outcome, FrictionAmbiguity)>,
-    /// The least friction at which something on the frictionless way would hold it; infinite where none of the ladder does.
+    /// Smallest friction coefficient at which some force on the frictionless motion would hold it; infinite
+    /// if no given coefficient suffices.
     holds: f64,
-    /// Up to which it docks, and where it is first known not to; of those alone that dock without friction and are lost.
+    /// Coefficient up to which it docks, and the smallest at which it is known to fail; only for poses that
+    /// dock without friction and are lost.
     critical: Option<[f64; 2]>,
 }
 
-/// Follows random poses of the error box at every friction.
+/// Follows sampled poses of the error box at every friction coefficient.
 ///
 /// # Errors
 /// See [`FrictionError`].
@@ -293,8 +297,8 @@ impl FrictionSettings {
 }
 
 impl Friction {
-    /// The least friction of the ladder at which poses wedge: from there on rigid halves under Coulomb's law and halves that give a little, as real ones
-    /// do, part.
+    /// Smallest given coefficient at which poses wedge: from it on rigid halves under Coulomb's law and
+    /// slightly compliant halves, as real ones are, may differ.
     pub fn wedges_from(&self) -> Option<f64> {
         self.curve.iter().find(|rung| rung.wedged > 0).map(|rung| rung.friction)
     }
@@ -347,12 +351,12 @@ impl Way {
         Self { without: end.outcome, at, holds: if holds < top { holds } else { f64::INFINITY }, critical }
     }
 
-    /// Whether it docks without friction and, as far as bisection tells, up to this one at least.
+    /// Whether it docks without friction and, within the bisection, at least up to this coefficient.
     fn docks_with(&self, friction: f64) -> bool {
         self.critical.is_some_and(|[docks, _]| docks >= friction)
     }
 
-    /// Whether it is lost at some friction and docks at a larger one.
+    /// Whether it is lost at some coefficient and docks at a larger one.
     fn comes_back(&self) -> bool {
         let docks = |(outcome, _): &&(Outcome, FrictionAmbiguity)| *outcome == Outcome::Aligned;
         self.without == Outcome::Aligned

@@ -157,7 +157,8 @@ impl Friction {
         self.curve.last().map_or(0.0, |rung| rung.friction)
     }
 
-    /// A friction up to which something docks, in words: `beyond 0.5` where that is all of them.
+    /// A friction coefficient up to which poses dock, in words: `beyond 0.5` for the largest given
+    /// coefficient.
     pub fn up_to(&self, friction: f64) -> String {
         let top = self.top();
         if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }

@@ -63,7 +63,7 @@ impl Default for HoldSettings {
     }
 }
 
-/// So many preloads, or times D, stand for any load where a number has to.
+/// Number of preloads, or preloads times D, that represents an infinite load in numbers.
 pub const ANY: f64 = catchment_core::method::descent::MOST_LOAD;
 
 /// Fewest and most directions: the axes, and a tenth of a degree.
@@ -156,43 +156,43 @@ pub struct HoldingForces {
     pub least_torque: Option<f64>,
 }
 
-/// Why nothing can be said of what a half withstands.
+/// Reason why holding forces cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HoldError {
-    /// The friction is none.
+    /// The friction coefficient is invalid.
     #[error(transparent)]
     Friction(#[from] FrictionOutOfRange),
     /// Too few directions, or too many.
     #[error("{directions} directions: from {} to {} can be tried", DIRECTIONS[0], DIRECTIONS[1])]
     Directions {
-        /// What was asked.
+        /// The given number.
         directions: usize,
     },
-    /// A length that is none.
+    /// An invalid length.
     #[error("{what}: {value} is no length here: {wanted}")]
     Length {
         /// Which.
         what: &'static str,
-        /// What was given, in D.
+        /// The given value, in D.
         value: f64,
-        /// What would be one.
+        /// The permitted values.
         wanted: &'static str,
     },
-    /// The pose comes to no rest.
+    /// The pose does not reach a rest.
     #[error("let go at that pose error the half comes to no rest that could be held: its motion is {}", outcome.name())]
     NoRest {
-        /// What becomes of it.
+        /// Its outcome.
         outcome: Outcome,
     },
-    /// The rest is none.
+    /// The rest is not in balance.
     #[error("the preload alone moves the half where it should rest: its contacts there do not hold it")]
     NotHeld,
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Finds what a half withstands.
+/// Computes the holding forces of a half.
 ///
 /// # Errors
 /// See [`HoldError`].
@@ -302,7 +302,7 @@ pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Ho
     })
 }
 
-/// What progress is told of, and the share of it that the directions take.
+/// Name of the progress stage, and the share of it for the directions.
 const STAGE: &str = "loads";
 const FIRST_SHARE: f64 = 0.6;
 /// Columns: without friction guided and free, with it guided and free.
@@ -329,12 +329,12 @@ impl HoldSettings {
 /// More than this is no play, in D.
 const MOST_PLAY: f64 = 0.1;
 
-/// What is tried on a half.
+/// A half for tests of loads.
 struct LoadedHalf {
     holding: Holding,
     /// The face centre of the moving half, from the centre of rotation.
     face: DVec3,
-    /// Without friction and with it, where the preload is held.
+    /// Without friction and with it, if the preload is balanced.
     frictions: [Option<f64>; 2],
     lever: f64,
 }
@@ -348,7 +348,7 @@ impl LoadedHalf {
         Sideways { direction_rad: direction, withstood: self.withstood(&load) }
     }
 
-    /// From the centre of rotation to where forces sideways act.
+    /// Vector from the centre of rotation to the point at which lateral forces act.
     fn arm(&self) -> DVec3 {
         self.face + DVec3::Z * self.lever
     }
@@ -411,7 +411,8 @@ impl LoadedHalf {
     }
 }
 
-/// A direction is weaker than those that were tried only by more than this share: along a straight side of what is withstood rounding decides.
+/// A direction counts as weaker than the tried ones only by more than this share: along a straight side of
+/// the holding force rounding decides.
 const ROUNDING: f64 = 1e-4;
 
 /// Components of a direction along an axis are exact.
@@ -421,7 +422,8 @@ fn snapped(part: f64) -> f64 {
 }
 
 impl LoadLimits {
-    /// Without friction guided and free, with it guided and free: infinite where any load is withstood; none where nothing is known.
+    /// Without friction guided and free, with friction guided and free: infinite if any load is resisted;
+    /// `None` if unknown.
     pub fn columns(&self) -> [Option<f64>; COLUMNS] {
         let any = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
         let of = |withstood: Option<LoadLimit>| {
@@ -431,7 +433,7 @@ impl LoadLimits {
         [smooth_guided, smooth_free, rough_guided, rough_free]
     }
 
-    /// One of them where it is finite.
+    /// A given column if it is finite.
     pub fn column(&self, column: usize) -> Option<f64> {
         self.columns()[column].filter(|value| value.is_finite())
     }
@@ -444,7 +446,7 @@ impl Weakest {
     }
 }
 
-/// The least load that is withstood in free errors, with friction where it is known.
+/// The smallest holding load in free errors, with friction if known.
 fn least(all: impl Iterator<Item = LoadLimits>) -> Option<f64> {
     let of = |both: LoadLimits| {
         let columns = both.columns();

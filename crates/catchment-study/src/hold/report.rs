@@ -69,13 +69,13 @@ impl HoldingForces {
         }
     }
 
-    /// What is withstood of every load.
+    /// The holding loads in all directions.
     fn loads(&self) -> impl Iterator<Item = LoadLimits> {
         let forces = self.sideways.iter().map(|side| side.withstood);
         forces.chain(self.torques.iter().map(|torque| torque.withstood))
     }
 
-    /// Every load, as shares of the preload, and of it times D; infinite where any is withstood.
+    /// Every load, as a share of the preload, or of it times D; infinite if any load is resisted.
     fn records(&self) -> Table {
         let mut table =
             Table::data("load direction_rad sign smooth_guided smooth_free rough_guided rough_free");
@@ -123,7 +123,7 @@ impl HoldingForces {
         table
     }
 
-    /// A table of loads: the columns without friction, and those with it where there is some.
+    /// A table of loads: the columns without friction, and those with friction if there is any.
     fn table(&self, name: &str) -> Table {
         let friction = self.settings.friction;
         let columns = if friction > 0.0 {
@@ -151,7 +151,7 @@ impl HoldingForces {
         all.into_iter().take(count)
     }
 
-    /// Whether a force however small moves it sideways where there is no friction.
+    /// Whether an arbitrarily small force moves it sideways without friction.
     fn slides(&self) -> bool {
         let least = self.weakest.smooth_free.and_then(|side| side.withstood.column(1));
         least.is_some_and(|force| force <= NOTHING)
@@ -163,7 +163,7 @@ impl HoldingForces {
     }
 }
 
-/// A direction in degrees, to a tenth where that matters.
+/// A direction in degrees, to a tenth if needed.
 fn degrees(direction: f64) -> String {
     let degrees = direction.to_degrees();
     let whole = degrees.round();

@@ -5,7 +5,7 @@ use catchment_core::design::read;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 use std::path::Path;
 
-/// A load of 10⁻⁷ of the push that is not held counts as none.
+/// A load of 10⁻⁷ of the push that is not balanced counts as zero.
 const EXACT: f64 = 2e-6;
 
 fn problem(connector: &str, rest: &str) -> Problem {
@@ -46,7 +46,8 @@ fn the_spatial_x_face_at_thirty_degrees() {
     }
 }
 
-/// Free to tilt it withstands no more than guided, with friction no less than without, and a face of four like sides the same to all of them.
+/// With free tilt the holding force is at most that of guided motion, with friction at least that without,
+/// and equal in all directions for a face with four equal sides.
 #[test]
 fn columns_are_in_order_and_sides_alike() {
     let problem = problem("family = \"pyramid\"\naspect_ratio = 0.5", "center_of_rotation = 0.3\n");
@@ -88,7 +89,7 @@ fn a_long_lever_tips_it() {
     assert!((at(5.0) - 0.1).abs() < EXACT, "{}", at(5.0));
 }
 
-/// Let go of it rests elsewhere, and is held there.
+/// Released at a pose error it comes to rest elsewhere, and is held there.
 #[test]
 fn a_half_is_held_where_it_comes_to_rest() {
     let problem = problem("family = \"v-face\"\naspect_ratio = 1.0", "");

@@ -19,14 +19,14 @@ use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::ObservedOutcome;
 use catchment_core::problem::Problem;
 
-/// Where the border is, as far as motions showed.
+/// Position of the border, by the motions followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Border {
-    /// How far, in units of the accuracy: at most.
+    /// Upper bound on its distance, in standard deviations.
     pub sigmas: f64,
     /// The same pose, as a share of the half-ranges of the error box: √Σ(Δₖ/rangeₖ)².
     pub box_share: f64,
-    /// The same pose in D, rotations times the rotation length.
+    /// The distance of the same pose in D, with rotations times the characteristic length.
     pub distance: f64,
     /// The pose beyond the border.
     pub at: PoseError,
@@ -34,16 +34,16 @@ pub struct Border {
 
 /// Random directions per error.
 const RANDOM: u64 = 4;
-/// Directions beside the best one, per error.
+/// Number of directions near the best direction, per error.
 const BESIDE: u64 = 12;
-/// How far beside, at first, and by what that shrinks with each that finds nothing nearer.
+/// Initial deviation from the best direction, and its reduction after each trial without a nearer pose.
 const SPREAD: f64 = 0.5;
 const SHRINK: f64 = 0.8;
-/// Directions beside the best one are looked at so much nearer.
+/// Directions near the best direction are tried at this fraction of its distance.
 const NEARER: f64 = 0.98;
-/// Looks along a direction where a distance is known.
+/// Number of trials along a direction if a distance is known.
 const LOOKS: usize = 4;
-/// The first look where none is, in units of the accuracy; each further one is twice as far.
+/// First trial if no distance is known, in standard deviations; each further trial is twice as far.
 const FIRST_LOOK: f64 = 0.25;
 /// Width to which a border is bisected, as a share of the distance and at least in units of the accuracy.
 const SHARP: f64 = 2e-3;
@@ -62,13 +62,13 @@ impl<'a> DockingOracle<'a> {
         Self { follower: Follower::new(problem.pair(), motions), problem, followed: 0 }
     }
 
-    /// Whether a pose docks, turned by a symmetry or not; what is undecided does not.
+    /// Whether a pose docks, rotated by a symmetry or not; false for an undecided pose.
     pub fn docks(&mut self, error: &PoseError) -> bool {
         self.followed += 1;
         self.follower.follow(error).outcome == Outcome::Aligned
     }
 
-    /// What becomes of a pose; nothing where that is undecided.
+    /// Outcome of a pose; `None` if undecided.
     pub fn predict(&mut self, error: &PoseError) -> Option<ObservedOutcome> {
         self.followed += 1;
         let end = self.follower.follow(error);
@@ -98,13 +98,13 @@ pub struct Search<'a> {
     problem: &'a Problem,
     /// Accuracy per error, 0 for exact ones.
     accuracy: [f64; 5],
-    /// Errors that have one.
+    /// Errors with an accuracy.
     axes: Vec<usize>,
-    /// Nothing further is looked for, in units of the accuracy.
+    /// Largest distance that is searched, in standard deviations.
     most: f64,
 }
 
-/// The nearest pose known to fare otherwise.
+/// The nearest pose known to have another outcome.
 #[derive(Debug, Clone, Copy)]
 struct Best {
     distance: f64,
@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
         Self { problem, accuracy, axes, most }
     }
 
-    /// How far two poses are apart, in units of the accuracy; infinitely where an exact error differs.
+    /// Distance of two poses, in standard deviations; infinite if an exact error differs.
     pub fn apart(&self, a: &PoseError, b: &PoseError) -> f64 {
         let (a, b) = (a.to_array(), b.to_array());
         let mut sum = 0.0;
@@ -134,7 +134,8 @@ impl<'a> Search<'a> {
         sum.sqrt()
     }
 
-    /// The nearest pose found that fares otherwise than `from`, which `docks` or does not; `other` is one that is known to.
+    /// The nearest pose found with another outcome than `from`, which `docks` or fails; `other` is a pose
+    /// known to have another outcome.
     pub(crate) fn nearest(
         &self,
         judge: &mut DockingOracle<'_>,
@@ -174,7 +175,7 @@ impl<'a> Search<'a> {
         best.map(|best| self.border(from, &best))
     }
 
-    /// Looks in directions beside the best one.
+    /// Tries directions near the best direction.
     fn beside(
         &self,
         judge: &mut DockingOracle<'_>,
@@ -231,7 +232,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Where what becomes of it changes, from where it does not to where it does.
+    /// The change of the outcome between a pose with the same and a pose with another outcome.
     fn bisect(
         &self,
         judge: &mut DockingOracle<'_>,
@@ -251,7 +252,7 @@ impl<'a> Search<'a> {
         other
     }
 
-    /// How far a direction stays in the error box.
+    /// Distance in a direction up to the border of the error box.
     fn reach(&self, from: &PoseError, along: &[f64; 5]) -> f64 {
         let alignment = self.problem.alignment();
         let until = |k: usize| {
@@ -291,7 +292,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Uniform numbers that five normal ones take.
+/// Number of uniform random numbers for five normal ones.
 const DRAWS: u64 = 6;
 
 pub(super) fn random_direction(random: Stream, number: u64) -> [f64; 5] {

@@ -170,7 +170,7 @@ pub enum TrialPlanError {
     Accuracy {
         /// Which error.
         axis: Dof,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// No coefficient of friction.
@@ -182,7 +182,7 @@ pub enum TrialPlanError {
     /// A plan without repeats or blocks.
     #[error("0 {what}: 1 or more")]
     None {
-        /// Of what.
+        /// The counted item.
         what: &'static str,
     },
     /// Too many trials.
@@ -194,24 +194,24 @@ pub enum TrialPlanError {
     /// Too few trials.
     #[error("{trials} trials do not bracket a border: {fewest} or more, two on every line and two controls")]
     TooFew {
-        /// What was given.
+        /// The given value.
         trials: usize,
-        /// What is needed.
+        /// The required minimum.
         fewest: usize,
     },
-    /// A lever that is none.
+    /// An invalid lever.
     #[error("a lever of {lever} D turns nothing: it goes from the joint to the face centre, above 0")]
     Lever {
-        /// What was given.
+        /// The given value.
         lever: f64,
     },
-    /// The arc turns what the design locks.
+    /// The arc rotates a locked error.
     #[error("{}: the arc turns it, but the design locks it", axis.name())]
     Locked {
         /// Which error.
         axis: Dof,
     },
-    /// The arc moves sideways what the design locks.
+    /// The arc moves a locked offset.
     #[error(
         "{}: the design locks it at its centre of rotation ({cor} D in front of the face centre), which a joint {lever} D behind the face centre \
          moves; free {0}, or put the centre of rotation at −{lever} D", axis.name()
@@ -221,7 +221,7 @@ pub enum TrialPlanError {
         axis: Dof,
         /// From the joint to the face centre, in D.
         lever: f64,
-        /// Where the design's centre of rotation is, in D.
+        /// Centre of rotation of the design, in D.
         cor: f64,
     },
     /// Not even zero docks.
@@ -235,14 +235,14 @@ pub enum TrialPlanError {
         "no point of the lattice is within a step of the border: take a larger step, or enlarge [errors] of the design"
     )]
     FarFromBorder,
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 /// Parts of the time that the pattern and the poses take.
 const PARTS: [f64; 4] = [0.0, 0.3, 0.9, 1.0];
-/// What the parts of the work are called.
+/// Name of the progress stage.
 const STAGE: &str = "motions";
 
 /// Plans trials.
@@ -332,7 +332,7 @@ pub fn run(
     })
 }
 
-/// An accuracy is of free errors, and not of none.
+/// Checks that an accuracy belongs to free errors, and to at least one.
 pub(crate) fn check_accuracy(problem: &Problem, accuracy: &PoseError) -> Result<(), TrialPlanError> {
     let free = problem.alignment().free;
     for (axis, value) in Dof::ALL.into_iter().zip(accuracy.to_array()) {
@@ -344,7 +344,7 @@ pub(crate) fn check_accuracy(problem: &Problem, accuracy: &PoseError) -> Result<
     if *accuracy == PoseError::default() { Err(TrialPlanError::NoAccuracy) } else { Ok(()) }
 }
 
-/// How far a pose is from zero, as a share of the error box.
+/// Distance of a pose from zero, as a share of the error box.
 pub(crate) fn outwards(problem: &Problem, error: &PoseError) -> f64 {
     let alignment = problem.alignment();
     let part = |axis: Dof| (error.to_array()[axis.index()] / alignment.half_range(axis)).powi(2);
@@ -369,7 +369,7 @@ fn stopped(problem: &Problem, mut points: Vec<PlannedPose>) -> Vec<PlannedPose> 
     points
 }
 
-/// Poses that fare otherwise with other signs, by more than the accuracy explains.
+/// Poses with another outcome for other signs, beyond the uncertainty of the robot.
 fn other_signs(
     problem: &Problem,
     points: &[PlannedPose],

@@ -70,7 +70,7 @@ pub(super) struct Placed {
     pub(super) line: usize,
 }
 
-/// What made the pattern, beside its poses.
+/// Results of the pattern besides its poses.
 #[derive(Debug, Default)]
 pub(super) struct Made {
     pub(super) poses: Vec<Placed>,
@@ -79,8 +79,8 @@ pub(super) struct Made {
     pub(super) open: usize,
 }
 
-/// A line of a bracket: where along it the first pose fails, and how far from there, on either side, a point can be told to be on its
-/// side; as shares of the way through the error box.
+/// A line of a bracket: the position of its first failure, and the distance from it, on either side, at which
+/// a point is decisive; as shares of the length through the error box.
 struct Border {
     along: [f64; 5],
     at: f64,
@@ -108,9 +108,9 @@ const TOLD_APART: f64 = 2.02;
 const LEEWAY: f64 = 1.25;
 /// How often a point that is nearer than that is moved out.
 const MOVES: usize = 6;
-/// One trial in so many is a control, far inside or far outside.
+/// One trial in this many is a control, far inside or far outside.
 const CONTROLS: usize = 8;
-/// Directions that are looked at for each line that is wanted.
+/// Number of directions tried for each wanted line.
 const TRIES: usize = 8;
 
 impl Maker<'_> {
@@ -203,7 +203,7 @@ impl Maker<'_> {
     ) -> Result<Made, TrialPlanError> {
         /// A point that rounding puts beyond a step is within it.
         const ROUNDING: f64 = 1e-9;
-        /// Directions that are first looked at may meet the border so much farther off than it is.
+        /// Directions of a first trial may meet the border farther away than its distance by this factor.
         const OBLIQUE: f64 = 3.0;
         let steps = PoseError::from_array(step.map(Option::unwrap_or_default));
         let search = Search::new(self.problem, &steps, OBLIQUE);
@@ -338,7 +338,8 @@ impl Maker<'_> {
         Ok(made)
     }
 
-    /// How far from the border along a line, as a share of the way through the box, a point can be told to be on its side.
+    /// Distance from the border along a line at which a point is decisive, as a share of the length through
+    /// the box.
     fn told_apart(
         &self,
         judge: &mut DockingOracle<'_>,
@@ -379,7 +380,7 @@ impl Maker<'_> {
         apart
     }
 
-    /// Where along a direction the first pose fails, as a share of the way through the error box.
+    /// Position of the first failure along a direction, as a share of the length through the error box.
     fn border(&self, judge: &mut DockingOracle<'_>, along: &[f64; 5]) -> Option<f64> {
         let fails = (1..=LOOKS).find(|k| !judge.docks(&self.scaled(along, *k as f64 / LOOKS as f64)))?;
         let [mut docks, mut fails] = [fails - 1, fails].map(|k| k as f64 / LOOKS as f64);
@@ -400,7 +401,8 @@ impl Maker<'_> {
         PoseError::from_array(std::array::from_fn(|k| t * along[k] * range(k)))
     }
 
-    /// Directions through the error box: of two errors evenly, of more along each error first and then random ones.
+    /// Directions through the error box: evenly for two errors, for more along each error first and then
+    /// random directions.
     fn directions(&self, wanted: usize) -> Vec<[f64; 5]> {
         let axes: Vec<usize> = self.problem.alignment().free.iter().map(Dof::index).collect();
         let signs: &[f64] = if self.symmetric { &[1.0] } else { &[1.0, -1.0] };
@@ -442,7 +444,7 @@ fn is_within(t: f64) -> bool {
     t > 0.0 && t <= 1.0
 }
 
-/// Where controls stand between two ends, half way first: 1/2, 1/4, 3/4, 1/8, 5/8, …, no two alike.
+/// Positions of controls between two ends, half way first: 1/2, 1/4, 3/4, 1/8, 5/8, …, without repetition.
 fn between(round: usize) -> f64 {
     let (mut rest, mut digit, mut share) = (round + 1, 0.5, 0.0);
     while rest > 0 {

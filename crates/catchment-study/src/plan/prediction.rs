@@ -47,7 +47,8 @@ impl Prediction {
         matches!(self.predicted, Some(ObservedOutcome::Aligned | ObservedOutcome::AlignedElsewhere))
     }
 
-    /// How far it is from the border, in units of the accuracy; infinitely where no border was found, 0 where it is undecided what becomes of it.
+    /// Distance from the border, in standard deviations; infinite if no border was found, 0 for an undecided
+    /// pose.
     pub fn margin(&self) -> f64 {
         match (self.predicted, self.margin_in_sigma) {
             (None, _) => 0.0,
@@ -56,7 +57,7 @@ impl Prediction {
         }
     }
 
-    /// The prediction in a word: `either` where the pose may dock or fail.
+    /// The prediction in a word: `either` if the pose may dock or fail.
     pub const fn word(&self) -> &'static str {
         match self.predicted {
             _ if self.either => "either",

@@ -6,7 +6,8 @@ use catchment_core::document::{Cell, Column, DesignUnits};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::OffsetsAt;
 
-/// The row of an accuracy: `x 1 mm, yaw 0.5° (one standard deviation)`. Errors without one are left out.
+/// The row of an accuracy: `x 1 mm, yaw 0.5° (one standard deviation)`. Errors without a standard deviation
+/// are skipped.
 pub(crate) fn accuracy_words(design: &Design, accuracy: &PoseError) -> String {
     let units = DesignUnits::of(design);
     let value = |axis: Dof| accuracy.to_array()[axis.index()] * scale(units, axis);
@@ -51,7 +52,7 @@ impl<'a> PoseColumns<'a> {
         })
     }
 
-    /// Their values of one pose.
+    /// Their values for a pose.
     pub(crate) fn values(&self, error: &PoseError) -> impl Iterator<Item = Cell> {
         let values = self.at.measure(error, &self.design.alignment).to_array();
         self.axes.iter().map(move |axis| {
@@ -65,7 +66,7 @@ impl<'a> PoseColumns<'a> {
         [Column::data(format!("distance_to_border{}", self.unit())), Column::data("margin_in_sigma")]
     }
 
-    /// Their values of one pose.
+    /// Their values for a pose.
     pub(crate) fn margin(&self, prediction: &Prediction) -> [Cell; 2] {
         let short = |value: Option<f64>| value.map(|value| format!("{value:.4}")).into();
         let distance = prediction.distance_to_border.map(|distance| distance * self.units.scale());

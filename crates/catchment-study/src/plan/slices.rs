@@ -21,7 +21,8 @@ use catchment_core::problem::Problem;
 /// A slice, or a projection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// The errors across and up, and their ranges in D or radians; a planar panel has one of them.
+    /// The horizontal and vertical errors, and their ranges in D or radians; a planar panel has a single
+    /// error.
     pub across: Vec<(Dof, [f64; 2])>,
     /// The others that are not zero in all poses, from the least to the largest value that a pose in it has.
     pub others: Vec<(Dof, [f64; 2])>,
@@ -48,7 +49,8 @@ impl Panel {
         self.cells.is_empty()
     }
 
-    /// The value of another error at which a slice lies, and how far at most the poses in it are from that; `None` where they are not.
+    /// The value of another error at which a slice lies, and the largest distance of its poses from that
+    /// value; `None` if they lie on it.
     pub fn middle([lo, hi]: [f64; 2]) -> (f64, Option<f64>) {
         (f64::midpoint(lo, hi), (hi - lo > SAME).then_some(0.5 * (hi - lo)))
     }
@@ -71,10 +73,11 @@ impl Panel {
     }
 }
 
-/// Slices that show these poses, of a robot of this `accuracy` (D and radians); projections where there would be too many.
+/// Slices that show these poses, for a robot of this `accuracy` (D and radians); projections if there would
+/// be too many.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop.
+/// [`Cancelled`] if a stop is requested.
 pub fn panels(
     problem: &Problem,
     poses: &[PoseError],

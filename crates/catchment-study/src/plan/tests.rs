@@ -159,7 +159,8 @@ fn an_arc_moves_the_face_with_its_pitch() {
     assert!(matches!(refused, TrialPlanError::JointElsewhere { axis: Dof::Y, .. }), "{refused}");
 }
 
-/// A grid knows the border along a line to one step; a bracket with points as far apart knows it as well.
+/// A grid determines the border along a line to one step; a bracket with points as far apart determines it
+/// equally well.
 #[test]
 fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     let problem = problem("bench-x-face.toml");
@@ -282,7 +283,8 @@ fn what_cannot_be_planned_is_refused() {
     assert!(matches!(pattern(few), TrialPlanError::TooFew { fewest: 4, .. }));
 }
 
-/// As many trials as were asked for, however near the border is to zero or to the error box; no pose twice.
+/// The requested number of trials, for any distance of the border from zero or the error box; without
+/// repeated poses.
 #[test]
 fn a_bracket_has_the_trials_that_were_asked_for() {
     let about = |size: f64| PoseError::from_array([size; 5]);

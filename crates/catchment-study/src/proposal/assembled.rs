@@ -12,7 +12,8 @@ use super::{PartFrames, Parts, SeatSearch, is_seat, rank, sink, ways};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec2;
 
-/// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
+/// Parts that are drawn docked: the results of a lattice for each approach; for those that hold, or that are
+/// requested, the results of exact contact.
 pub(super) fn docked(
     both: &Parts<'_>,
     looked: &mut SeatSearch,
@@ -59,7 +60,7 @@ pub(super) fn docked(
     Ok(looks)
 }
 
-/// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
+/// A place near the drawn pose: as drawn if exact contact holds there, else the deepest place nearby.
 fn let_in(
     both: &Parts<'_>,
     way: AxisDirection,
@@ -87,7 +88,8 @@ fn let_in(
         .map_err(|refusal| refusal.of(lie))
 }
 
-/// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
+/// Parts that are drawn apart: lowered along the approach until they hold, from any distance; with a note
+/// about it.
 pub(super) fn let_down(
     both: &Parts<'_>,
     looks: &[(AxisDirection, sink::ApproachResult)],

@@ -7,21 +7,21 @@ use catchment_core::design::LengthUnit;
 use catchment_core::pose::PoseError;
 use std::fmt;
 
-/// One way in which the parts may dock.
+/// A relative pose in which the parts may dock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// How they lie.
     pub lie: PartLayout,
     /// 0 to 1; the more, the likelier.
     pub score: f64,
-    /// How far the moving half climbs before it leaves, and how far it moves to each side at half of that, in the unit of the design;
-    /// where a lattice found it.
+    /// Climb of the moving half until it leaves, and its play to each side at half of that, in the unit of
+    /// the design; if a lattice found it.
     pub sunk: Option<[f64; 2]>,
-    /// climb / (e + play); 0 where no lattice found it.
+    /// climb / (e + play); 0 if no lattice found it.
     pub steep: f64,
-    /// Whether it hardly rises as far as a lattice looks: what lies in a tray, and not in a seat.
+    /// Whether it hardly rises within the range of a lattice: a part in a tray, and not in a seat.
     pub is_loose: bool,
-    /// Which place it is: candidates of one place differ by a turn about the approach.
+    /// Number of its place: candidates of the same place differ by a rotation about the approach.
     pub class: usize,
     /// How much a half climbs that is off, 0 to 1.
     pub climb: f64,
@@ -29,7 +29,8 @@ pub struct Candidate {
     pub shared: f64,
     /// D, in the unit of the design.
     pub width: f64,
-    /// Where the origin of the moving part is across the approach, in the unit of the design and the frame of the fixed half, turned.
+    /// Position of the origin of the moving part across the approach, in the unit of the design and the
+    /// rotated frame of the fixed half.
     pub offset: [f64; 2],
     /// Whether it is a seat.
     pub seat: SeatCheck,
@@ -40,18 +41,18 @@ pub struct Candidate {
 pub enum SeatCheck {
     /// As drawn.
     Holds,
-    /// Where the halves have settled.
+    /// The rest that the halves reach.
     Settles {
         /// By how much the moving half turned, in radians.
         turn: f64,
         /// By how much it shifted across the approach, in the unit of the design.
         shift: f64,
-        /// How that is told.
+        /// Its description.
         told: String,
     },
-    /// It is none, and why.
+    /// It is not a seat, for this reason.
     Refused(String),
-    /// Others are better, so that it was not asked.
+    /// It was not evaluated, because others are better.
     NotAsked,
 }
 
@@ -66,7 +67,7 @@ impl fmt::Display for SeatCheck {
     }
 }
 
-/// The unit in which a person says lengths of parts: millimetres where a file is in metres.
+/// The unit for lengths of parts in texts: millimetres if a file is in metres.
 pub(super) const fn shown_unit(unit: LengthUnit) -> LengthUnit {
     match unit {
         LengthUnit::M => LengthUnit::Mm,
@@ -74,13 +75,13 @@ pub(super) const fn shown_unit(unit: LengthUnit) -> LengthUnit {
     }
 }
 
-/// A length given in the unit of the design, as a person says it: in millimetres where the file is in metres.
+/// A length in the unit of the design, as text: in millimetres if the file is in metres.
 pub fn shown_length(value: f64, unit: LengthUnit) -> String {
     let shown = shown_unit(unit);
     format!("{} {}", number(value * unit.metres() / shown.metres()), shown.symbol())
 }
 
-/// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
+/// A candidate in the user's terms: lengths times `unit` are in the unit of the design.
 pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) -> Candidate {
     let SeatCandidate { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
     Candidate {
@@ -103,7 +104,7 @@ pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) ->
     }
 }
 
-/// Where halves have settled.
+/// The rest that the halves reach.
 fn settles(off: &PoseError, width: f64, unit: &str) -> SeatCheck {
     let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
     let shift = off.x.hypot(off.y) * width;
@@ -122,7 +123,8 @@ fn settles(off: &PoseError, width: f64, unit: &str) -> SeatCheck {
 }
 
 impl Candidate {
-    /// Where the moving part is, in words to put behind how it lies, where others lie the same way; nothing otherwise.
+    /// Position of the moving part, in words to append to its orientation, if others have the same
+    /// orientation; else empty.
     pub fn place_among(&self, all: &[Self], unit: LengthUnit) -> String {
         if all.iter().filter(|other| other.lie == self.lie).count() < 2 {
             return String::new();

@@ -20,13 +20,14 @@ use catchment_core::disjoint::DisjointSets;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// What to say of a seat that is elsewhere than where parts are drawn that may be assembled.
+/// Note about a seat at another place than the drawn one, for parts that may be assembled.
 pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
 
 /// An assembly shares no volume but for rounding and press fits, as a share of the smaller part's.
 const MOST_SHARED: f64 = 0.01;
-/// In an assembly the share of the moving part's surface that is near the fixed one, where the boxes overlap, times the share of the boxes that
-/// overlaps, is at least so much; where it is less, but the boxes overlap by this share, it may be one.
+/// Criterion for an assembly: the share of the moving part's surface that is near the fixed part, within the
+/// overlap of the boxes, times the share of the boxes that overlaps, is at least this; if it is less, but the
+/// boxes overlap by this share, it may be one.
 const LEAST_NEAR: f64 = 0.02;
 const LEAST_INSIDE: f64 = 0.25;
 
@@ -55,7 +56,7 @@ pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
     }
 }
 
-/// The cause, of what comes of each approach, and what helps.
+/// The cause, from the results of each approach, with advice.
 pub(super) fn of(
     parts: [&Triangles; 2],
     looks: &[(AxisDirection, ApproachResult)],
@@ -214,7 +215,7 @@ fn is_same(one: &Half, other: &Half) -> bool {
 /// Parts that are no longer than this, in millimetres, are rather in inches.
 const SHORT: f64 = 6.0;
 
-/// That files which say no unit, and of which somebody said millimetres, are rather in inches.
+/// A note that files without a unit, read as millimetres, are probably in inches.
 pub(super) fn inches(halves: [&Half; 2], settings: &ProposalSettings, scale: f64) -> Option<String> {
     let longest = halves.map(|half| {
         let (low, high) = half.bounds();

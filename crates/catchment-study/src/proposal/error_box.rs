@@ -67,7 +67,7 @@ fn share(step: u32) -> f64 {
     (100.0 * (-0.5 * f64::from(step)).exp2()).ceil() / 100.0
 }
 
-/// The first step whose share is accepted, by bisection; the last is not asked.
+/// The first step whose share is accepted, by bisection; the last is not tested.
 fn largest(last: u32, mut accepts: impl FnMut(f64) -> bool) -> u32 {
     let (mut few, mut many) = (0, last);
     while few < many {

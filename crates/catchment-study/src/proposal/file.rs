@@ -10,7 +10,7 @@ use glam::DVec2;
 use std::fmt::Write;
 use std::path::Path;
 
-/// To what lengths are rounded, in D: what rests is known to 1e-7.
+/// Rounding of lengths, in D: rests are known to 1e-7.
 const ROUNDED: f64 = 1e-8;
 
 /// A number rounded to a step that is a power of ten, below `about`.
@@ -49,7 +49,7 @@ fn stem(path: &Path) -> String {
 const MESHED: &str =
     "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".";
 
-/// The keys that name a file, and the unit of one that does not say it.
+/// The keys that name a file, and the unit of a file that does not state it.
 fn named(part: &PartFile, unit: LengthUnit) -> (String, Option<String>) {
     let stated = (!says_its_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
     (format!("mesh = {}", quoted(&part.written)), stated)
@@ -66,7 +66,7 @@ fn element(beside: &PartDetail, unit: LengthUnit) -> String {
     }
 }
 
-/// What draws a half: its file, or a list of parts that begins with it.
+/// Keys that define a half: its file, or a list of parts that begins with it.
 fn drawn(part: &PartFile, with: &[PartDetail], settings: &ProposalSettings) -> Vec<String> {
     let unit = file_unit(settings);
     let is_step = FileSpec::new(&part.path, 1.0).is_step();
@@ -89,7 +89,7 @@ fn drawn(part: &PartFile, with: &[PartDetail], settings: &ProposalSettings) -> V
     meshed.into_iter().chain([open, file]).chain(more).chain(["]".to_owned()]).collect()
 }
 
-/// A design that says no more than what draws the halves.
+/// A design with only the keys that define the halves.
 pub(super) fn halves(parts: &[PartFile; 2], settings: &ProposalSettings) -> String {
     let unit = design_unit(settings);
     let mut text = format!("[connector]\nunit = \"{}\"\n", unit.symbol());
@@ -99,7 +99,8 @@ pub(super) fn halves(parts: &[PartFile; 2], settings: &ProposalSettings) -> Stri
     text
 }
 
-/// The design; lengths of `judged` times `scale` are in its unit, and errors are looked at up to these shares of 1 D and 90 degrees.
+/// The design; lengths of `judged` times `scale` are in its unit, and errors are examined up to these shares
+/// of 1 D and 90 degrees.
 pub(super) fn text(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,
@@ -240,7 +241,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
     }
 }
 
-/// A number that reads as one with a point.
+/// A number with a decimal point.
 fn decimal(text: String) -> String {
     if text.contains('.') { text } else { text + ".0" }
 }

@@ -43,7 +43,7 @@ pub(super) fn read(
     Ok(halves)
 }
 
-/// Whether one file holds both halves, and more than these.
+/// Whether a single file holds both halves, and further bodies.
 pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettings, exec: &Exec) -> bool {
     let [one, other] = parts;
     let third = PartFile { body: Some(3), ..one.clone() };
@@ -51,7 +51,7 @@ pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettin
     is_one_file && of_half(&mesh(&third, settings), HalfRole::Fixed, exec).is_ok()
 }
 
-/// What is wrong with both files alike is said of the first alone.
+/// Errors that both files share are reported only for the first.
 fn said_once(mut diagnostics: Diagnostics) -> Diagnostics {
     let mut said = HashSet::new();
     diagnostics.list.retain(|diagnostic| {
@@ -68,7 +68,8 @@ fn no_unit(part: &PartFile, half: &Half) -> ProposalError {
     ProposalError::NoUnit { path: part.path.clone(), size: size.to_array(), guess: guess(size) }
 }
 
-/// What the halves are, lengths in the unit of the design: a file, or, where more belongs to one of them, what a design would say.
+/// The halves, with lengths in the unit of the design: a file, or, if more belongs to one of them, the parts
+/// of a design.
 fn specs(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,
@@ -98,24 +99,25 @@ fn mesh(part: &PartFile, settings: &ProposalSettings) -> HalfSpec {
     HalfSpec::Mesh(spec)
 }
 
-/// The unit of files that do not say theirs.
+/// The unit of files that do not state a unit.
 pub(super) fn file_unit(settings: &ProposalSettings) -> LengthUnit {
     settings.unit.unwrap_or(LengthUnit::Mm)
 }
 
-/// The unit of the design, in which answers are given: millimetres where files are in metres, unless parts are written in the unit of the files beside them.
+/// The unit of the design, used in results: millimetres if files are in metres, unless parts are written in
+/// the unit of the files beside them.
 pub(super) fn design_unit(settings: &ProposalSettings) -> LengthUnit {
     let unit = file_unit(settings);
     let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, PartDetail::Part(_)));
     if has_parts { unit } else { shown_unit(unit) }
 }
 
-/// Whether a file says its unit itself.
+/// Whether a file states its unit.
 pub(super) fn says_its_unit(path: &Path) -> bool {
     FileSpec::new(path, 1.0).may_say_its_unit()
 }
 
-/// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.
+/// The unit in which a part of this size is between a pea and a door, if it is a common unit.
 fn guess(size: DVec3) -> LengthUnit {
     match size.max_element() {
         most if most < 1.0 => LengthUnit::M,

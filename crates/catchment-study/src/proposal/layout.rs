@@ -56,7 +56,7 @@ impl AxisDirection {
         format!("[{x}, {y}, {z}]")
     }
 
-    /// The opposite one.
+    /// The opposite direction.
     pub(super) const fn opposite(self) -> Self {
         Self(self.0 ^ 1)
     }
@@ -91,16 +91,16 @@ impl FromStr for AxisDirection {
 /// How the two parts may lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PartLayout {
-    /// Docked as drawn, in one frame.
+    /// Docked as drawn, in a common frame.
     Assembled {
         /// The direction in which the moving half comes.
         approach: AxisDirection,
     },
     /// Each in its own frame.
     Facing {
-        /// Where the fixed half faces.
+        /// Facing direction of the fixed half.
         fixed: AxisDirection,
-        /// Where the moving half faces.
+        /// Facing direction of the moving half.
         moving: AxisDirection,
         /// Quarter turns of the moving half about the direction in which it faces.
         turned: u8,
@@ -108,7 +108,8 @@ pub enum PartLayout {
 }
 
 impl PartLayout {
-    /// Each in its own frame, turned so that they lie as they are drawn in one frame: where the frames of parts are one but not their places.
+    /// Each in its own frame, rotated to the orientation of a common drawing: for parts with equal frames but
+    /// unrelated positions.
     pub(super) fn as_drawn(approach: AxisDirection) -> Self {
         let [fixed, moving] = [approach.opposite(), approach];
         let lie = |turned: u8| Self::Facing { fixed, moving, turned };
@@ -119,7 +120,7 @@ impl PartLayout {
         (0..4).map(lie).find(is_one).unwrap_or_else(|| lie(0))
     }
 
-    /// What turns both parts into the frame of the fixed half, the moving half face down above it.
+    /// Rotations of both parts into the frame of the fixed half, with the moving half face down above it.
     pub(super) fn turns(self) -> [DMat3; 2] {
         match self {
             Self::Assembled { approach } => {

@@ -61,37 +61,39 @@ use std::path::{Path, PathBuf};
 /// In which frames the parts are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PartFrames {
-    /// Whichever gives a seat: in one frame, docked, where the parts meet as drawn.
+    /// Either, whichever gives a seat: in a common frame, docked, if the parts meet as drawn.
     #[default]
     Any,
-    /// Both in one, docked.
+    /// Both docked, in a common frame.
     Assembled,
     /// Each in its own.
     Facing,
 }
 
-/// What is known already.
+/// Known facts about the parts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ProposalSettings {
     /// In which frames the parts are drawn.
     pub frames: PartFrames,
     /// The direction in which the moving half comes, of parts drawn docked.
     pub approach: Option<AxisDirection>,
-    /// Where the fixed and the moving half face, of parts in frames of their own.
+    /// Facing directions of the fixed and the moving half, for parts in their own frames.
     pub facing: [Option<AxisDirection>; 2],
-    /// The unit of files that do not say theirs; millimetres without it. The design has the same, but millimetres for files in metres.
+    /// The unit of files that do not state it; default: millimetres. The design has the same unit, but
+    /// millimetres for files in metres.
     pub unit: Option<LengthUnit>,
     /// Errors that are free; whichever the seat holds without it.
     pub free: Option<DofSet>,
     /// The name of the design.
     pub name: Option<String>,
-    /// How far the surface of a file may move so that it is described with fewer triangles, in `unit`.
+    /// Largest displacement of a file's surface by simplification to fewer triangles, in `unit`.
     pub simplify: Option<f64>,
-    /// What belongs to the fixed and to the moving half beside its file.
+    /// Additions to the fixed and to the moving half besides its file.
     pub with: [Vec<PartDetail>; 2],
 }
 
-/// What belongs to a half beside its file, in the coordinates of that: what no export has, or has elsewhere.
+/// An addition to a half besides its file, in the coordinates of the file: features that an export lacks, or
+/// has elsewhere.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PartDetail {
     /// Another file.
@@ -103,11 +105,11 @@ pub enum PartDetail {
 /// A part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartFile {
-    /// Where it is.
+    /// The file.
     pub path: PathBuf,
     /// How the design names it: relative to the folder of the design.
     pub written: String,
-    /// Which of its bodies, the largest first, where it holds several; all of them without a number.
+    /// Number of its body, the largest first, if it holds several; all of them without a number.
     pub body: Option<u16>,
 }
 
@@ -116,11 +118,11 @@ pub struct PartFile {
 pub struct Proposal {
     /// The design file.
     pub text: String,
-    /// What it says, checked.
+    /// The problem of the design, checked.
     pub problem: Problem,
-    /// All ways that were judged, the best first.
+    /// All evaluated candidates, the best first.
     pub candidates: Vec<Candidate>,
-    /// What a person should look at, as sentences.
+    /// Warnings for the user, as sentences.
     pub doubts: Vec<String>,
 }
 
@@ -130,32 +132,32 @@ pub enum ProposalError {
     /// A part cannot be read, or the design that was found is refused.
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// A file does not say its unit, and nobody else does.
+    /// A file does not state its unit, and the settings do not either.
     #[error("{} does not say its unit: the part is {} in its file", shown(path), told(*size))]
     NoUnit {
         /// The file.
         path: PathBuf,
         /// Its extent along x, y and z, in its own coordinates.
         size: [f64; 3],
-        /// What it may be.
+        /// The probable unit.
         guess: LengthUnit,
     },
     /// The parts do not dock.
     #[error("the parts dock in no direction along an axis{}", listed(tried))]
     NoSeat {
-        /// What was tried, the best first, and why not.
+        /// The candidates tried, the best first, with the reasons.
         tried: Vec<String>,
-        /// What would let them: a mirror image, or something narrow left out.
+        /// A remedy: a mirror image, or the removal of a narrow feature.
         remedy: Option<String>,
-        /// What helps besides.
+        /// Further advice.
         advice: Vec<Advice>,
     },
-    /// The computation was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Candidates that a refusal tells.
+/// Largest number of candidates in an error.
 const MOST_TOLD: usize = 4;
 
 fn listed(tried: &[String]) -> String {
@@ -171,13 +173,13 @@ fn told(size: [f64; 3]) -> String {
 const LEAST: f64 = 0.02;
 /// A second best with this share of the score is nearly as good.
 const NEARLY: f64 = 0.8;
-/// Parts whose boxes are nearer than this, in the smaller one's middle extent, may be drawn docked.
+/// Parts whose boxes are closer than this, in the smaller one's middle extent, may be drawn docked.
 const NEAR: f64 = 0.05;
-/// Places that exact contact judges, the least steep as a share of the steepest.
+/// Number of places for exact contact, and the smallest steepness as a share of the largest.
 const JUDGED: usize = 5;
 const JUDGED_STEEP: f64 = 0.3;
 
-/// Both halves, as exact contact and as lattices see them. Lengths in the smaller one's middle extent.
+/// Both halves, for exact contact and for lattices. Lengths in the smaller one's middle extent.
 struct Parts<'a> {
     halves: [&'a Half; 2],
     triangles: [sink::Triangles; 2],
@@ -185,7 +187,7 @@ struct Parts<'a> {
     diagonals: [Vec<AxisDirection>; 2],
     grain: sink::Grain,
     settings: &'a ProposalSettings,
-    /// How lengths are told.
+    /// Unit of lengths in texts.
     told: DisplayUnit,
 }
 
@@ -206,7 +208,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// What was judged, and what was refused.
+/// The evaluated and the rejected candidates.
 #[derive(Default)]
 struct SeatSearch {
     judged: Vec<SeatCandidate>,
@@ -228,10 +230,10 @@ impl SeatSearch {
     }
 }
 
-/// Proposes a design for two parts; it will lie at `place`, to whose folder the parts are written relative.
+/// Proposes a design for two parts, to be stored at `place`; paths of the parts are relative to its folder.
 ///
 /// # Errors
-/// A part that is none or whose unit nobody says, parts that do not dock.
+/// An invalid part or one without a unit, parts that do not dock.
 pub fn propose(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,
@@ -337,7 +339,8 @@ pub fn propose(
     Ok(Proposal { text, problem, candidates, doubts })
 }
 
-/// Parts in frames of their own: the places where one sinks into the other, or the shallow ones where none does.
+/// Parts in their own frames: the places at which one sinks into the other, or the shallow places if there
+/// are none.
 fn anywhere(both: &Parts<'_>, looked: &mut SeatSearch, exec: &Exec) -> Result<(), Cancelled> {
     looked.add(sunk(both, exec)?);
     rank(&mut looked.judged, both.settings.free, both.told, exec)?;
@@ -348,7 +351,7 @@ fn anywhere(both: &Parts<'_>, looked: &mut SeatSearch, exec: &Exec) -> Result<()
     Ok(())
 }
 
-/// The steepest places, as exact contact judges them.
+/// The steepest places, evaluated by exact contact.
 fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, RejectedLayout>>, Cancelled> {
     let facing = both.settings.facing.map(ways);
     let mut found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
@@ -386,7 +389,7 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, Rejec
     }))
 }
 
-/// Parts in frames of their own, judged wherever one may sink into the other.
+/// Parts in their own frames, evaluated at every place at which one may sink into the other.
 fn facing(
     pair: [&Half; 2],
     settings: &ProposalSettings,
@@ -405,7 +408,7 @@ fn is_seat(judged: &SeatCandidate) -> bool {
     matches!(judged.seat, Some(Ok(_))) && judged.score() > LEAST
 }
 
-/// The best first, and what the best and those nearly as good hold.
+/// Ranks the candidates, and evaluates the seats of the best and those of similar score.
 fn rank(
     judged: &mut Vec<SeatCandidate>,
     free: Option<DofSet>,
@@ -447,7 +450,7 @@ fn are_near([fixed, moving]: [&Half; 2]) -> bool {
     (c - b).max(a - d).max_element() < NEAR
 }
 
-/// Offsets that a person would choose: the middles of the parts' boxes together, the origins of their files together.
+/// Natural offsets: the centres of the parts' boxes coincide, or the origins of their files coincide.
 fn round_numbers([fixed, moving]: [&Half; 2], lie: PartLayout) -> [DVec2; 2] {
     let turns = lie.turns();
     let middle = |half: &Half, turn: &DMat3| {

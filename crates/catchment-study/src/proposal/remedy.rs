@@ -15,10 +15,10 @@ use catchment_core::contact::height_map;
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec3;
 
-/// A score below this is a weak one: what a mirror image would have is looked at.
+/// A score below this is weak: the mirror image is tested, too.
 pub(super) const WEAK: f64 = 0.3;
 
-/// What would let them, in words.
+/// The remedy in words.
 pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancelled> {
     match mirrored(both, exec)? {
         Some((_, words)) => Ok(Some(words)),

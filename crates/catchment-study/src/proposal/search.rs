@@ -18,7 +18,7 @@ use glam::{DMat3, DVec2};
 /// Side of a first cell, and the work that all offsets may take: points of the moving part times offsets.
 const CELL: f64 = height_map::NARROW;
 const MOST_WORK: f64 = 4e8;
-/// How much wider cells get where the work is more.
+/// Factor of the cell size if the work would be too large.
 const WIDER: f64 = 1.2;
 /// Lattices after the first.
 const LATTICES: usize = 2;
@@ -26,17 +26,17 @@ const LATTICES: usize = 2;
 const MOST_POINTS: usize = 100_000;
 /// How much finer each next lattice is.
 const FINER: i32 = 4;
-/// Places that are looked at more closely, and those of them of one lie.
+/// Number of places that are refined, and of those with the same orientation.
 const PLACES: usize = 10;
 const OF_ONE: usize = 2;
 /// Heights this near are equal.
 const LEVEL: f32 = 2e-3;
 
-/// A place where parts may dock.
+/// A place at which parts may dock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeatPlace {
     pub(super) lie: PartLayout,
-    /// Where the origin of the turned moving half is, in plan view, in the frame of the fixed one.
+    /// Position of the origin of the rotated moving half, in plan view, in the frame of the fixed half.
     pub(super) offset: DVec2,
     score: f32,
 }
@@ -54,7 +54,8 @@ pub(super) fn places(
     Ok(finer)
 }
 
-/// Something narrow of one half without which the halves would sink into each other, and how they lie then.
+/// A narrow feature of one half without which the halves would sink into each other, and their relative pose
+/// then.
 pub(super) fn obstacle(
     halves: [&Half; 2],
     facing: [&[AxisDirection]; 2],
@@ -79,7 +80,7 @@ fn height_maps([fixed, moving]: [&Half; 2], lie: PartLayout, cell: f64) -> [Heig
     [HeightMap::centered(fixed, &turns[0], 1.0, cell), HeightMap::centered(moving, &turns[1], -1.0, cell)]
 }
 
-/// The most likely places on the first lattice, with what is narrow of one half left out.
+/// The most likely places on the first lattice, without narrow features of one half.
 fn scan(
     [fixed, moving]: [&Half; 2],
     facing: [&[AxisDirection]; 2],
@@ -189,7 +190,7 @@ fn hollows(
     kept.into_iter().map(place).collect()
 }
 
-/// The place on finer and finer lattices: the middle of where the half lies deepest.
+/// The place on finer and finer lattices: the middle of the deepest region.
 fn refined([fixed, moving]: [&Half; 2], mut place: SeatPlace, cell: f64) -> SeatPlace {
     let turns = place.lie.turns();
     let mut cell = cell;

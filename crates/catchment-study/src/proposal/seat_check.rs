@@ -26,20 +26,20 @@ use glam::{DMat3, DVec2};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// A seat that is as steep as this scores one half.
+/// Steepness of a seat with a score of one half.
 pub(super) const STEEP: f64 = 3.5;
-/// How far apart what is drawn docked may be, in D.
+/// Largest distance of halves drawn docked, in D.
 const MOST_APART: f64 = 0.05;
-/// How far off the climb is asked, in D, and what of it counts at most.
+/// Offsets at which the climb is evaluated, in D, and the largest climb that counts.
 const OFF: [f64; 2] = [0.1, 0.3];
 const MOST_CLIMB: f64 = 0.3;
-/// What a seat counts that does not hold.
+/// Factor for a seat that does not hold.
 const LOOSE: f64 = 0.1;
-/// What one counts that holds neither x nor y, one of them, both.
+/// Factors for a seat that constrains neither x nor y, one of them, both.
 const HELD: [f64; 3] = [0.25, 0.75, 1.0];
-/// Turned by a part of a turn the halves are mated where they come as near as this, in D.
+/// After rotation by a part of a turn the halves count as mated if they are this close, in D.
 const ALIKE: f64 = 2e-3;
-/// Rest nearer than this to where it is drawn, in D and radians, is there.
+/// A rest closer than this to the drawn pose, in D and radians, counts as at the drawn pose.
 const AT_REST: f64 = 1e-5;
 /// Play is put in its middle up to this much, in D.
 const MOST_PLAY: f64 = 0.05;
@@ -47,7 +47,7 @@ const MOST_PLAY: f64 = 0.05;
 /// Why parts do not dock as they were laid.
 #[derive(Debug, Clone)]
 pub(super) struct RejectedLayout {
-    /// How far they are from where they would, in the unit of the halves; infinite where no distance says it.
+    /// Distance from contact, in the unit of the halves; infinite if it is not defined.
     pub(super) by: f64,
     pub(super) why: String,
     /// How they were laid.
@@ -79,45 +79,46 @@ impl RejectedLayout {
     }
 }
 
-/// A candidate that was judged. Lengths in the unit of the halves.
+/// An evaluated candidate. Lengths in the unit of the halves.
 #[derive(Debug, Clone)]
 pub(super) struct SeatCandidate {
     pub(super) lie: PartLayout,
     pub(super) width: f64,
-    /// Whether that is more than what can touch, because a half may only be so much wider than D.
+    /// Whether D exceeds the region that can touch, because a half may be only this much wider than D.
     pub(super) is_widened: bool,
-    /// Where the middle of what can touch is in plan view, in the frame of the fixed half, turned.
+    /// Centre of the region that can touch, in plan view, in the rotated frame of the fixed half.
     pub(super) center: DVec2,
-    /// Where the origin of the turned moving half is.
+    /// Position of the origin of the rotated moving half.
     pub(super) offset: DVec2,
     /// How much a half climbs that is off, 0 to 1, and the share of the smaller part's broadest side that can touch.
     pub(super) climb: f64,
     pub(super) shared: f64,
     /// How high the origin of the turned moving half is.
     pub(super) lift: f64,
-    /// What a lattice says of it, where one was asked, and which of the places it is: those that differ by a turn about the approach are one.
+    /// Its result from a lattice, if any, and the number of its place: places that differ by a rotation about
+    /// the approach have the same number.
     pub(super) sunk: Option<Sunk>,
     pub(super) class: usize,
-    /// What it holds, or why it is no seat; nothing while nobody asked.
+    /// Its seat, or the reason why it is not a seat; `None` before evaluation.
     pub(super) seat: Option<Result<Seat, String>>,
     /// The halves in D, mated.
     connector: Connector,
 }
 
-/// What a seat holds.
+/// Properties of a seat.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seat {
     pub(super) free: DofSet,
     pub(super) dont_care: DofSet,
-    /// Where the halves have to settle first, that rest as an error of how they are drawn.
+    /// Pose error of the rest that the halves must first reach, relative to the drawn pose.
     pub(super) settle: Option<PoseError>,
-    /// Turned by this part of a turn they are mated as well; 1 for none.
+    /// Rotated by this part of a turn they are also mated; 1 without symmetry.
     pub(super) symmetry: u32,
-    /// How far off they may rest, where it must be said: D and radians, in the order of [`Dof::ALL`].
+    /// Play that must be stated in the design: D and radians, in the order of [`Dof::ALL`].
     pub(super) play: [Option<f64>; 5],
 }
 
-/// The largest play that counts as a seat's, in D and radians: beyond it no wall is looked for.
+/// The largest play of a seat, in D and radians: beyond it no wall is searched.
 const LOOSEST: [f64; 2] = [0.25, 30.0 / 180.0 * std::f64::consts::PI];
 
 impl SeatCandidate {
@@ -137,7 +138,7 @@ impl SeatCandidate {
         (share * held).max(0.0)
     }
 
-    /// Where a lattice found it.
+    /// Adds the lattice result with which it was found.
     pub(super) fn found(self, sunk: Sunk, class: usize) -> Self {
         Self { sunk: Some(sunk), class, ..self }
     }
@@ -151,7 +152,7 @@ impl SeatCandidate {
         Pair::new(settled.as_ref().unwrap_or(&self.connector), &alignment)
     }
 
-    /// Asks what it holds, which takes the longest.
+    /// Evaluates its seat, which takes the longest.
     pub(super) fn ask(&mut self, free: Option<DofSet>, told: DisplayUnit, exec: &Exec) {
         if self.seat.is_none() {
             let told = DisplayUnit { scale: told.scale * self.width, ..told };
@@ -160,8 +161,9 @@ impl SeatCandidate {
     }
 }
 
-/// Judges halves that lie to each other as `lie` says, the moving one `offset` beside; more offsets may be given that are taken where the
-/// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn, with lengths as `told` has them.
+/// Evaluates halves in the relative orientation `lie`, the moving half at `offset`; further offsets may be
+/// given, which are used if the half lies as deep there. Returns the reason if the halves do not meet or are
+/// not docked as drawn, with lengths in the unit `told`.
 pub(super) fn judge(
     halves: [&Half; 2],
     lie: PartLayout,
@@ -265,7 +267,7 @@ const fn nothing_free() -> Alignment {
     Alignment::new(DofSet::EMPTY, Mount::X)
 }
 
-/// Offsets around none, up to a cell and a half.
+/// Offsets around zero, up to a cell and a half.
 fn rings(cell: f64) -> impl Iterator<Item = DVec2> {
     let steps = [-3i32, -2, -1, 0, 1, 2, 3];
     let mut all: Vec<DVec2> = steps
@@ -276,7 +278,7 @@ fn rings(cell: f64) -> impl Iterator<Item = DVec2> {
     all.into_iter().skip(1)
 }
 
-/// How far from where it is the half lies deepest near, in the middle of its play.
+/// Offset to the deepest position of the half nearby, in the middle of its play.
 fn deepest(fixed: &Half, moving: &Half, width: f64) -> DVec2 {
     let lateral = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
     let alignment = Alignment::new(lateral, Mount::X);
@@ -303,7 +305,7 @@ fn deepest(fixed: &Half, moving: &Half, width: f64) -> DVec2 {
     by
 }
 
-/// How much a half climbs that is off, as a share of what counts at most.
+/// Climb of a half at an offset, as a share of the largest climb that counts.
 fn climb(pair: &Pair) -> f64 {
     const WAYS: u32 = 8;
     let mut sum = 0.0;
@@ -329,7 +331,7 @@ fn symmetry(pair: &Pair) -> u32 {
     FOLDS.into_iter().find(mated).unwrap_or(1)
 }
 
-/// What the seat holds, of what may be free.
+/// Errors that the seat constrains, among those that may be free.
 fn seat(
     connector: &Connector,
     wanted: Option<DofSet>,
@@ -349,7 +351,7 @@ fn seat(
     Err(first.unwrap_or_default())
 }
 
-/// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
+/// The same, starting from a given set; with `exactly` only that set, except for a don't-care yaw.
 fn held(
     connector: &Connector,
     free: DofSet,
@@ -418,7 +420,7 @@ fn held(
     }
 }
 
-/// Whether a half lies as deep all round, to within what counts as seated: looked at every 2.5 degrees.
+/// Whether a half lies equally deep all around, within the docking tolerance: tested every 2.5 degrees.
 fn spins(pair: &Pair) -> bool {
     const LOOKS: u32 = 144;
     let depth = pair.alignment.docked.depth;
@@ -439,7 +441,8 @@ fn leave_out(alignment: &mut Alignment, dof: Dof, is_round: bool) -> Result<(), 
     if alignment.free.is_empty() { Err("it holds nothing".to_owned()) } else { Ok(()) }
 }
 
-/// Says the play of some errors, two digits of it and not less, where walls stop them; returns those that nothing stops.
+/// States the play of some errors, rounded up to two digits, if walls stop them; returns those that nothing
+/// stops.
 fn walls(connector: &Connector, alignment: &mut Alignment, unsaid: DofSet, exec: &Exec) -> DofSet {
     let loosest = |dof: Dof| LOOSEST[usize::from(dof.is_rotation())];
     for dof in unsaid.iter() {

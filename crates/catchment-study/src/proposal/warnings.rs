@@ -5,9 +5,10 @@ use super::halves::design_unit;
 use super::{Candidate, NEARLY, PartFrames, PartLayout, ProposalSettings, SeatCheck, file};
 use catchment_core::design::LengthUnit;
 
-/// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
+/// A half that settles by more than this rotation, or by this offset in D, is reported: 2 degrees, as much
+/// for an arm of half D.
 const MUCH: f64 = 2.0 / 180.0 * std::f64::consts::PI;
-/// Another place with this share of the steepness of the best may be the one that is meant.
+/// Another place with this share of the steepness of the best may be the intended seat.
 const RIVAL: f64 = 0.4;
 /// A place that scores less than this is weak.
 const WEAK: f64 = 0.4;
@@ -28,7 +29,7 @@ pub(super) fn of_size(width: f64, unit: LengthUnit) -> Option<String> {
     })
 }
 
-/// Whether two ways differ only in which end is up, of one of the parts.
+/// Whether two orientations differ only in the end of a part that is up.
 fn is_twin(one: &Candidate, other: &Candidate) -> bool {
     let (PartLayout::Facing { fixed, moving, .. }, PartLayout::Facing { fixed: f, moving: m, .. }) =
         (one.lie, other.lie)
@@ -40,7 +41,7 @@ fn is_twin(one: &Candidate, other: &Candidate) -> bool {
         && (fixed, moving) != (f, m)
 }
 
-/// What a person should look at.
+/// The warnings for the user.
 pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<String> {
     let [best, others @ ..] = candidates else { return Vec::new() };
     let mut doubts = Vec::new();

@@ -163,7 +163,7 @@ pub enum SensitivityError {
     Geometry {
         /// The ratio.
         aspect_ratio: f64,
-        /// What is wrong with them.
+        /// Description of the error.
         problem: String,
     },
     /// Nothing to compare.
@@ -172,7 +172,7 @@ pub enum SensitivityError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -347,7 +347,7 @@ impl<'a> CommonPoses<'a> {
     }
 }
 
-/// The poses that fare differently under two conditions.
+/// The poses with different outcomes under two conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Discordance {
     poses: usize,
@@ -365,7 +365,7 @@ impl Discordance {
         }
     }
 
-    /// Share of the poses by which the accepted ones grow.
+    /// Increase of the accepted share of the poses.
     fn difference(self) -> f64 {
         (self.gained as f64 - self.lost as f64) / self.poses as f64
     }

@@ -30,11 +30,12 @@ use catchment_core::problem::Problem;
 use rayon::prelude::*;
 use std::time::Duration;
 
-/// Errors that are drawn for each that is followed: their share of the doubt is that of as many plain motions.
+/// Number of errors drawn for each that is followed: the uncertainty of their shares equals that of as many
+/// plain motions.
 const DRAWN_PER_MOTION: usize = 256;
 const FEWEST_DRAWN: usize = 1 << 16;
 const MOST_DRAWN: usize = 1 << 21;
-/// Errors drawn between two looks at whether to stop.
+/// Number of errors drawn between two checks for cancellation.
 const BLOCK: usize = 4096;
 
 /// A pose that was followed.
@@ -44,13 +45,13 @@ pub(crate) struct FollowedError {
     pub(super) number: u64,
     /// The share of all errors that it stands for.
     pub(crate) weight: f64,
-    /// What became of it.
+    /// Its outcome.
     pub(crate) outcome: Outcome,
     /// Its stratum.
     pub(super) stratum: usize,
 }
 
-/// What a sample says.
+/// Result of a sample.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
     /// Probability of docking, in [0, 1], and its 95 % interval.
@@ -64,14 +65,14 @@ pub(crate) struct Sample {
     pub(crate) plain: f64,
     /// The poses that were followed.
     pub(crate) poses: Vec<FollowedError>,
-    /// What was seen of every stratum that has errors.
+    /// Results of every non-empty stratum.
     pub(crate) strata: Vec<ErrorStratum>,
     /// The stratum of every error that was drawn.
     pub(super) labels: Vec<u8>,
     /// Share that docks, by stratum, and the same drawn towards a half.
     pub(super) docks: [f64; STRATA],
     pub(super) doubted: [f64; STRATA],
-    /// Poses that would know the share of the stratum as well, if drawn at one go.
+    /// Effective sample sizes of the strata.
     pub(super) trials: [f64; STRATA],
 }
 
@@ -89,7 +90,7 @@ pub(super) fn sample(
     })
 }
 
-/// The same of anything that becomes of errors: `follow` has their strata and numbers.
+/// The same for any decision of errors: `follow` receives their strata and numbers.
 pub(crate) fn sample_by<E: From<Cancelled>>(
     source: &Source<'_>,
     factors: &[f64; 5],
@@ -148,7 +149,7 @@ fn labels(
     Ok(labels)
 }
 
-/// What becomes of errors, by their numbers.
+/// Outcomes of errors, by their numbers.
 fn follow(
     problem: &Problem,
     source: &Source<'_>,
@@ -175,7 +176,8 @@ impl Sample {
         self.labels.len()
     }
 
-    /// dP/dσ by every σ that varies, in 1/D or 1/rad, with its interval; none where the density has no derivative.
+    /// dP/dσ for every σ that varies, in 1/D or 1/rad, with its interval; empty if the density has no
+    /// derivative.
     pub(super) fn slopes(&self, source: &Source<'_>, exec: &Exec) -> Result<Vec<Slope>, Cancelled> {
         if !source.has_scores() || self.labels.is_empty() {
             return Ok(Vec::new());
@@ -260,7 +262,7 @@ pub(super) fn as_expected(
     sample(problem, source, &SAME, strata, motions, exec)
 }
 
-/// Factors that change one σ alone.
+/// Factors that change only one σ.
 pub(super) fn alone(axis: Dof, factor: f64) -> [f64; 5] {
     let mut factors = SAME;
     factors[axis.index()] = factor;

@@ -28,7 +28,7 @@ use rayon::prelude::*;
 
 /// Failures of the sample that are bisected.
 const NEAREST: usize = 64;
-/// Where nothing failed: how far out it is looked, in σ or half-widths.
+/// Search range if no sample failed, in σ or half-widths.
 const FAR: f64 = 8.0;
 const FAR_UNIFORM: f64 = 3.0;
 /// Relative width to which they are.
@@ -43,7 +43,7 @@ const NEARER: f64 = 0.998;
 /// The stream of the moves.
 const BRANCH: u64 = 0xfa11;
 
-/// What fails of a sample, and the motions that it took to find what fails first.
+/// The failures of a sample, and the number of motions in the search for the nearest failure.
 pub(super) fn failures(
     problem: &Problem,
     source: &Source<'_>,
@@ -73,7 +73,7 @@ pub(super) fn failures(
     Ok((found, motions))
 }
 
-/// Where failures lie, error by error.
+/// Statistics of failures, error by error.
 fn along(source: &Source<'_>, sample: &Sample) -> Vec<AlongAxis> {
     let mean = |axis: usize, docked: bool| {
         let (mut sum, mut weight) = (0.0, 0.0);
@@ -92,7 +92,7 @@ fn along(source: &Source<'_>, sample: &Sample) -> Vec<AlongAxis> {
     source.varying().map(of).collect()
 }
 
-/// A failing error: its direction, and how far along it.
+/// A failing error: its direction, and its distance along it.
 #[derive(Debug, Clone, Copy)]
 struct Failing {
     z: [f64; 5],
@@ -166,7 +166,8 @@ fn moved(
     (distance > 0.0).then(|| z.map(|part| part * NEARER * failing.distance / distance))
 }
 
-/// Of these errors, the one that fails nearest to the mean once it is bisected; and how many motions that took.
+/// The error, of those given, whose failure is nearest to the mean after bisection; and the number of
+/// motions.
 fn nearest(
     problem: &Problem,
     source: &Source<'_>,

@@ -24,7 +24,7 @@ pub(super) const FEWEST: usize = 8;
 /// Chance that a normal spread is rejected.
 const LEVEL: f64 = 0.05;
 
-/// Tests the rows of a measured spread; none of any other, or of too few rows.
+/// Tests the rows of a measured spread; `None` for other spreads, or too few rows.
 pub(super) fn fit(spread: &Spread) -> Option<NormalFit> {
     let Spread::Measured { poses, .. } = spread else { return None };
     if poses.len() < FEWEST {
@@ -65,7 +65,7 @@ fn of_axis(axis: Dof, poses: &[PoseError], moments: &Moments) -> AxisFit {
 
 /// The statistic of standardised values in ascending order, corrected for their number.
 fn anderson_darling(y: &[f64]) -> f64 {
-    /// What the logarithm of a tail is kept above.
+    /// Lower bound of the logarithm of a tail.
     const LEAST: f64 = 1e-300;
     let n = y.len() as f64;
     let below = |v: f64| (0.5 * libm::erfc(-v / SQRT_2)).max(LEAST);
@@ -76,7 +76,7 @@ fn anderson_darling(y: &[f64]) -> f64 {
     (-n - sum / n) * (1.0 + 0.75 / n + 2.25 / (n * n))
 }
 
-/// Chance of a normal spread to have such a statistic or a larger one.
+/// Probability of this or a larger statistic for a normal spread.
 fn anderson_darling_p(a: f64) -> f64 {
     /// Beyond it the formula turns back.
     const LARGEST: f64 = 13.0;
@@ -93,7 +93,7 @@ fn anderson_darling_p(a: f64) -> f64 {
     p.clamp(0.0, 1.0)
 }
 
-/// Mardia's kurtosis and its p-value; none where errors follow from each other.
+/// Mardia's kurtosis and its p-value; `None` if errors are linearly dependent.
 fn kurtosis(poses: &[PoseError], moments: &Moments, varying: &[Dof]) -> Option<[f64; 2]> {
     /// Smaller than that an error has nothing of its own.
     const OWN: f64 = 1e-6;
@@ -147,7 +147,8 @@ mod tests {
         }
     }
 
-    /// Of so many normal samples about one in twenty may be rejected: 5 ± 5 standard errors of 1.5 % of 200.
+    /// About one in twenty of this many normal samples may be rejected: 5 ± 5 standard errors of 1.5 % of
+    /// 200.
     #[test]
     fn normal_rows_are_rejected_as_seldom_as_promised() {
         let rejected = (0..200).filter(|seed| fit(&rows(100, *seed, |x| x)).unwrap().rejected).count();

@@ -16,10 +16,10 @@ use super::{Improvement, Slope};
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::problem::Problem;
 
-/// The improvement that is looked at.
+/// Factor of the improvement.
 const HALF: f64 = 0.5;
 
-/// What it helps to improve each error, the most helpful first; and the motions that this took.
+/// Effect of an improvement of each error, largest effect first; and the number of motions.
 pub(super) fn gains(
     problem: &Problem,
     source: &Source<'_>,
@@ -69,7 +69,8 @@ pub(super) fn gains(
     Ok((improvements, followed))
 }
 
-/// The interval of the difference of two probabilities (Zou and Donner, Stat. Med. 27 (2008) 1693), as of independent ones.
+/// The interval of the difference of two probabilities (Zou and Donner, Stat. Med. 27 (2008) 1693), as if
+/// independent.
 fn difference((a, [a_lo, a_hi]): (f64, [f64; 2]), (b, [b_lo, b_hi]): (f64, [f64; 2])) -> [f64; 2] {
     [a - b - (a - a_lo).hypot(b_hi - b), a - b + (a_hi - a).hypot(b - b_lo)]
 }

@@ -95,7 +95,7 @@ pub enum SuccessError {
     /// A success that cannot be required.
     #[error("a success of {required} cannot be required: above 0 and below 1")]
     Required {
-        /// What was.
+        /// The given value.
         required: f64,
     },
     /// Too few motions.
@@ -104,7 +104,7 @@ pub enum SuccessError {
         /// How many.
         motions: usize,
     },
-    /// Errors of what the design locks.
+    /// Errors that the design locks.
     #[error("{robot}: {} does not vary in this design, which locks it", axis.name())]
     Locked {
         /// The robot.
@@ -121,7 +121,7 @@ pub enum SuccessError {
     /// The grid was not decided.
     #[error(transparent)]
     Decide(#[from] DecideError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -132,10 +132,11 @@ pub const FEWEST_MOTIONS: usize = 100;
 const PARTS: [f64; 6] = [0.0, 0.08, 0.2, 0.3, 0.5, 1.0];
 /// Factors of the curve beside those that are tried for the required success.
 const CURVE: [f64; 7] = [0.25, 0.5, 0.75, 1.2, SQRT_2, 1.7, 2.0];
-/// Motions of a probability, as a multiple of the random poses of a run: one takes a tenth of a millisecond or less between simple halves.
+/// Motions of a probability, as a multiple of the samples of a run: a motion takes a tenth of a millisecond
+/// or less between simple halves.
 const PER_SAMPLE: usize = 2;
 
-/// Asks whether robots dock.
+/// Computes the success probability of robots.
 ///
 /// # Errors
 /// See [`SuccessError`].

@@ -6,7 +6,7 @@ use super::strata::{STRATA, name};
 use catchment_core::acceptance::Outcome;
 use catchment_core::method::correction::{CombinedShares, StratumCounts, wilson95};
 
-/// Errors that were drawn, by stratum, and what was followed of them in batches.
+/// Sampled errors, by stratum, and the results of those followed in batches.
 #[derive(Debug)]
 pub(super) struct DrawnErrors {
     /// Whether there are no strata: every error is followed.
@@ -14,7 +14,7 @@ pub(super) struct DrawnErrors {
     labels: Vec<u8>,
     /// The numbers of the errors of each stratum.
     members: Vec<Vec<u32>>,
-    /// Strata that have errors, and what was seen of them.
+    /// Non-empty strata, and their results.
     present: Vec<usize>,
     records: Vec<Record>,
     /// Sizes of the batches, and their sum.
@@ -33,7 +33,7 @@ struct Pose {
 }
 
 impl DrawnErrors {
-    /// Errors by their strata, none followed yet.
+    /// Errors by their strata, before any is followed.
     pub(super) fn new(labels: Vec<u8>, is_plain: bool) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); STRATA];
         for (number, label) in labels.iter().enumerate() {
@@ -57,7 +57,7 @@ impl DrawnErrors {
         &self.members[self.present[place]]
     }
 
-    /// What was seen of every stratum.
+    /// Results of every stratum.
     pub(super) fn seen(&self) -> Vec<StratumCounts> {
         let seen = |(place, record): (usize, &Record)| {
             record.seen(self.share(place), self.of(place).len(), self.total, &self.sizes)
@@ -77,7 +77,7 @@ impl DrawnErrors {
         numbered
     }
 
-    /// Takes what became of a batch.
+    /// Adds the outcomes of a batch.
     pub(super) fn take(&mut self, size: usize, numbered: &[(usize, u64)], outcomes: &[Outcome]) {
         self.records.iter_mut().for_each(Record::begin);
         for ((place, number), outcome) in numbered.iter().zip(outcomes) {
@@ -89,7 +89,7 @@ impl DrawnErrors {
         self.total += size;
     }
 
-    /// What all of it says. `measurements`: so many, of which rows were drawn again and again.
+    /// The combined result. `measurements`: the number of rows, if rows were sampled repeatedly.
     pub(super) fn sample(self, whole: &CombinedShares, measurements: Option<usize>) -> Sample {
         /// Poses of either kind by which the share of a stratum is drawn towards a half (Agresti and Coull 1998).
         const PRIOR: f64 = 2.0;
@@ -142,14 +142,14 @@ impl DrawnErrors {
     }
 }
 
-/// Both doubts together, as of independent ones.
+/// Both uncertainties combined, as if independent.
 fn widened(middle: f64, [lo, hi]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     let down = (middle - lo).hypot(middle - other[0]);
     let up = (hi - middle).hypot(other[1] - middle);
     [(middle - down).max(0.0), (middle + up).min(1.0)]
 }
 
-/// Plain motions whose Wilson interval at this probability is as wide as this one.
+/// Number of plain motions whose Wilson interval at this probability is as wide as this one.
 fn plain_motions(probability: f64, [lo, hi]: [f64; 2]) -> f64 {
     /// Halvings of the exponent: far finer than anybody reads.
     const HALVINGS: usize = 60;
@@ -162,7 +162,7 @@ fn plain_motions(probability: f64, [lo, hi]: [f64; 2]) -> f64 {
     libm::exp(many)
 }
 
-/// What was seen of a stratum, batch by batch.
+/// Results of a stratum, batch by batch.
 #[derive(Debug, Clone, Default)]
 struct Record {
     /// Followed, docked, undecided.
@@ -211,7 +211,7 @@ impl Record {
         seen
     }
 
-    /// What a pose of a batch counts, of the stratum.
+    /// Weight of a pose of a batch, in the stratum.
     fn weight(&self, batch: usize, members: usize, total: usize, sizes: &[usize]) -> f64 {
         if self.is_exhausted(members) {
             return 1.0 / self.followed() as f64;

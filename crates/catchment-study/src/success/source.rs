@@ -24,7 +24,7 @@ pub(crate) const SAME: [f64; 5] = [1.0; 5];
 pub(crate) struct Source<'a> {
     law: Law<'a>,
     mean: [f64; 5],
-    /// Standard deviations; half-widths where errors are uniform.
+    /// Standard deviations; half-widths for uniform errors.
     scale: [f64; 5],
     /// L of the correlations of errors in units of `scale`.
     factor: Matrix,
@@ -37,7 +37,7 @@ pub(crate) struct Source<'a> {
 enum Law<'a> {
     Normal,
     Uniform,
-    /// A face of the uniform box: this error is at one end or the other.
+    /// A face of the uniform box: this error is at either end.
     Face(Dof),
     /// Rows in their order.
     Rows(&'a [PoseError]),
@@ -45,11 +45,12 @@ enum Law<'a> {
     AnyRows(&'a [PoseError]),
 }
 
-/// Random numbers of one pose: five normal ones, by pairs, and which row.
+/// Random numbers of a pose: five normal numbers, by pairs, and the number of the row.
 const NUMBERS: u64 = 6;
 
 impl<'a> Source<'a> {
-    /// Of a spread; of measured errors every row once where `rows` of them are followed, else any of them.
+    /// Errors of a spread; for measured errors every row once if `rows` of them are followed, else random
+    /// rows.
     pub(crate) fn of(spread: &'a Spread, rows: usize, seed: u64) -> Self {
         let Moments { mean, sigma, correlation } = spread.moments();
         let mut scale = sigma.to_array();
@@ -73,12 +74,12 @@ impl<'a> Source<'a> {
         Self { motions: motions.clone(), ..self }
     }
 
-    /// The faces of the box of a uniform spread across one error.
+    /// The faces of the box of a uniform spread across a given error.
     pub(super) fn on_face(&self, axis: Dof) -> Self {
         Self { law: Law::Face(axis), ..self.clone() }
     }
 
-    /// How many errors there are, where they are not as many as one likes.
+    /// Number of errors, if it is limited.
     pub(super) const fn rows(&self) -> Option<usize> {
         match self.law {
             Law::Rows(rows) => Some(rows.len()),
@@ -120,7 +121,7 @@ impl<'a> Source<'a> {
         matches!(self.law, Law::Uniform | Law::Face(_))
     }
 
-    /// The range that errors lie in, as good as all of them where they have none: what is worth looking at beforehand.
+    /// The range of an error, practically all of it for unbounded errors: the range of the guiding grid.
     pub(super) fn range(&self, axis: Dof) -> [f64; 2] {
         /// Beyond so many σ a normal error lies once in two thousand.
         const NORMAL: f64 = 3.5;
@@ -176,7 +177,7 @@ impl<'a> Source<'a> {
         PoseError::from_array(std::array::from_fn(|k| self.mean[k] + factors[k] * self.scale[k] * y[k]))
     }
 
-    /// How far from the mean, in σ: Mahalanobis' distance; in half-widths where errors are uniform.
+    /// Distance from the mean, in σ: Mahalanobis distance; in half-widths for uniform errors.
     pub(super) fn distance(&self, z: &[f64; 5]) -> f64 {
         let length =
             |v: &[f64; 5]| self.varying().map(|dof| v[dof.index()] * v[dof.index()]).sum::<f64>().sqrt();
@@ -187,7 +188,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Whether the density has a derivative by every σ: errors are normal, and none of them follows from the others.
+    /// Whether the density has a derivative by every σ: errors are normal and linearly independent.
     pub(super) fn has_scores(&self) -> bool {
         /// Smaller than that a correlation leaves nothing of an error's own.
         const OWN: f64 = 1e-4;
@@ -207,7 +208,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Five independent standard normal numbers of six uniform ones (Box and Muller, 1958).
+/// Five independent standard normal numbers from six uniform ones (Box and Muller, 1958).
 pub(crate) fn normals(uniform: impl Fn(u64) -> f64) -> [f64; 5] {
     let mut z = [0.0; 5];
     for (pair, values) in z.chunks_mut(2).enumerate() {

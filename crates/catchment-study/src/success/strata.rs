@@ -20,11 +20,12 @@ use catchment_core::method::{DecideError, affordable, confluence, descent};
 use catchment_core::pose::{Dof, DofSet, PoseError};
 use catchment_core::problem::Problem;
 
-/// Cells per axis of grids of one to five axes, of simple halves: about as many motions as are followed afterwards, or fewer.
+/// Cells per axis of grids of one to five axes, for simple halves: about as many motions as are followed
+/// afterwards, or fewer.
 const CELLS: [usize; 5] = [256, 80, 28, 14, 10];
 /// Cells of a grid that is decided cell by cell.
 const ALONE: f64 = 2048.0;
-/// Fewer per axis say nothing.
+/// Smallest useful number of cells per axis.
 const LEAST: usize = 6;
 /// Half-width of the only cell of an error that is always the same, in D or radians.
 const STILL: f64 = 1e-3;
@@ -48,8 +49,8 @@ pub(crate) struct Strata {
 }
 
 impl Strata {
-    /// Decides a grid for the errors of a source; none where halves are so intricate, or `cells` per axis so few, that it would say
-    /// nothing.
+    /// Decides a grid for the errors of a source; `None` if halves have too many facets, or `cells` per axis
+    /// are too few, for a useful grid.
     pub(crate) fn decide(
         problem: &Problem,
         source: &Source<'_>,
@@ -155,7 +156,7 @@ fn band(share: f64, outside: bool) -> usize {
     }
 }
 
-/// What a stratum holds, for people.
+/// Description of a stratum, for people.
 pub(super) fn name(stratum: usize) -> String {
     let [first, .., last] = BANDS;
     match stratum {
@@ -177,7 +178,7 @@ pub(super) fn name(stratum: usize) -> String {
 mod tests {
     use super::*;
 
-    /// A grid over x and yaw whose cells dock where x is negative.
+    /// A grid over x and yaw whose cells with negative x dock.
     fn half() -> Strata {
         let axis = |dof, cells| GridAxis { dof, lo: -1.0, hi: 1.0, cells };
         let grid = Grid { axes: vec![axis(Dof::X, 4), axis(Dof::Yaw, 3)] };

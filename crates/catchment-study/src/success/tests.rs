@@ -93,7 +93,8 @@ fn of_one_offset_everything_is_the_closed_form() {
     assert!((robot.failures.share - (1.0 - robot.probability)).abs() < 1e-12);
 }
 
-/// Uniform within ±h: P = 1/(2h) and dP/dh = −P/h, where faces always fail; halved within the V entirely.
+/// Uniform within ±h: P = 1/(2h) and dP/dh = −P/h, because faces always fail; with h halved all errors are
+/// within the V.
 #[test]
 fn of_uniform_offsets_too() {
     let problem = problem(Family::VFace, free(&[Dof::X]));
@@ -194,7 +195,7 @@ fn it_is_the_same_on_any_number_of_threads() {
     assert_eq!(one, on(4));
 }
 
-/// The pyramid is the same from all four sides: so are what x and y gain, within what the sample leaves open.
+/// The pyramid has fourfold symmetry: the gains of x and y are equal, within the uncertainty of the sample.
 #[test]
 fn alike_errors_gain_alike() {
     let found = run(&pyramid(), &one(of(0.3, 0.1, &[Dof::Yaw], true)), &quick(), &Exec::new()).unwrap();
@@ -273,8 +274,9 @@ fn cases() -> [Case; 4] {
     ]
 }
 
-/// Of `repeats` samples of `motions`, how many hold the probability of the reference; how many hold that of a piece of 10⁵ plain motions
-/// of it; and the mean of plain motions that would be as sure, for each motion.
+/// For `repeats` samples of `motions`: the share whose interval contains the probability of the reference;
+/// the number that contains that of a piece of 10⁵ plain motions of it; and the mean effective sample size
+/// per motion.
 fn coverage(case: &Case, sigma: f64, repeats: u64, motions: usize, reference: usize) -> (f64, u64, u64, f64) {
     const PIECE: usize = 100_000;
     let spread = (case.spread)(sigma);
@@ -301,7 +303,8 @@ fn coverage(case: &Case, sigma: f64, repeats: u64, motions: usize, reference: us
     (exact.probability, held, held_piece, ratio)
 }
 
-/// A smaller version of the study below: of 20 intervals at most 4 may miss (one test in 400 would, were 95 % exact).
+/// A smaller version of the study below: of 20 intervals at most 4 may miss (one test in 400 would fail with
+/// exact 95 % coverage).
 #[test]
 fn intervals_hold_the_probability_of_plain_motions() {
     for case in &cases()[..2] {
@@ -322,7 +325,7 @@ fn coverage_of_tables(case: &Case, sigma: f64, repeats: u64, rows: u64, referenc
     (exact, held.count() as u64)
 }
 
-/// Tables say what they leave open: of 20 intervals at most 4 may miss.
+/// Intervals of tables include their uncertainty: of 20 intervals at most 4 may miss.
 #[test]
 fn intervals_of_tables_hold_the_probability_behind_them() {
     let case = &cases()[2];
@@ -350,7 +353,8 @@ fn study_of_coverage() {
 /// Plain motions that stand for the exact probability.
 const REFERENCE: usize = 500_000;
 
-/// Offsets alone on facets of a slope of 0.2: with less friction as without any, with more nothing docks but what starts in the seat.
+/// Offsets alone on facets of a slope of 0.2: with less friction the result is the frictionless one, with
+/// more only poses that start in the seat dock.
 #[test]
 fn friction_above_the_slope_leaves_what_starts_in_the_seat() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";

@@ -23,8 +23,8 @@ use std::f64::consts::SQRT_2;
 /// Steps of √2 down and up from 1 that are tried at most: from 1/16 to 4.
 const DOWN: i32 = 8;
 const UP: i32 = 4;
-/// How often the middle is looked at between two factors around the crossing, of the probability and of both ends of its interval: √2 apart
-/// at first, then 4 % and 9 %.
+/// Number of bisections between two factors around the crossing, of the probability and of both ends of its
+/// interval: √2 apart at first, then 4 % and 9 %.
 const HALVINGS: [usize; 3] = [3, 2, 2];
 
 /// The probability at some factors, in ascending order, and how many motions that took.
@@ -58,7 +58,7 @@ impl<'a> Curve<'a> {
         &self.points
     }
 
-    /// Takes over what is known of the errors as they are.
+    /// Adopts the known result for the errors as given.
     pub(super) fn know(&mut self, found: &Sample) {
         self.put(1.0, found);
     }
@@ -69,7 +69,7 @@ impl<'a> Curve<'a> {
         self.points.insert(place, point);
     }
 
-    /// Looks at a factor, if it was not looked at before.
+    /// Evaluates a factor, unless it is known.
     pub(super) fn look(&mut self, factor: f64, exec: &Exec) -> Result<AtFactor, Cancelled> {
         if let Some(known) = self.points.iter().find(|point| point.factor == factor) {
             return Ok(*known);
@@ -135,7 +135,7 @@ enum Crossing {
     At(f64),
     /// Even the largest factor that was tried is not too large.
     Beyond,
-    /// Even the smallest one is.
+    /// It is missed even at the smallest factor.
     Never,
 }
 
@@ -149,13 +149,13 @@ impl Crossing {
     }
 }
 
-/// The two factors between which a value first falls below what is required.
+/// The two factors between which a value first falls below the required one.
 fn bracket(points: &[AtFactor], required: f64, value: fn(&AtFactor) -> f64) -> Option<[AtFactor; 2]> {
     let after = points.iter().position(|point| value(point) < required)?;
     Some([*points.get(after.checked_sub(1)?)?, points[after]])
 }
 
-/// Where a value first falls below what is required.
+/// The factor at which a value first falls below the required one.
 fn crossing(points: &[AtFactor], required: f64, value: impl Fn(&AtFactor) -> f64) -> Crossing {
     let Some(k) = points.iter().position(|point| value(point) < required) else { return Crossing::Beyond };
     if k == 0 {

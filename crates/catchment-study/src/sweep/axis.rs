@@ -25,10 +25,10 @@ pub enum SweepAxisError {
         /// As written.
         text: String,
     },
-    /// The key is none.
+    /// The key is unknown.
     #[error("{defect}{}", advice(defect))]
     Key {
-        /// What is wrong with it.
+        /// The error.
         defect: DesignDefect,
     },
     /// A value is empty or stands twice.
@@ -41,7 +41,7 @@ pub enum SweepAxisError {
         /// Twice, or without anything in it.
         how: &'static str,
     },
-    /// A range is none.
+    /// An invalid range.
     #[error(
         "`{text}` is no range: write first..last/number, such as -1..1/5, the number from 2 to {}",
         SweepAxis::MOST
@@ -57,7 +57,7 @@ fn advice(defect: &DesignDefect) -> String {
 }
 
 impl SweepAxis {
-    /// Most values of one axis.
+    /// Largest number of values of an axis.
     pub const MOST: usize = 1000;
 
     /// The last word of its key.
@@ -65,7 +65,8 @@ impl SweepAxis {
         self.key.rsplit('.').next().unwrap_or_default()
     }
 
-    /// Its values as numbers in the unit that all of them have, with that unit's name; `None` where they are no such numbers.
+    /// Its values as numbers in their common unit, with that unit's name; `None` if they are not such
+    /// numbers.
     pub fn numbers(&self) -> Option<(Vec<f64>, String)> {
         let quantities: Vec<Quantity> =
             self.values.iter().map(|value| value.parse().ok()).collect::<Option<_>>()?;
@@ -123,7 +124,7 @@ impl FromStr for SweepAxis {
     }
 }
 
-/// What stands between commas that are in no quotes and no brackets.
+/// The parts between commas outside quotes and brackets.
 fn parts(list: &str) -> Vec<&str> {
     let (mut depth, mut quote, mut start, mut found) = (0usize, None, 0, Vec::new());
     for (at, c) in list.char_indices() {
@@ -143,13 +144,13 @@ fn parts(list: &str) -> Vec<&str> {
     found
 }
 
-/// Whether a value means several: a number, two dots. Paths begin otherwise.
+/// Whether a value denotes a range: a number, two dots. Paths begin differently.
 fn is_range(part: &str) -> bool {
     part.split_once("..").is_some_and(|(first, _)| first.trim().parse::<Quantity>().is_ok())
 }
 
-/// `first..last/number`, with a unit behind the last: so many values at equal distances, written with no more digits than tell them
-/// apart.
+/// `first..last/number`, with a unit after the last: this number of equidistant values, written with only as
+/// many digits as distinguish them.
 fn range(text: &str) -> Result<Vec<String>, SweepAxisError> {
     let wrong = || SweepAxisError::Range { text: short(text) };
     let (ends, number) = text.rsplit_once('/').ok_or_else(wrong)?;

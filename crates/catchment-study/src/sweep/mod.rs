@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::io;
 
-/// Most designs of one sweep.
+/// Largest number of designs of a sweep.
 pub const MOST: usize = 100_000;
 
 /// Bytes that the figures of a design take while all are held, without its outline.
@@ -158,14 +158,14 @@ pub struct Sweep {
     pub smallest: Option<usize>,
 }
 
-/// Where finished designs are kept, so that a sweep that was stopped goes on where it was.
+/// Storage of finished designs, so that a stopped sweep can be resumed.
 pub trait DesignStore: Sync {
-    /// What was kept under a key, if it can be read.
+    /// The result stored under a key, if it can be read.
     fn find(&self, key: &str) -> Option<DesignResult>;
-    /// Keeps it.
+    /// Stores a result.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     fn keep(&self, key: &str, found: &DesignResult) -> io::Result<()>;
 }
 
@@ -194,7 +194,7 @@ pub enum SweepError {
     Key {
         /// The key.
         key: String,
-        /// What is wrong.
+        /// The error.
         defect: Box<DesignDefect>,
     },
     /// A key has two axes.
@@ -226,23 +226,24 @@ pub enum SweepError {
         /// Why the first of them cannot.
         reason: String,
     },
-    /// What was finished cannot be kept.
+    /// Results cannot be stored.
     #[error("cannot keep what is finished: {0}")]
     Keep(#[source] io::Error),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl SweepPlan {
-    /// Reads every design of a sweep: `source` with the keys of the axes replaced. `change` is applied to each, as options of a
-    /// command line are.
+    /// Reads every design of a sweep: `source` with the keys of the axes replaced. `change` is applied to
+    /// each, as with options of a command line.
     ///
     /// # Errors
-    /// A value that its key cannot have, shown in the text with that value in it; two axes of one key; no axis or too many designs.
+    /// A value that its key cannot have, shown in the text with that value in it; two axes of the same key;
+    /// no axis or too many designs.
     pub fn new(
         source: &SourceText,
         settings: SweepSettings,
@@ -289,12 +290,12 @@ impl SweepPlan {
         self.drafts.len()
     }
 
-    /// Whether there are none; there always are.
+    /// Whether the sweep is empty; it never is.
     pub fn is_empty(&self) -> bool {
         self.drafts.is_empty()
     }
 
-    /// The design as its file has it, without what is swept in its name.
+    /// The design as in its file, without the swept parameters in its name.
     pub const fn base(&self) -> &Design {
         &self.base
     }
@@ -313,16 +314,16 @@ impl SweepPlan {
     /// The key that [`DesignStore`] has a design under; `None` where its halves do not build.
     ///
     /// # Errors
-    /// None at present: every run has a JSON form.
+    /// Never at present: every run has a JSON form.
     pub fn key(&self, number: usize) -> Result<Option<String>, SweepError> {
         let Ok(problem) = self.drafts[number].clone().build() else { return Ok(None) };
         key(&problem, &self.settings.run).map(Some).map_err(SweepError::Keep)
     }
 
-    /// Computes every design, but for those that `keep` has already, and keeps each as soon as it is finished.
+    /// Computes every design, except for those in `keep`, and stores each as soon as it is finished.
     ///
     /// # Errors
-    /// See [`SweepError`]. What was finished until then is kept.
+    /// See [`SweepError`]. The designs finished until then are stored.
     pub fn run(self, keep: &dyn DesignStore, exec: &Exec) -> Result<Sweep, SweepError> {
         let Self { settings, drafts, .. } = self;
         let count = drafts.len();
@@ -366,7 +367,7 @@ impl SweepPlan {
     }
 }
 
-/// The values of one combination, the last axis fastest.
+/// The values of a combination, the last axis fastest.
 fn combination(axes: &[SweepAxis], number: usize) -> impl Iterator<Item = &str> {
     let mut stride = axes.iter().map(|axis| axis.values.len()).product::<usize>().max(1);
     let mut rest = number;
@@ -378,7 +379,7 @@ fn combination(axes: &[SweepAxis], number: usize) -> impl Iterator<Item = &str> 
     })
 }
 
-/// One design, computed or taken from what is kept.
+/// A design, computed or taken from storage.
 fn one(draft: &Draft, run: &Run, keep: &dyn DesignStore, exec: &Exec) -> Result<DesignResult, SweepError> {
     let problem = match draft.clone().build().and_then(Problem::checked) {
         Ok(problem) => problem,
@@ -399,7 +400,7 @@ fn one(draft: &Draft, run: &Run, keep: &dyn DesignStore, exec: &Exec) -> Result<
     Ok(found)
 }
 
-/// What is wrong with a design and what helps, in one line.
+/// The error of a design with advice, in one line.
 fn reason(error: &ProblemError) -> String {
     let said = |Diagnostic { message, help, .. }: &Diagnostic| match help {
         Some(help) => format!("{message}; {help}"),

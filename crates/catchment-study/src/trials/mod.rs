@@ -33,14 +33,14 @@ use glam::DVec2;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone)]
 pub struct TrialsSettings {
-    /// What decides single poses.
+    /// Method that decides single poses.
     pub method: Method,
-    /// Trials along every free translation, one study each.
+    /// Number of trials along every free translation, for each study.
     pub resolutions: Vec<usize>,
-    /// How often the time step is halved, for methods that have one.
+    /// Number of halvings of the time step, for methods with a time step.
     pub halvings: u32,
     /// Seed of the places in the cells.
     pub seed: u64,
@@ -114,13 +114,13 @@ pub struct Trials {
     pub grid: Grid,
 }
 
-/// Why there are none.
+/// Reason why trials are not possible.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialsError {
     /// Something turns.
     #[error("rotations are free, and the exact region is that of translation alone: free x, y or both")]
     Rotations,
-    /// The method cannot be asked of single poses.
+    /// The method cannot decide single poses.
     #[error("{method} does not decide single poses")]
     Method {
         /// Which.
@@ -132,10 +132,10 @@ pub enum TrialsError {
         /// Which.
         method: &'static str,
     },
-    /// No grid, or one that is too fine.
+    /// No grid, or too fine a grid.
     #[error("{given} trials along an axis are none of {least} to {most}")]
     Resolution {
-        /// What was given.
+        /// The given value.
         given: usize,
         /// The least.
         least: usize,
@@ -145,7 +145,7 @@ pub enum TrialsError {
     /// More halvings than a step can take.
     #[error("the time step can be halved {most} times, not {given}")]
     Halvings {
-        /// What was given.
+        /// The given value.
         given: u32,
         /// The most.
         most: u32,
@@ -162,7 +162,7 @@ pub enum TrialsError {
     /// Too many trials for the memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -171,10 +171,10 @@ pub enum TrialsError {
 const RESOLUTION: [usize; 2] = [Resolution::LEAST, 1000];
 /// Most halvings: a thousandth of the step, a thousand times the time.
 const HALVINGS: u32 = 10;
-/// Bytes per trial beside what the method takes.
+/// Bytes per trial besides those of the method.
 const TRIAL_BYTES: u64 = size_of::<RoundTrial>() as u64 + super::pose_bytes();
 
-/// Finds the exact region and asks the method at every resolution, and at the finest of them with every time step.
+/// Computes the exact region and runs the method at every resolution, and at the finest with every time step.
 ///
 /// # Errors
 /// See [`TrialsError`].
@@ -244,7 +244,7 @@ fn measure(zraa: &Zraa) -> f64 {
     }
 }
 
-/// One trial at a random place of every cell.
+/// A trial at a random position of every cell.
 fn trials_of(
     problem: &Problem,
     zraa: &Zraa,
@@ -274,7 +274,7 @@ fn trials_of(
     Ok(errors.into_iter().zip(&acceptance.outcomes).map(trial).collect())
 }
 
-/// What the trials of a grid say.
+/// Results of the trials of a grid.
 fn counted(resolution: usize, grid: &Grid, trials: &[RoundTrial]) -> Round {
     let aligned = |trial: &RoundTrial| trial.outcome == Outcome::Aligned;
     let count = |which: &dyn Fn(&RoundTrial) -> bool| trials.iter().filter(|trial| which(trial)).count();
@@ -312,7 +312,7 @@ mod tests {
         TrialsSettings { method, resolutions: resolutions.to_vec(), halvings: 0, seed: 1 }
     }
 
-    /// Exact motions and the exact region are two ways to one set: |x| + |y| < 1, and an interval of ±½.
+    /// Exact motions and the exact region give the same set: |x| + |y| < 1, and an interval of ±½.
     #[test]
     fn exact_motions_agree_with_the_exact_region_everywhere() {
         let found = run(&problem(Family::XFace3d, XY), &settings("descent", &[7, 20]), &Exec::new()).unwrap();

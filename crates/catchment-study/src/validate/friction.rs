@@ -117,12 +117,14 @@ pub(super) fn estimate(
     Ok((FrictionInterval { explains: fewest == 0, fewest, low, high, open, broken, tried }, followed))
 }
 
-/// So many of the finest steps: by one division, so that 0.3 is the number nearest to it and is written so.
+/// A multiple of the finest step: by a single division, so that 0.3 is the nearest number and is written as
+/// 0.3.
 fn coefficient(fine: usize) -> f64 {
     MOST * fine as f64 / (STEPS * FINE) as f64
 }
 
-/// Trials that fare otherwise than was seen, and whose border is farther than the limit; when there are `enough` of them no more are counted.
+/// Number of trials with another outcome than observed and a border farther than the limit; the count stops
+/// at `enough`.
 fn beyond(
     problem: &Problem,
     trials: &[(PoseError, bool)],
@@ -131,7 +133,7 @@ fn beyond(
     enough: usize,
     exec: &Exec,
 ) -> Result<(usize, usize), Cancelled> {
-    /// Borders that are looked for at once, whatever the threads.
+    /// Number of borders that are searched at once, for any number of threads.
     const AT_ONCE: usize = 8;
     let motions =
         descent::DescentSettings { friction, max_steps: CREEPS, ..descent::DescentSettings::default() };

@@ -67,7 +67,7 @@ impl ValidationSettings {
     }
 }
 
-/// k where nothing is said.
+/// Default of k.
 pub const LIMIT: f64 = 2.0;
 /// Trials beyond the limit that a verdict takes.
 pub const FEWEST: usize = 5;
@@ -246,13 +246,13 @@ pub struct Validation {
 /// Why there is no verdict.
 #[derive(Debug, thiserror::Error)]
 pub enum ValidateError {
-    /// No accuracy, or one that is none.
+    /// A missing or invalid accuracy.
     #[error(transparent)]
     Accuracy(TrialPlanError),
-    /// A limit that is none.
+    /// An invalid limit.
     #[error("a limit of {limit} accuracies says nothing: 1 or more, such as {LIMIT}")]
     Limit {
-        /// What was given.
+        /// The given value.
         limit: f64,
     },
     /// No coefficient of friction.
@@ -261,7 +261,7 @@ pub enum ValidateError {
     /// Nothing was tried.
     #[error("no trial has an outcome: write what was seen into the table")]
     NothingMade,
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -270,7 +270,7 @@ pub enum ValidateError {
 const PREDICTION: f64 = 0.3;
 const STAGE: &str = "motions";
 
-/// Judges a prediction by trials.
+/// Evaluates a prediction by trials.
 ///
 /// # Errors
 /// See [`ValidateError`].
@@ -412,7 +412,7 @@ fn one_sided(trials: &[PredictedTrial], docks: bool) -> OneSided {
     }
 }
 
-/// The confusion matrix as a list of what occurs: clear poses first, in the order of the outcomes.
+/// The confusion matrix as a list of its nonzero entries: clear poses first, in the order of the outcomes.
 fn counts(trials: &[PredictedTrial]) -> Vec<Count> {
     let mut counts: Vec<Count> = Vec::new();
     let predictions: Vec<Option<ObservedOutcome>> =

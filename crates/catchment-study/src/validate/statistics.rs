@@ -65,7 +65,8 @@ pub(super) fn tail(chances: &[f64], count: usize) -> f64 {
     reached
 }
 
-/// The chance that a robot's own error makes a pose fare otherwise, so many accuracies from the border.
+/// Probability that a robot's own error changes the outcome of a pose, at this distance from the border in
+/// standard deviations.
 pub(super) fn chance(margin: f64) -> f64 {
     libm::erfc(margin / SQRT_2).min(0.5)
 }

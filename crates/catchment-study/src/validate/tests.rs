@@ -26,7 +26,8 @@ fn arc(problem: &Problem) -> (Vec<PoseError>, PoseError) {
     (plan.points.iter().map(|point| point.error).collect(), accuracy)
 }
 
-/// What a robot sees that goes to `real` poses with normal errors of this accuracy, on a bench of its own, and writes down others.
+/// Observations of a robot that goes to `real` poses with normal errors of this accuracy, on its own bench,
+/// and records others.
 fn trials(
     bench: &Problem,
     [real, written]: [&[PoseError]; 2],
@@ -52,7 +53,8 @@ fn trials(
     tried.collect()
 }
 
-/// How often so many runs give each verdict. Predictions are made once: they do not depend on what was seen.
+/// Frequencies of each verdict over this many runs. Predictions are made once: they do not depend on the
+/// observations.
 fn verdicts(
     [predicting, bench]: [&Problem; 2],
     [real, written]: [&[PoseError]; 2],
@@ -97,7 +99,7 @@ fn fine_arc(problem: &Problem) -> Vec<PoseError> {
     [0.0, 20.0].into_iter().flat_map(|yaw| (20..=120).map(move |k| pose(k, yaw))).collect()
 }
 
-/// A robot as accurate as it says, and halves as predicted: hardly ever is that found inconsistent.
+/// A robot with the stated accuracy, and halves as predicted: hardly ever inconsistent.
 fn as_predicted(runs: u64) {
     let problem = problem("bench-pyramid-arc.toml");
     let (poses, accuracy) = arc(&problem);
@@ -109,8 +111,8 @@ fn as_predicted(runs: u64) {
     }
 }
 
-/// A centre of rotation that is 0.3 D elsewhere than the design has it, or friction of 0.5: hardly ever is that found consistent. (Friction of 0.3
-/// alters none of these outcomes: the faces are steeper than it holds.)
+/// A centre of rotation that is 0.3 D away from that of the design, or friction of 0.5: hardly ever
+/// consistent. (Friction of 0.3 changes none of these outcomes: the faces are steeper than it can hold.)
 fn otherwise(runs: u64) {
     let problem = problem("bench-pyramid-arc.toml");
     let cor = problem.alignment().center_of_rotation;
@@ -294,7 +296,8 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     assert!(found == with(2) && found == with(4));
 }
 
-/// A pyramid that docks a quarter turn off docks where its design says that this is as good, and fails where it does not.
+/// A pyramid that docks rotated by a quarter turn docks if its design declares this symmetry, and fails if
+/// not.
 #[test]
 fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let fourfold = problem("bench-pyramid.toml");
@@ -321,7 +324,8 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     );
 }
 
-/// Trials within one accuracy of the border are counted apart, and stand neither in the list of disagreements nor in its column.
+/// Trials within one accuracy of the border are counted separately, and are not in the list of disagreements
+/// or its column.
 #[test]
 fn disagreements_leave_out_trials_within_one_accuracy_of_the_border() {
     let found = judged(&[(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)]);

@@ -12,7 +12,7 @@ use super::{Grain, Sunk, Triangles};
 use crate::proposal::layout::{AxisDirection, PartLayout};
 use glam::{DMat3, DVec2, DVec3};
 
-/// What comes of an approach, lengths in the unit of the parts.
+/// Result of an approach, lengths in the unit of the parts.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::proposal) enum ApproachResult {
     /// It sinks into a seat.
@@ -21,22 +21,23 @@ pub(in crate::proposal) enum ApproachResult {
     Passes,
     /// It meets something, and slides off it.
     Flat {
-        /// How far it climbs at most.
+        /// Largest climb.
         climb: f64,
     },
-    /// It meets something this far above where it is drawn.
+    /// It meets an obstacle at this height above the drawn pose.
     Blocked(f64),
-    /// It meets something this far below where it is drawn.
+    /// It meets an obstacle at this depth below the drawn pose.
     Apart(f64),
 }
 
-/// How far along the approach, and across it, first contact may be from where the parts are drawn, in small lengths: 6 and 1.2 mm.
+/// Largest distance of first contact from the drawn pose, along the approach and across it, in small lengths:
+/// 6 and 1.2 mm.
 const ALONG: f64 = 12.0;
 const ACROSS: f64 = 2.4;
 
-/// How much farther is looked for a climb, on a lattice as much coarser.
+/// Factor of the search range for a climb, on a lattice coarser by the same factor.
 const WIDER: f64 = 8.0;
-/// How far across the approach is looked, the nearest first.
+/// Search ranges across the approach, the nearest first.
 const REACHES: [f64; 3] = [0.4, 1.2, ACROSS];
 
 /// The moving part let down as drawn, along an approach. `any` distance along it may be allowed.
@@ -99,21 +100,22 @@ pub(in crate::proposal) fn drawn(
     if passes { ApproachResult::Passes } else { flat.or(off).unwrap_or(ApproachResult::Passes) }
 }
 
-/// How two parts lie in one frame.
+/// Relative position of two parts in a common frame.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::proposal) struct Together {
     /// The volume that both fill, as a share of the smaller part's.
     pub(in crate::proposal) shared: f64,
-    /// The share of the moving part's surface, where the boxes of both overlap, that comes near the fixed part's.
+    /// Share of the moving part's surface, within the overlap of the boxes, that is near the fixed part's.
     pub(in crate::proposal) near: f64,
     /// The volume that both boxes share, as a share of the smaller box's.
     pub(in crate::proposal) inside: f64,
 }
 
-/// How far apart surfaces are that are near, in small lengths.
+/// Largest distance of near surfaces, in small lengths.
 const NEAR: f64 = 1.2;
 
-/// How two parts lie in one frame, by columns along each axis where their boxes overlap.
+/// Relative position of two parts in a common frame, by columns along each axis in the overlap of their
+/// boxes.
 pub(in crate::proposal) fn together(parts: [&Triangles; 2], grain: Grain) -> Together {
     const COLUMNS: f64 = 100.0;
     let all = parts.map(volume).into_iter().fold(f64::INFINITY, f64::min);
@@ -151,7 +153,7 @@ fn volume(part: &Triangles) -> f64 {
     part.iter().map(|[a, b, c]| a.dot(b.cross(*c)) / 6.0).sum::<f64>().abs()
 }
 
-/// Where each column of a lattice crosses a part.
+/// Intersections of each column of a lattice with a part.
 pub(super) fn columns(
     part: &Triangles,
     turn: &DMat3,

@@ -19,7 +19,7 @@ pub(in crate::proposal) struct Class {
     pub(in crate::proposal) turned: Option<Sunk>,
 }
 
-/// Places whose parts' middles are nearer than this across the approach are one, in small lengths.
+/// Places at which the parts' middles are closer than this across the approach are equal, in small lengths.
 const ONE_PLACE: f64 = 4.0;
 
 /// The classes of places, the steepest first. `sunk` is sorted.

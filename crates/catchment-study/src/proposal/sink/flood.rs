@@ -32,7 +32,7 @@ fn root(parent: &mut [u32], mut k: u32) -> u32 {
     k
 }
 
-/// The basins of a lattice of this width, the ones with the highest climb first.
+/// The basins of a lattice of this width, highest climb first.
 pub(super) fn basins(z: &[f32], wide: usize, least: f32) -> Vec<Basin> {
     let deep = z.len() / wide;
     let mut order: Vec<u32> = (0..z.len() as u32).filter(|k| z[*k as usize] > NOTHING).collect();

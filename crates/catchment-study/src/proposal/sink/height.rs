@@ -4,9 +4,9 @@ use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Highest z over a lattice; −∞ where there is nothing.
+/// Highest z over a lattice; −∞ at points without material.
 pub(super) struct PartHeights {
-    /// The first point of the lattice, and how far the next one is.
+    /// The first point of the lattice, and the distance to the next.
     pub(super) first: DVec2,
     pub(super) cell: f64,
     pub(super) counts: [usize; 2],
@@ -30,7 +30,7 @@ impl PartHeights {
         Self::window(triangles, turn, cell, low.truncate(), counts)
     }
 
-    /// What of a part lies over a lattice.
+    /// The section of a part over a lattice.
     pub(super) fn window(
         triangles: &[[DVec3; 3]],
         turn: &DMat3,
@@ -113,7 +113,8 @@ impl PartHeights {
         }
     }
 
-    /// Every point as low as the lowest of those up to `reach` points around it: what is beside the part is as low as can be.
+    /// Every point as low as the lowest of those up to `reach` points around it: points beside the part have
+    /// the lowest value.
     pub(super) fn eroded(&self, reach: usize) -> Self {
         let [wide, deep] = self.counts;
         let mut rows = vec![NOTHING; wide * deep];
@@ -159,7 +160,7 @@ impl PartHeights {
         Self { z, ..*self }
     }
 
-    /// Whether two say the same up to `level`, measured from their highest points.
+    /// Whether two maps are equal up to `level`, measured from their highest points.
     pub(super) fn is_like(&self, other: &Self, level: f32) -> bool {
         if self.counts != other.counts {
             return false;
@@ -209,9 +210,10 @@ pub(super) struct Offsets {
     pub(super) before: DVec2,
 }
 
-/// Whether the part seen from below, `shift` points beside the fixed one and `height` above it, would overlap it: by all points of both.
+/// Whether the part seen from below, shifted by `shift` points relative to the fixed part and `height` above
+/// it, would overlap it: by all points of both.
 pub(super) fn overlaps(fixed: &PartHeights, below: &PartHeights, shift: [isize; 2], height: f32) -> bool {
-    /// Rows far from each other come first: most of what overlaps does so along a side.
+    /// Distant rows come first: most overlaps are along a side.
     const STRIDE: usize = 16;
     // Of the moving one along an axis, and where the first of them is over the fixed one.
     let range = |k: usize| {
@@ -230,7 +232,8 @@ pub(super) fn overlaps(fixed: &PartHeights, below: &PartHeights, shift: [isize; 
     !columns.is_empty() && (0..STRIDE).any(|first| rows.clone().skip(first).step_by(STRIDE).any(row_overlaps))
 }
 
-/// h over all offsets, of the fixed part in phases as groups of points of the moving one see it, and of a moving one with so many points in a row and a column.
+/// h over all offsets, of the fixed part in phases for the groups of points of the moving part, and of a
+/// moving part with this many points in a row and a column.
 pub(super) fn heights(groups: &[(&Phases, &[Point])], counts: [usize; 2]) -> Offsets {
     let sub = SUB as u32;
     let before = counts.map(|count| count.div_ceil(SUB));
@@ -253,10 +256,10 @@ pub(super) fn heights(groups: &[(&Phases, &[Point])], counts: [usize; 2]) -> Off
     Offsets { z, wide: size[0], before: DVec2::new(before[0] as f64, before[1] as f64) }
 }
 
-/// A point of the moving part: where it is on its lattice, and its height, negated.
+/// A point of the moving part: its position on its lattice, and its height, negated.
 pub(super) type Point = ([u32; 2], f32);
 
-/// What a block of points holds.
+/// Content of a block of points.
 enum Block {
     Nothing,
     /// Its points are level, and this is the highest.
@@ -265,8 +268,8 @@ enum Block {
     Stepped,
 }
 
-/// The block with these columns and rows; of one with a step, to `points` the highest point, and those that reach farthest to the four sides of the highest
-/// level.
+/// The block with these columns and rows; if it has a step, appends to `points` its highest point, and the
+/// points of the highest level that reach farthest to the four sides.
 fn block(map: &PartHeights, [is, js]: [Range<usize>; 2], step: f32, points: &mut Vec<Point>) -> Block {
     let [wide, deep] = map.counts;
     // A step may lie between two blocks, or at the border of the map.
@@ -331,8 +334,9 @@ pub(super) fn deciding(map: &PartHeights, side: usize, step: f32) -> Vec<Point> 
     points
 }
 
-/// The same by the side of the block that a point stands for: level blocks are large, and a point at the middle of one meets the highest of what is under all of
-/// it, lest a rim that is narrower falls between two points. Those that stand for themselves have the side 1.
+/// The same by the side of the block that a point represents: level blocks are large, and a point at the
+/// middle of a block meets the highest point under all of it, so that a narrower rim cannot fall between two
+/// points. Points that represent themselves have the side 1.
 pub(super) fn deciding_blocks(map: &PartHeights, [small, large]: [usize; 2], step: f32) -> Groups {
     let (mut points, mut aside) = (Vec::new(), Vec::new());
     let middle = |[is, js]: &[Range<usize>; 2], z: f32| {

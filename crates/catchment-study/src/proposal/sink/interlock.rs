@@ -24,11 +24,13 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Cells by which the fixed part is worn, at most 1.6 mm for parts of a few centimetres.
 const WORN: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, 16];
-/// How far across the approach the moving part may be off, and how far above where it is drawn it may stay, in small lengths.
+/// Largest offset of the moving part across the approach, and its largest height above the drawn pose, in
+/// small lengths.
 const ACROSS: f64 = 0.4;
 const SHORT: f64 = 0.5;
 
-/// How far the walls of the fixed part would have to give way, on each side, so that the moving part comes to where it is drawn.
+/// Distance by which the walls of the fixed part would have to yield, on each side, so that the moving part
+/// reaches its drawn pose.
 pub(in crate::proposal) fn undercut(parts: [&Triangles; 2], way: AxisDirection, grain: Grain) -> Option<f64> {
     let turns = PartLayout::as_drawn(way).turns();
     WORN.into_iter().find_map(|worn| {
@@ -39,15 +41,16 @@ pub(in crate::proposal) fn undercut(parts: [&Triangles; 2], way: AxisDirection, 
     })
 }
 
-/// How far a part that is turned by 90° is raised, and how finely, in small lengths: leads of up to 8 mm.
+/// Largest lift of a part rotated by 90°, and its resolution, in small lengths: leads of up to 8 mm.
 const RAISED: f64 = 4.0;
 const STEP: f64 = 0.1;
 /// Columns across the overlap of both parts.
 const COLUMNS: f64 = 160.0;
-/// Where it fits, a turned part overlaps by at most this share of the overlap where it does not.
+/// A rotated part that fits overlaps by at most this share of its overlap at other heights.
 const FITS: f64 = 0.2;
 
-/// The lead of a thread along an approach, positive for a right-handed one: how far one turn moves the moving part.
+/// The lead of a thread along an approach, positive for a right-handed thread: displacement of the moving
+/// part per turn.
 pub(in crate::proposal) fn lead(parts: [&Triangles; 2], way: AxisDirection, grain: Grain) -> Option<f64> {
     let [fixed, moving] = parts;
     let turn = PartLayout::as_drawn(way).turns()[0];

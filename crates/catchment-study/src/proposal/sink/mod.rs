@@ -60,7 +60,7 @@ pub(super) struct Grain {
 }
 
 impl Grain {
-    /// What is small for parts in whose unit a millimetre has this length, the smaller of which is 1 wide.
+    /// Small lengths for parts with a millimetre of this length, in units of the smaller part's width.
     pub(super) fn new(millimetre: f64) -> Self {
         const LEAST: f64 = 0.004;
         const MOST: f64 = 0.06;
@@ -73,21 +73,22 @@ impl Grain {
     }
 }
 
-/// A place where the moving part sinks in.
+/// A place at which the moving part sinks in.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sunk {
     /// How the parts lie.
     pub(super) lie: PartLayout,
-    /// Where the origin of the turned moving part is, in the frame of the turned fixed one: in plan view, and how high.
+    /// Position of the origin of the rotated moving part, in the rotated frame of the fixed part: in plan
+    /// view, and height.
     pub(super) offset: DVec2,
     pub(super) height: f64,
-    /// How far it climbs before it leaves.
+    /// Climb until it leaves.
     pub(super) climb: f64,
-    /// How far it moves to each side at half the climb.
+    /// Play to each side at half the climb.
     pub(super) play: f64,
-    /// Whether it hardly rises as far as is looked: what lies in a tray is loose, what lies in a funnel is not.
+    /// Whether it hardly rises within the search range: a part in a tray is loose, a part in a funnel is not.
     pub(super) is_loose: bool,
-    /// climb / (e + play), and up to 15 % less where the parts lie beside each other.
+    /// climb / (e + play), and up to 15 % less for parts that lie side by side.
     pub(super) steep: f64,
     /// Side of a cell of the lattice that found it.
     pub(super) cell: f64,
@@ -96,18 +97,18 @@ pub(super) struct Sunk {
 /// Points of the lattice of offsets across both parts, and the length of a cell at most, in small lengths.
 const CELLS: f64 = 160.0;
 const MOST_CELL: f64 = 1.6;
-/// Points of the moving part that are looked at.
+/// Largest number of points of the moving part.
 const MOST_POINTS: usize = 2500;
-/// Basins of one view that are compared with all points.
+/// Number of basins of a view that are evaluated with all points.
 const MOST_ASKED: usize = 400;
-/// Basins of one view that are kept, and of all.
+/// Number of basins of a view that are kept, and of all views.
 const OF_ONE: usize = 6;
 const MOST: usize = 100;
 
 /// Turns a part over: heights of its underside are heights of its top.
 pub(super) const UPSIDE_DOWN: DMat3 = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::NEG_Z);
 
-/// The places where the moving part sinks into the fixed one, the steepest first.
+/// The places at which the moving part sinks into the fixed part, the steepest first.
 pub(super) fn sinks(
     [fixed, moving]: [&Triangles; 2],
     facing: [&[AxisDirection]; 2],
@@ -199,7 +200,7 @@ fn views(moving: &Triangles, ways: &[AxisDirection], cell: f64, exec: &Exec) -> 
     Ok(views)
 }
 
-/// The points that are looked at: some of every block of a cell, or of larger ones where these are too many.
+/// The points to evaluate: some of every block of a cell, or of larger blocks if these are too many.
 fn looked_at(bottom: &PartHeights, level: f32) -> Groups {
     /// How many times as large level blocks are.
     const LARGE: usize = 4;
@@ -236,7 +237,8 @@ impl Tops {
         Self { first, maps, phases, dilated: BTreeMap::new() }
     }
 
-    /// h over all offsets, of both maps. What stands for a block meets the highest point under all of it.
+    /// h over all offsets, of both maps. A point that represents a block meets the highest point under all of
+    /// it.
     fn heights(&mut self, view: &View) -> [Offsets; 2] {
         for side in view.points.keys().filter(|side| **side > 1) {
             let dilated = |map: &PartHeights| Phases::of(&map.dilated(side / 2));
@@ -251,7 +253,7 @@ impl Tops {
         })
     }
 
-    /// The basins of one view, on the first lattice.
+    /// The basins of a view, on the first lattice.
     fn seen(&mut self, way: AxisDirection, view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
         let lie = PartLayout::Facing { fixed: way, moving: view.way, turned: view.turned };
         let heights = self.heights(view);

@@ -5,28 +5,28 @@ use super::height::{NOTHING, PartHeights, deciding};
 use super::{Grain, Sunk, Triangles, UPSIDE_DOWN};
 use glam::{DMat3, DVec2};
 
-/// Side of a cell and how far is looked, in small lengths.
+/// Side of a cell and search range, in small lengths.
 const CELL: f64 = 0.2;
 const REACH: f64 = 5.0;
-/// What moves farther than this where it hardly rises is loose.
+/// A part that moves farther than this while it hardly rises is loose.
 const LOOSE: f64 = 0.9 * REACH;
-/// Points of the moving part that are looked at.
+/// Largest number of points of the moving part.
 const MOST_POINTS: usize = 40000;
-/// Of a climb no more counts than this many small lengths, where the play is measured at half of it.
+/// Largest climb that counts, in small lengths, for the play at half of it.
 const TALL: f64 = 20.0;
 
-/// Where a part lies as deep as it can.
+/// The deepest region of a part.
 pub(super) struct Floor {
     pub(super) middle: DVec2,
-    /// How far it moves to each side at half the climb.
+    /// Play to each side at half the climb.
     pub(super) play: f64,
-    /// Whether it moves as far as is looked where it hardly rises.
+    /// Whether it moves through the whole search range while it hardly rises.
     pub(super) is_loose: bool,
-    /// The play to the sides where it is least.
+    /// Smallest play over the directions.
     pub(super) least: f64,
 }
 
-/// Heights over the offsets around one.
+/// Heights over the offsets around a given offset.
 pub(super) struct Window {
     pub(super) z: Vec<f32>,
     /// Points of a row, and the offset of the first.
@@ -36,7 +36,8 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// Around `offset`, as far as [`REACH`]; the fixed part worn by `worn` cells, so that what is exactly as wide as its hole still fits.
+    /// Around `offset`, within [`REACH`]; the fixed part eroded by `worn` cells, so that a part exactly as
+    /// wide as its hole still fits.
     pub(super) fn around(
         [fixed, moving]: [&Triangles; 2],
         turns: [DMat3; 2],
@@ -96,7 +97,8 @@ impl Window {
         (0..self.z.len()).filter(near).min_by(|a, b| self.z[*a].total_cmp(&self.z[*b]))
     }
 
-    /// What is joined with a point and not above `level`; whether it reaches the border, or where nothing is.
+    /// The region connected with a point and not above `level`; whether it reaches the border, or points
+    /// without contact.
     pub(super) fn below(&self, start: usize, level: f32) -> (Vec<usize>, bool) {
         let (mut seen, mut stack, mut found) = (vec![false; self.z.len()], vec![start], Vec::new());
         seen[start] = true;
@@ -119,7 +121,7 @@ impl Window {
         (found, leaves)
     }
 
-    /// How far it climbs from a point before it reaches the border, by bisection.
+    /// Climb from a point until it reaches the border, by bisection.
     pub(super) fn climb(&self, start: usize) -> f64 {
         let low = self.z[start];
         let high = self.z.iter().copied().fold(low, f32::max);
@@ -174,7 +176,8 @@ fn over(parts: [&Triangles; 2], sunk: &Sunk) -> f64 {
     (common.max(DVec2::ZERO).element_product() / area(fixed).min(area(moving))).clamp(0.0, 1.0)
 }
 
-/// A place on the fine lattice: the middle of its floor, its play, how steep it is; nothing where it was an accident of the coarse one.
+/// A place on the fine lattice: the middle of its floor, its play, its steepness; `None` if it was an
+/// artefact of the coarse lattice.
 pub(super) fn refined(parts: [&Triangles; 2], mut sunk: Sunk, coarse: f64, grain: Grain) -> Option<Sunk> {
     for worn in [0, 1] {
         let window = Window::around(parts, sunk.lie.turns(), sunk.offset, worn, grain);

@@ -143,7 +143,8 @@ fn what_two_parts_share_is_measured() {
     assert!(far.shared == 0.0 && far.near == 0.0, "{far:?}");
 }
 
-/// A shallow basin beside a deep one climbs to the pass between them; the deep one climbs out; a floor that falls off the edge is none.
+/// A shallow basin beside a deep one climbs to the pass between them; the deep one climbs out; a floor that
+/// falls off the edge is not a basin.
 #[test]
 fn basins_climb_to_their_passes() {
     let rows: [[f32; 7]; 3] = [[9.0; 7], [9.0, 1.0, 5.0, 3.0, 9.0, 2.0, NOTHING], [9.0; 7]];
