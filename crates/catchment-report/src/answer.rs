@@ -49,7 +49,7 @@ impl Report {
 }
 
 impl<T: ReportBody + Serialize> ReportEnvelope<T> {
-    /// Every requirement, judged by this report.
+    /// Every requirement, evaluated on this report.
     ///
     /// # Errors
     /// The report has no such place, or no number there.
@@ -59,7 +59,7 @@ impl<T: ReportBody + Serialize> ReportEnvelope<T> {
     }
 }
 
-/// Why a requirement of a run cannot be judged.
+/// Reason why a requirement of a run cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum UnanswerableError {
     /// The run itself cannot be made.
@@ -75,8 +75,8 @@ pub enum UnanswerableError {
     },
 }
 
-/// Refuses a requirement that no report of this run on a problem can answer, before anything is computed: the schema of reports says which places there
-/// are, the run which of them stay empty.
+/// Rejects a requirement that no report of this run on a problem can answer, before anything is computed: the
+/// schema of reports defines the possible places, the run the empty ones.
 ///
 /// # Errors
 /// The first requirement without an answer.

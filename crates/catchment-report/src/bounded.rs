@@ -10,10 +10,10 @@ use std::path::Path;
 /// halves.
 pub(super) const REPORT_BYTES: u64 = 64 << 20;
 
-/// The whole of a regular file of at most `most` bytes.
+/// The whole content of a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// What the system says; `InvalidInput` where there is something else than a file, `FileTooLarge` where it is longer.
+/// The error of the system; `InvalidInput` if it is not a regular file, `FileTooLarge` if it is longer.
 pub(super) fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     // Before it is opened: opening a FIFO waits for somebody who writes into it.
     if !std::fs::metadata(path)?.is_file() {

@@ -11,14 +11,15 @@ use std::fmt::Write;
 /// Bytes of a line, about: seven numbers.
 const LINE_BYTES: u64 = 128;
 
-/// Cells between two looks at whether to stop.
+/// Cells between two checks for cancellation.
 const AT_ONCE: usize = 1 << 16;
 
-/// A line for every cell as CSV: its centre (D, rad), its outcome, and z of the centre of rotation at first contact (D; empty without
-/// contact) where the heights are known. The first axis runs fastest. Of listed poses a line for each, with all five errors.
+/// A CSV line for every cell: its centre (D, rad), its outcome, and z of the centre of rotation at first
+/// contact (D; empty without contact) if the heights are known. The first axis runs fastest. For listed poses
+/// a line for each, with all five errors.
 ///
 /// # Errors
-/// The table does not fit into memory, or it was asked to stop.
+/// The table does not fit into memory, or the computation is cancelled.
 pub fn cells(acceptance: &Acceptance, heights: Option<&[f32]>, exec: &Exec) -> Result<Vec<u8>, ViewError> {
     let Some(grid) = acceptance.grid() else { return listed(acceptance, exec) };
     exec.ensure_fits("a table of all cells", LINE_BYTES.saturating_mul(grid.len() as u64), |_| {

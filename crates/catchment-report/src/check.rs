@@ -14,7 +14,7 @@ use glam::{DAffine3, DVec3};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// What a check has to say, with its head.
+/// Result of a check, with its head.
 pub type CheckReport = ReportEnvelope<CheckBody>;
 
 /// Result of a check.
@@ -187,7 +187,7 @@ impl Printed for CheckBody {
 }
 
 impl CheckBody {
-    /// Shown where there are problems; of a design without any programs read the names of the columns alone.
+    /// Shown if there are errors; for a design without errors programs read only the column names.
     fn table_of_problems(&self) -> Table {
         let column = |title: &str, key: &str| {
             if self.problems.is_empty() { Column::data(key) } else { Column::new(title).key(key).left() }
@@ -322,7 +322,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
     }
 }
 
-/// A unit vector by its name, if it has one.
+/// Name of a unit vector, if it has one.
 fn direction(vector: [f64; 3]) -> String {
     let axis = ["x", "y", "z"].into_iter().zip(vector).find(|(_, c)| c.abs() == 1.0);
     if let Some((name, c)) = axis {
@@ -349,7 +349,7 @@ fn mesh(file: &FileSpec) -> String {
     format!("mesh {}{body}{united}", catchment_core::terminal::shown(&file.path))
 }
 
-/// The parts of a half, those that are alike together; and how round what is round is.
+/// The parts of a half, with equal parts combined; and the accuracy of its round surfaces.
 fn parts_of(parts: &[PartSpec]) -> String {
     let mut kinds: Vec<(String, usize)> = Vec::new();
     for part in parts {
@@ -379,7 +379,7 @@ fn parts_of(parts: &[PartSpec]) -> String {
     kinds.into_iter().map(told).collect::<Vec<_>>().join(", ")
 }
 
-/// Largest distance between what is round in a half and its facets, in D.
+/// Largest distance between round surfaces of a half and their facets, in D.
 fn chord_error(half: &HalfSpec) -> Option<f64> {
     let HalfSpec::Parts(parts) = half else { return None };
     parts.iter().filter_map(|part| part.shape.chord_error()).reduce(f64::max)

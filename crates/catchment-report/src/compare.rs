@@ -21,14 +21,14 @@ use catchment_core::run::{Over, Run, RunError};
 use catchment_study::agreement::even_cells;
 use std::path::{Path, PathBuf};
 
-/// One of the two.
+/// One side of a comparison.
 #[derive(Debug)]
 pub enum ComparisonSource {
     /// A result that was stored: its folder or its group.
     Stored(PathBuf),
-    /// A problem to be decided; the resolution of the run is not asked.
+    /// A problem to be decided; the resolution of the run is ignored.
     Fresh {
-        /// Where it comes from, for people.
+        /// Its source, for people.
         source: String,
         /// The problem.
         problem: Box<Problem>,
@@ -46,7 +46,7 @@ pub enum CompareError {
     /// A resolution does not suit a problem.
     #[error("{subject}: {error}")]
     Resolution {
-        /// Where the problem comes from.
+        /// Source of the problem.
         subject: String,
         /// Why not.
         error: ResolutionError,
@@ -57,9 +57,9 @@ pub enum CompareError {
     /// They have nothing in common.
     #[error("cannot compare {first} with {second}: {error}")]
     Apart {
-        /// Where the first comes from.
+        /// Source of the first.
         first: String,
-        /// Where the second comes from.
+        /// Source of the second.
         second: String,
         /// Why not.
         error: ComparisonError,
@@ -73,22 +73,22 @@ pub enum CompareError {
     /// The picture would not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] catchment_core::exec::OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] catchment_core::exec::Cancelled),
 }
 
-/// The comparison, and its picture where there is something to draw.
+/// The comparison, and its picture if there is something to draw.
 #[derive(Debug)]
 pub struct ComparisonResult {
-    /// What it has to say.
+    /// The report.
     pub report: ComparisonReport,
-    /// Where the two differ, if asked for; or why that cannot be drawn.
+    /// The differences as a picture, if requested; or the reason why it cannot be drawn.
     pub picture: Option<Result<figure::Picture, figure::FigureError>>,
 }
 
-/// Compares two sources. Problems are decided over the cells of a stored result where there is one, else over `resolution`, else
-/// over an even number of cells that exact descent affords.
+/// Compares two sources. Problems are decided over the cells of a stored result if there is one, else over
+/// `resolution`, else over an even number of cells that exact descent can afford.
 ///
 /// # Errors
 /// See [`CompareError`].
@@ -154,7 +154,7 @@ pub fn compare(
     Ok(ComparisonResult { report, picture })
 }
 
-/// The Zarr group that a path stands for: the one in the folder of a run, or the path itself.
+/// The Zarr group of a path: the group in the folder of a run, or the path itself.
 pub fn group(path: &Path) -> PathBuf {
     let inside = path.join(RESULT);
     if inside.is_dir() { inside } else { path.to_owned() }
@@ -192,7 +192,7 @@ fn decide(
     Ok((Side { source, report }, answer.acceptance))
 }
 
-/// What tells the two apart: the methods of one design, else the designs, else the files.
+/// Distinguishing names of the two: the methods if the designs are equal, else the designs, else the files.
 fn names(sides: [&Side; 2]) -> [String; 2] {
     let [a, b] = sides.map(|side| &side.report);
     if a.design == b.design && a.method != b.method {

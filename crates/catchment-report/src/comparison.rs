@@ -19,7 +19,7 @@ pub struct Compared {
     pub report: Report,
 }
 
-/// What a comparison has to say, with its head.
+/// Result of a comparison, with its head.
 pub type ComparisonReport = ReportEnvelope<ComparisonBody>;
 
 /// Result of a comparison.

@@ -22,7 +22,7 @@ pub const SCHEMA: u32 = 3;
 /// The oldest layout that is read: 3 added `kind`, and a run of 2 lacks nothing else.
 pub const OLDEST: u32 = 2;
 
-/// What a report of one kind holds beside its head.
+/// Content of a report of a kind, besides its head.
 pub trait ReportBody {
     /// Its name in `kind`.
     const KIND: &'static str;
@@ -35,9 +35,9 @@ pub struct ReportEnvelope<T> {
     pub catchment: Version,
     /// The fields of its kind.
     pub body: T,
-    /// Doubts.
+    /// Warnings.
     pub warnings: Vec<WarningReport>,
-    /// How long it took; null where nothing was measured.
+    /// Time of the computation; null if it was not measured.
     pub timing: Option<Timing>,
 }
 
@@ -49,10 +49,10 @@ impl<T: ReportBody> ReportEnvelope<T> {
 }
 
 impl<T: ReportBody + Serialize> ReportEnvelope<T> {
-    /// The report as indented JSON, ending with a line break. Characters that could steer a terminal are escaped.
+    /// The report as indented JSON, ending with a line break. Characters that control a terminal are escaped.
     ///
     /// # Errors
-    /// None at present: every field has a JSON form.
+    /// Never at present: every field has a JSON form.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|text| escaped(text) + "\n")
     }
@@ -76,10 +76,10 @@ fn escaped(json: String) -> String {
 }
 
 impl<T: ReportBody + for<'de> Deserialize<'de>> ReportEnvelope<T> {
-    /// Reads a report back. Fields that are not known are ignored.
+    /// Reads a report back. Unknown fields are ignored.
     ///
     /// # Errors
-    /// Where the text is no report of this kind, or of a layout that this program does not read.
+    /// If the text is not a report of this kind, or has an unsupported layout.
     pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }

@@ -9,7 +9,7 @@ use catchment_core::pose::PoseError;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// What was exported, with its head.
+/// Result of an export, with its head.
 pub type ExportReport = ReportEnvelope<ExportBody>;
 
 /// Result of an export.
@@ -35,7 +35,7 @@ impl ReportBody for ExportBody {
 }
 
 impl ExportReport {
-    /// Of files that were written, with the doubts about their design.
+    /// From files that were written, with the warnings about their design.
     pub fn new(body: ExportBody, warnings: Vec<WarningReport>) -> Self {
         Self::of(body, warnings, None)
     }

@@ -26,7 +26,7 @@ impl ReportBody for FacesBody {
 /// Why designs do not stand side by side.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FacesError {
-    /// One of them is not about x alone.
+    /// A design has other free offsets than x.
     #[error(
         "side by side stand offsets along x alone, and those of {name} are others: let x be its only free offset"
     )]
@@ -46,10 +46,10 @@ impl FacesReport {
     /// Most designs: more would be too small to see.
     pub const MOST: usize = 12;
 
-    /// Of designs whose offsets along x are known.
+    /// From designs whose offsets along x are known.
     ///
     /// # Errors
-    /// Too many, or one that is not about x alone.
+    /// Too many designs, or a design with other free offsets than x.
     pub fn new(faces: Vec<ZraaBody>) -> Result<Self, FacesError> {
         if faces.len() > Self::MOST {
             return Err(FacesError::TooMany { count: faces.len() });
@@ -68,7 +68,7 @@ impl Printed for FacesBody {
         "offsets along x that are corrected without rotation".into()
     }
 
-    /// A section per design; the table for programs has a bound where the halves meet along one profile.
+    /// A section per design; the table for programs has a bound if the halves meet along a single profile.
     fn document(&self) -> Document {
         let mut document = Document::default();
         let mut table = Table::data("name from to nilsson_bound nilsson_both");

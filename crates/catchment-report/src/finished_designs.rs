@@ -7,15 +7,15 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What stands behind the name of the result.
+/// Suffix of the result's name.
 const ENDING: &str = ".parts";
 /// Digits of a key.
 const DIGITS: usize = 64;
 /// Largest file that is read back.
 const LARGEST: u64 = 64 << 20;
 
-/// `OUT.parts`, which holds a JSON file per finished design, named by the digest of all that its figures depend on. A file that
-/// cannot be read is as good as none: the design is computed again.
+/// `OUT.parts`, which holds a JSON file per finished design, named by the digest of all its inputs. An
+/// unreadable file counts as missing: the design is computed again.
 #[derive(Debug, Clone)]
 pub struct FinishedDesigns {
     folder: PathBuf,
@@ -43,7 +43,7 @@ impl FinishedDesigns {
         self.places().iter().filter(|place| place.exists()).count()
     }
 
-    /// Where designs are kept, or were to be kept by a process that was killed meanwhile.
+    /// Folders in which designs are stored, or were to be stored by a killed process.
     fn places(&self) -> BTreeSet<PathBuf> {
         let Ok(entries) = fs::read_dir(&self.folder) else { return BTreeSet::new() };
         let place = |name: &str| {
@@ -54,7 +54,7 @@ impl FinishedDesigns {
         entries.filter_map(|entry| place(entry.ok()?.file_name().to_str()?)).collect()
     }
 
-    /// Removes them, what killed processes left of them, and the folder if nothing else is in it.
+    /// Removes them, with the remains of killed processes, and the folder if it is then empty.
     pub fn clear(&self) {
         for place in self.places() {
             // Kept for the next time if it cannot be removed.

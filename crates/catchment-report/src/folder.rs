@@ -47,13 +47,13 @@ pub enum SaveError {
     /// The report has no JSON form.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
-    /// What the pictures show could not be computed.
+    /// The slices for the pictures could not be computed.
     #[error(transparent)]
     Slices(#[from] catchment_core::run::RunError),
     /// The pictures would not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -61,7 +61,7 @@ pub enum SaveError {
 /// Every picture as PNG and SVG, under the name of its file.
 ///
 /// # Errors
-/// A picture cannot be encoded, or it was asked to stop.
+/// A picture cannot be encoded, or the computation is cancelled.
 #[cfg(feature = "figure")]
 pub fn encode<N: std::fmt::Display>(
     drawn: &[(N, super::figure::Picture)],
@@ -79,10 +79,10 @@ pub fn encode<N: std::fmt::Display>(
     Ok(files)
 }
 
-/// Writes files into a folder that is being filled; a name may name folders in it.
+/// Writes files into a folder that is being filled; a name may contain folders.
 ///
 /// # Errors
-/// Whatever the system refuses, or it was asked to stop.
+/// Errors of the system, or the computation is cancelled.
 pub fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), SaveError> {
     for (name, bytes) in files {
         exec.check()?;
@@ -94,7 +94,8 @@ pub fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Res
 /// Writes a folder of files, which must not exist, be empty or hold an older result of the same kind.
 ///
 /// # Errors
-/// Whatever the system refuses, or it was asked to stop. Nothing is left behind and an older result stays as it was.
+/// Errors of the system, or the computation is cancelled. Nothing is left behind and an older result is
+/// unchanged.
 pub fn save_files(
     path: &Path,
     kind: &str,
@@ -107,7 +108,8 @@ pub fn save_files(
     })
 }
 
-/// What a study writes into its folder: `report.json`, a picture and a table of one name, perhaps Zarr groups.
+/// Files of a study in its folder: `report.json`, a picture and a table with the same name, and optional Zarr
+/// groups.
 #[derive(Debug, Clone, Copy)]
 pub struct StudyFolder<'a> {
     /// The folder.
@@ -126,10 +128,10 @@ impl StudyFolder<'_> {
         write::check_folder(self.path, self.name, exec)
     }
 
-    /// Writes everything and says what was written; `more` adds to the folder.
+    /// Writes everything and returns the paths; `more` adds to the folder.
     ///
     /// # Errors
-    /// Whatever the system refuses, or those of `more`; nothing is left behind.
+    /// Errors of the system, or those of `more`; nothing is left behind.
     pub fn write(
         &self,
         json: &str,

@@ -31,7 +31,7 @@ const POINTS: u32 = 0;
 const LINE_STRIP: u32 = 3;
 const TRIANGLES: u32 = 4;
 
-/// A motion as a `.glb` file; `None` where the halves never met, so that there is nothing to show.
+/// A motion as a `.glb` file; `None` if the halves never met, so that there is nothing to show.
 pub fn glb(trace: &TraceReport, connector: &Connector) -> Option<Vec<u8>> {
     let last = trace.waypoints.last()?;
     let (design, cor) = (&trace.design, trace.design.alignment.center_of_rotation);
@@ -96,7 +96,7 @@ struct Frame {
     rotation: [f32; 4],
 }
 
-/// Waypoints at strictly growing times; of several at one time the last counts.
+/// Waypoints at strictly increasing times; of several at the same time the last counts.
 fn frames(trace: &TraceReport, metres: f64) -> Vec<Frame> {
     let cor = trace.design.alignment.center_of_rotation;
     let travelled = trace.waypoints.last().map_or(0.0, |last| last.travelled_d);
@@ -131,7 +131,7 @@ struct File {
 }
 
 impl File {
-    /// Adds tuples of numbers; `bounded` ones say their least and greatest.
+    /// Adds tuples of numbers; for `bounded` tuples also the minimum and maximum.
     fn accessor<const N: usize>(
         &mut self,
         values: &[[f32; N]],

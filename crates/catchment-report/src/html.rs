@@ -19,7 +19,7 @@ use base64::engine::general_purpose::STANDARD;
 #[cfg(feature = "page")]
 use sha2::{Digest, Sha256};
 
-/// A page, or the beginning of one.
+/// A page, or the beginning of a page.
 #[derive(Debug, Default)]
 pub(crate) struct Html(String);
 
@@ -45,7 +45,8 @@ impl Html {
         self
     }
 
-    /// A value inside of a script element of type `application/json`: in JSON `<` occurs in strings alone, where `\u003c` says the same.
+    /// A value inside of a script element of type `application/json`: in JSON `<` occurs only in strings, in
+    /// which `\u003c` is equivalent.
     ///
     /// # Errors
     /// The value has no JSON form.
@@ -75,8 +76,9 @@ impl Html {
     }
 }
 
-/// The Content-Security-Policy of a page with these inline scripts and styles: they run, by their SHA-256, and no other script and no handler
-/// in an attribute does; nothing is loaded. The page may start workers from its own text, and WebAssembly. A served page may ask its server.
+/// The Content-Security-Policy of a page with these inline scripts and styles: they are permitted by their
+/// SHA-256, while no other script and no handler in an attribute is; nothing is loaded. The page may start
+/// workers from its own text, and WebAssembly. A served page may contact its server.
 #[cfg(feature = "page")]
 pub fn policy(scripts: &[&str], styles: &[&str], is_served: bool) -> String {
     let hash = |text: &&str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));

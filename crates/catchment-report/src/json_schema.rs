@@ -18,7 +18,7 @@ pub const TEXT: &str = include_str!("../reports.schema.json");
 
 static ROOT: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(TEXT).unwrap_or_default());
 
-/// The schema of reports of a kind; none where there is no such kind.
+/// The schema of reports of a kind; `None` for an unknown kind.
 pub fn of_kind(kind: &str) -> Option<ReportSchema<'static>> {
     ReportSchema::of(&ROOT, kind)
 }

@@ -26,17 +26,17 @@ pub struct OutcomesReport<'a> {
     method: &'a Method,
     /// Settings of the method.
     pub settings: serde_json::Value,
-    /// What the method found, for the poses of the table.
+    /// Result of the method for the poses of the table.
     pub acceptance: &'a Acceptance,
-    /// Where each motion ended.
+    /// End of each motion.
     pub ends: &'a [End],
-    /// Why each did not dock, where that can be told; `None` where there is nothing to tell of this design.
+    /// Reason for each failure to dock, if it can be determined; `None` if this design has no such reasons.
     pub reasons: Option<Vec<Option<FailureReason>>>,
     /// Which of them could as well have stuck on their way, with friction.
     doubts: Option<&'a MayStick<'a>>,
-    /// Doubts about the answer.
+    /// Warnings about the result.
     pub warnings: Vec<WarningReport>,
-    /// The numbers of the rows that were finished, where it was stopped before all of them were.
+    /// The numbers of the finished rows, if the computation was stopped early.
     pub finished: Option<&'a [usize]>,
 }
 
@@ -54,7 +54,8 @@ pub struct OutcomeRows<'a> {
 }
 
 impl<'a> OutcomeRows<'a> {
-    /// Of a table whose poses are decided for a problem; with friction, what Coulomb's law leaves open of them.
+    /// Rows of a table whose poses are decided for a problem; with friction, including the cases that
+    /// Coulomb's law leaves open.
     pub fn new(
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
@@ -66,8 +67,8 @@ impl<'a> OutcomeRows<'a> {
         Self { problem, table, rows, endings, doubts, next: 0, waiting }
     }
 
-    /// The names of the columns: those of the table, `outcome`, the final errors, z of the COR in the final state in D, what touches there in
-    /// words, `may_stick` with friction, and `reason` where there is something to tell.
+    /// The column names: those of the table, `outcome`, the final errors, z of the COR in the final state in
+    /// D, the contacts there in words, `may_stick` with friction, and `reason` if the design has reasons.
     ///
     /// # Errors
     /// As for [`OutcomesReport::to_csv`].
@@ -85,7 +86,7 @@ impl<'a> OutcomeRows<'a> {
         record(&header)
     }
 
-    /// A pose is decided: the rows that can be told now.
+    /// A pose is decided: returns the rows that can be written now.
     ///
     /// # Errors
     /// As for [`OutcomesReport::to_csv`].
@@ -126,7 +127,7 @@ impl<'a> OutcomeRows<'a> {
     }
 }
 
-/// One line of CSV.
+/// A line of CSV.
 fn record(cells: &[String]) -> Result<String, csv::Error> {
     let mut bytes = Vec::new();
     let mut writer = csv::Writer::from_writer(&mut bytes);
@@ -190,7 +191,7 @@ struct Row {
 }
 
 impl<'a> OutcomesReport<'a> {
-    /// What a method found for the poses of a table.
+    /// Report of a method's result for the poses of a table.
     pub fn new(
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
@@ -224,12 +225,12 @@ impl<'a> OutcomesReport<'a> {
         report
     }
 
-    /// How many rows have no outcome, because it was stopped; `None` where all have one.
+    /// Number of rows without an outcome, because the computation was stopped; `None` if all have one.
     pub fn missing(&self) -> Option<usize> {
         self.finished.map(|finished| self.table.errors().len() - finished.len())
     }
 
-    /// That an answer is not whole, as a sentence; `None` where it is.
+    /// A sentence about an incomplete result; `None` for a complete one.
     pub fn partial(&self) -> Option<String> {
         let (missing, all) = (self.missing()?, self.table.errors().len());
         let finished = all - missing;
@@ -238,7 +239,7 @@ impl<'a> OutcomesReport<'a> {
         ))
     }
 
-    /// The numbers of the rows that are told.
+    /// The numbers of the reported rows.
     fn told(&self) -> impl Iterator<Item = usize> {
         let all = if self.finished.is_some() { 0 } else { self.table.errors().len() };
         self.finished.unwrap_or_default().iter().copied().chain(0..all)
@@ -261,16 +262,16 @@ impl<'a> OutcomesReport<'a> {
         rows.saturating_mul(row).saturating_add(COPIES * table.text().len() as u64)
     }
 
-    /// Why a pose did not dock, if that can be told.
+    /// Reason for a pose's failure to dock, if it can be determined.
     fn reason(&self, pose: usize) -> Option<FailureReason> {
         self.reasons.as_ref()?.get(pose).copied().flatten()
     }
 
-    /// The table as it came, with the outcome, the final errors in the units of their columns, height and contacts there; where reasons can be told, with a
-    /// column of them: what [`OutcomeRows`] gives row by row.
+    /// The input table, with the outcome, the final errors in the units of their columns, height and contacts
+    /// there; with a column of reasons if the design has them: the same as [`OutcomeRows`] gives row by row.
     ///
     /// # Errors
-    /// If a row cannot be written, which text in memory gives no reason for.
+    /// If a row cannot be written, which does not occur for text in memory.
     pub fn to_csv(&self) -> Result<String, csv::Error> {
         let mut rows = OutcomeRows::new(self.problem, self.table, self.method, self.doubts);
         let mut text = rows.header()?;
@@ -281,10 +282,10 @@ impl<'a> OutcomesReport<'a> {
         Ok(text)
     }
 
-    /// The answer for programs: lengths in D, angles in radians, offsets at the point where the table has them.
+    /// The result for programs: lengths in D, angles in radians, offsets at the point of the table.
     ///
     /// # Errors
-    /// If a number cannot be told in JSON.
+    /// If a number has no JSON form.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let carried = self.table.carried();
         let at = self.table.offsets_at();

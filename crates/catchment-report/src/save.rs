@@ -25,7 +25,7 @@ const RUN: &str = "run";
 /// The kind of a folder with pictures alone.
 const PICTURES: &str = "pictures";
 
-/// What was written, and which pictures could not be drawn, with the reason.
+/// The files written, and the pictures that could not be drawn, with the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Saved {
     /// Pictures, each as PNG and SVG.
@@ -87,10 +87,11 @@ pub fn save_pictures(path: &Path, drawn: &DrawnFigures, exec: &Exec) -> Result<S
     Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
 }
 
-/// Writes the set alone, over its first three axes where it has more: a file for another program, which must not exist.
+/// Writes only the set, over its first three axes if it has more: a file for another program, which must not
+/// exist.
 ///
 /// # Errors
-/// Whatever the system refuses, or the set cannot be shown so. Nothing is left behind.
+/// Errors of the system, or a set that cannot be shown in this form. Nothing is left behind.
 pub fn save_set(answer: &Answer, path: &Path, kind: set::SetFileKind, exec: &Exec) -> Result<(), SaveError> {
     let heights = layers(answer).heights;
     if answer.grid().is_none() && kind == set::SetFileKind::Table {
@@ -138,13 +139,13 @@ impl SweepReport {
     /// Writes the Zarr group `sweep.zarr` into a folder that is being filled.
     ///
     /// # Errors
-    /// Whatever the system refuses, or it was asked to stop.
+    /// Errors of the system, or the computation is cancelled.
     pub fn save_group(&self, folder: &Path, exec: &Exec) -> Result<(), SaveError> {
         Ok(zarr::fill_sweep(folder, self, exec)?)
     }
 }
 
-/// Where the files of an answer shall go.
+/// Target of the files of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target<'a> {
     /// Everything, into a folder.

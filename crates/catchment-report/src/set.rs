@@ -15,7 +15,7 @@ use std::path::Path;
 /// The endings, in the order of the kinds.
 pub const ENDINGS: [&str; 3] = ["vti", "vtp", "csv"];
 
-/// What is in such a file.
+/// Content of such a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SetFileKind {
     /// Every cell, for VTK.

@@ -15,7 +15,7 @@ macro_rules! subjects {
 }
 
 subjects! {
-    /// Every method on one grid.
+    /// All methods on a common grid.
     AgreementReport = catchment_study::agreement::Agreement;
     /// The probability that drop tests dock.
     #[cfg(feature = "drop")]
@@ -24,15 +24,15 @@ subjects! {
     ConvergenceReport = catchment_study::convergence::Convergence;
     /// The effect of friction.
     FrictionReport = catchment_study::friction::Friction;
-    /// The load that a half withstands.
+    /// Holding forces of a half.
     HoldReport = catchment_study::hold::HoldingForces;
-    /// The places where motions rest that do not dock.
+    /// Jams: rests outside the seat.
     JamsReport = catchment_core::run::jams::Jams;
     /// The first contact as the kinematic method sees it.
     LeverReport = crate::FirstContact;
     /// A plan of trials.
     PlanReport = catchment_study::plan::TrialPlan;
-    /// The places where halves come to rest.
+    /// Rests of the halves.
     RestsReport = catchment_core::run::rests::Rests;
     /// The Sum against ρ, the centre of rotation and the aspect ratio.
     SensitivityReport = catchment_study::sensitivity::Sensitivity;

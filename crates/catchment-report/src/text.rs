@@ -2,16 +2,16 @@
 
 use catchment_core::terminal::printable;
 
-/// Ends a line of text with what may be printed of `content`.
+/// Ends a line of text with the printable form of `content`.
 pub fn line(text: &mut String, content: &str) {
     text.push_str(printable(content).trim_end());
     text.push('\n');
 }
 
-/// Records as CSV, the names of the columns first.
+/// Records as CSV, the column names first.
 ///
 /// # Errors
-/// If the records are not of one length.
+/// If the records have different lengths.
 pub fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for record in records {

@@ -106,7 +106,7 @@ impl TraceReport {
         Self::of(body, warnings, None)
     }
 
-    /// Of one drop test with `settings`.
+    /// Report of a drop test with `settings`.
     #[cfg(feature = "drop")]
     pub fn of_drop(
         design: &Design,
@@ -200,7 +200,8 @@ impl TraceBody {
         table
     }
 
-    /// A row per contact point for programs, in D and radians; a waypoint that touches nowhere has one row without a point.
+    /// A row per contact point for programs, in D and radians; a waypoint without contact has a row without a
+    /// point.
     fn contact_table(&self) -> Table {
         let timed = self.is_timed();
         let mut table = Table::data(if timed {

@@ -34,7 +34,7 @@ impl Version {
     /// Reads a version.
     ///
     /// # Errors
-    /// The text is none.
+    /// The text is not a version.
     pub fn parse(text: &str) -> Result<Self, VersionError> {
         let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
         let (core, more) = text.split_at(text.find(['-', '+']).unwrap_or(text.len()));

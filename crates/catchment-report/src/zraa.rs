@@ -17,7 +17,7 @@ pub type ZraaBody = OfDesign<AcceptedOffsets>;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum AcceptedOffsets {
-    /// One free translation.
+    /// A single free translation.
     Interval {
         /// x or y.
         axis: Dof,
@@ -133,7 +133,7 @@ impl NilssonReport {
 }
 
 impl AcceptedOffsets {
-    /// Of a design; `nilsson` is of its profile, if it has one.
+    /// Report for a design; `nilsson` belongs to its profile, if any.
     pub fn new(design: &Design, zraa: &Zraa, square: &AcceptedSquare, nilsson: Option<&Nilsson>) -> Self {
         let bounds = circle_bounds(design, zraa);
         match zraa {
@@ -236,7 +236,7 @@ impl Subject for AcceptedOffsets {
     }
 }
 
-/// Where a square lies.
+/// Position of a square.
 fn around(x: f64, y: f64) -> String {
     if x.abs().max(y.abs()) < AcceptedSquare::TOLERANCE {
         "around zero".to_owned()
@@ -245,7 +245,7 @@ fn around(x: f64, y: f64) -> String {
     }
 }
 
-/// ` = 25 mm`, where the design has a unit.
+/// ` = 25 mm`, if the design has a unit.
 fn in_unit(design: &Design, value: f64, power: i32) -> String {
     let square = if power == 2 { "²" } else { "" };
     design.unit.map_or_else(String::new, |unit| {

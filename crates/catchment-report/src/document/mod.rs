@@ -71,7 +71,7 @@ impl<T: Subject> ReportOf<T> {
 
 /// A report that people read.
 pub trait Printed: ReportBody {
-    /// What it is about: the name of the design, as a rule.
+    /// Its subject: usually the name of the design.
     fn title(&self) -> Cow<'_, str>;
 
     /// Its description, without warnings.
@@ -83,7 +83,7 @@ impl<T: Subject> Printed for OfDesign<T> {
         Cow::Borrowed(&self.design.name)
     }
 
-    /// The heading of its design, which what the result says first continues.
+    /// The heading of its design, followed by the content of the result.
     fn document(&self) -> Document {
         let mut document = heading(&self.design, T::SAMPLES_ERRORS);
         let mut rest = self.result.document(&self.design);
@@ -103,7 +103,7 @@ impl<B: Printed> ReportEnvelope<B> {
         self.described_with(|_| None)
     }
 
-    /// The same; beside a warning stands its advice in the words of `controls`: `--samples 4000`, where there is a command line.
+    /// The same, with the advice of each warning phrased by `controls`: `--samples 4000`, for a command line.
     pub fn described_with(&self, controls: impl Fn(Advice) -> Option<String>) -> Described<'_> {
         let warning = |warning: &WarningReport| {
             let advice = warning.warning.advice().and_then(&controls);
@@ -121,7 +121,7 @@ impl<B: Printed> ReportEnvelope<B> {
         text(&self.described(), Style::default())
     }
 
-    /// Its table for programs, the names of the columns first; empty where it has none.
+    /// Its table for programs, the column names first; empty without a table.
     pub fn records(&self) -> Vec<Vec<String>> {
         self.body.document().records().map(Table::records).unwrap_or_default()
     }
@@ -130,7 +130,7 @@ impl<B: Printed> ReportEnvelope<B> {
 /// A document with the title and the warnings of its report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Described<'a> {
-    /// What the report is about.
+    /// Subject of the report.
     pub title: Cow<'a, str>,
     /// The document.
     pub document: Document,

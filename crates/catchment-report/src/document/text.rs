@@ -107,7 +107,7 @@ impl Page {
         }
     }
 
-    /// A line with what may be printed of `content`.
+    /// A line with the printable form of `content`.
     fn line(&mut self, content: &str) {
         self.text.push_str(printable(content).trim_end());
         self.text.push('\n');
@@ -118,7 +118,8 @@ impl Page {
         self.wrapped(&format!("{INDENT}{name:<width$} ", width = self.names), value);
     }
 
-    /// A text after `first`; broken between words where it is too long, later lines indented by the width of `first`.
+    /// A text after `first`; broken between words if it is too long, later lines indented by the width of
+    /// `first`.
     fn wrapped(&mut self, first: &str, content: &str) {
         let indent = first.chars().count();
         if indent + content.chars().count() <= self.style.columns {

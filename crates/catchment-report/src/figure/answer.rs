@@ -9,23 +9,24 @@ use catchment_core::pose::{CorPose, PoseError};
 use catchment_core::run::Answer;
 use catchment_study::planes;
 
-/// How far the halves are drawn apart, in D, so that both faces can be seen.
+/// Distance at which the halves are drawn apart, in D, so that both faces are visible.
 const LIFT: f64 = 0.6;
 
-/// What was drawn, by name, and what was left out, with the reason.
+/// The pictures drawn, by name, and the omitted ones, with the reason.
 #[derive(Debug, Clone, Default)]
 pub struct DrawnFigures {
     /// Name, without ending, and picture.
     pub pictures: Vec<(&'static str, Picture)>,
-    /// What was left out.
+    /// The omitted pictures.
     pub left_out: Vec<String>,
 }
 
 impl DrawnFigures {
-    /// Draws all that the answer has: maps need two free errors, and slices finer than the grid are followed exactly.
+    /// Draws all parts of the result: maps need two free errors, and slices finer than the grid are followed
+    /// exactly.
     ///
     /// # Errors
-    /// A picture cannot be drawn, or it was asked to stop.
+    /// A picture cannot be drawn, or the computation is cancelled.
     pub fn of(answer: &Answer, exec: &Exec) -> Result<Self, SaveError> {
         super::memory::ensure_domain_fits(&answer.acceptance.domain, exec)?;
         let mut drawn = Self::default();
@@ -106,7 +107,7 @@ mod tests {
     use catchment_core::problem::Problem;
     use catchment_core::run::{Over, Run, Sample};
 
-    /// One slice had 71 cells a side, those beside it 25.
+    /// A slice had 71 cells a side, its neighbours 25.
     #[test]
     fn slices_have_one_resolution() {
         let problem = Problem::of(design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect())).unwrap();

@@ -30,7 +30,8 @@ const COUNTED: usize = 60;
 /// Width of the places for 0 and for ∞, in SVG units.
 const PLACE: f64 = 34.0;
 
-/// The scale of depths, in D, of everything that is drawn over them: logarithmic, with a place for 0 at the left and one for ∞ at the right.
+/// The common scale of depths, in D: logarithmic, with a place for 0 at the left and a place for ∞ at the
+/// right.
 struct Depths {
     left: f64,
     width: f64,
@@ -152,7 +153,7 @@ pub fn basins(
     Ok(Picture::of(svg))
 }
 
-/// Two significant digits: depths are told apart by factors.
+/// Two significant digits: depths differ by factors.
 fn significant(value: f64) -> String {
     if value <= 0.0 {
         return "0".to_owned();
@@ -193,7 +194,7 @@ fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, f
     frame.draw(svg);
 }
 
-/// One dot per minimum: its depth, and the share of all cells that drain to it before any merging.
+/// A dot for each minimum: its depth, and the share of all cells that drain to it before any merging.
 fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &Depths, rect: Rect) {
     let total = acceptance.outcomes.len() as f64;
     // From one cell to all of them.

@@ -13,12 +13,12 @@ use catchment_core::poses::ObservedOutcome;
 use catchment_study::plan::{CELLS, Panel, PlannedPose};
 use catchment_study::validate::PredictedTrial;
 
-/// A trial that fared otherwise than predicted.
+/// A trial with another outcome than predicted.
 const WRONG: &str = "#c62f2f";
 /// Docked, and did not.
 const DOCKED: &str = "#123a5c";
 const FAILED: &str = "#8a4b00";
-/// Size of a panel, in SVG units; of one error alone it is low.
+/// Size of a panel, in SVG units; a panel of a single error is low.
 const SIDE: f64 = 250.0;
 const LOW: f64 = 70.0;
 /// Panels beside each other.
@@ -27,7 +27,7 @@ const PER_ROW: usize = 3;
 const BESIDE: f64 = 74.0;
 const BELOW: f64 = 72.0;
 
-/// What a pose is drawn as.
+/// Mark of a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shape {
     Docks,
@@ -43,7 +43,7 @@ struct Mark {
     wrong: bool,
 }
 
-/// Draws the poses of a plan, and what is predicted of them.
+/// Draws the poses of a plan, with their predictions.
 pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
     let of = |point: &PlannedPose| Mark {
         error: point.error,
@@ -68,7 +68,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
     draw(&report.design, &story, &marks, panels, &words)
 }
 
-/// Draws what was seen of trials over what was predicted.
+/// Draws the observed outcomes of trials over the predictions.
 pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
     let of = |trial: &PredictedTrial| Mark {
         error: trial.point.error,
@@ -139,7 +139,7 @@ fn draw(
     Picture::of(svg)
 }
 
-/// How the poses lie to what is drawn under them, where that is not plain to see.
+/// Relation of the poses to the background, if it is not obvious.
 fn note(panels: &[Panel]) -> &'static str {
     let is_near = |panel: &Panel| panel.others.iter().any(|(_, ends)| Panel::middle(*ends).1.is_some());
     if panels.iter().any(Panel::is_projection) {
@@ -186,7 +186,7 @@ fn beside(panel: &Panel, units: &ShownUnits) -> String {
     panel.others.iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
-/// The shade of what docks: light, so that marks show.
+/// The shade of the accepted set: light, so that marks are visible.
 fn region() -> Rgb {
     const LIGHT: f64 = 0.62;
     mix(colour::outcome(Outcome::Aligned), [0xff, 0xff, 0xff], LIGHT)
@@ -228,7 +228,7 @@ fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: R
     }
 }
 
-/// What docks: runs of cells, row by row.
+/// The accepted set: runs of cells, row by row.
 fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
     let rows = panel.cells.len() / CELLS;
     if rows == 0 {
@@ -257,7 +257,7 @@ fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
     svg.path(&data, &format!(r#"fill="{fill}" stroke="{fill}" stroke-width="0.5" {JOIN}"#));
 }
 
-/// ● docks, × does not, ◇ may go either way, ○ not made; ringed where it fared otherwise than predicted.
+/// ● docks, × fails, ◇ may do either, ○ not made; ringed if the outcome differs from the prediction.
 fn mark(svg: &mut Svg, [x, y]: [f64; 2], shape: Shape, wrong: bool) {
     const SIZE: f64 = 3.6;
     match shape {

@@ -60,7 +60,7 @@ fn axis(shape: &Solids, k: usize) -> String {
     format!("{name} [{}]", if is_angle(name) { "rad" } else { "D" })
 }
 
-/// What a body is coloured by: its piece of the half that the shape is mostly of.
+/// Colours of a body: by its piece of the half that dominates the solid.
 fn colours(shape: &Solids, solid: &Solid) -> [Rgb; 2] {
     /// Share of white in the face of a piece.
     const LIGHT: f64 = 0.45;
@@ -128,7 +128,7 @@ fn in_space(svg: &mut Svg, rect: Rect, shape: &Solids) -> Result<(), FigureError
     solid::bodies(svg, rect, &coloured)
 }
 
-/// A body as a surface to be looked at: its edges are those of its facets.
+/// A body as a surface for display: its edges are those of its facets.
 fn surface(solid: &Solid) -> Surface {
     let facet = |face: &Vec<usize>| {
         let at = |k: usize| solid.vertices[face[k]] - solid.vertices[face[0]];

@@ -20,10 +20,10 @@ const STEPS: usize = 50;
 /// Shares that are written beside it.
 const MARKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// Draws the map, and the curve beside it, as far as they were asked for.
+/// Draws the map, and the curve, as far as they were requested.
 ///
 /// # Errors
-/// If neither was.
+/// If neither was requested.
 pub fn chance(report: &ChanceReport) -> Result<Picture, FigureError> {
     let map = report.map.as_ref().filter(|map| map.axes.len() == 2);
     if map.is_none() && report.curve.is_empty() {
@@ -129,7 +129,7 @@ fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) {
     );
 }
 
-/// What the colours mean.
+/// The legend of the colours.
 fn bar(svg: &mut Svg, rect: Rect) {
     let each = rect.h / STEPS as f64;
     for k in 0..STEPS {

@@ -5,34 +5,34 @@ use super::draw::chart::{Chart, ChartLine, ChartPoint, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
-/// One curve.
+/// A curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Its name in the legend.
     pub name: String,
     /// Its points; those whose x is not positive are left out.
     pub points: Vec<CurvePoint>,
-    /// Whether it is what the others are measured by: drawn in ink, not in a colour.
+    /// Whether it is the reference for the others: drawn in ink, not in a colour.
     pub is_reference: bool,
 }
 
-/// One point of a curve.
+/// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// Place on the logarithmic scale.
     pub x: f64,
     /// Value.
     pub y: f64,
-    /// The interval of the value, where it has one.
+    /// The interval of the value, if any.
     pub interval: Option<[f64; 2]>,
 }
 
 /// A chart of curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveChart<'a> {
-    /// What runs to the right.
+    /// Label of the horizontal axis.
     pub x_label: &'a str,
-    /// What runs up.
+    /// Label of the vertical axis.
     pub y_label: &'a str,
     /// The curves; the same place in every chart has the same colour.
     pub curves: Vec<Curve>,
@@ -41,7 +41,7 @@ pub struct CurveChart<'a> {
 /// Colour of a reference.
 const REFERENCE: Rgb = [0x1f, 0x29, 0x33];
 
-/// Draws charts side by side below a title and a line, with the names of the first one's curves.
+/// Draws charts side by side below a title and a line, with the names of the first chart's curves.
 pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
     let (left, top, size, step) = (78.0, 96.0, [400.0, 300.0], 482.0);
     let last = left + step * charts.len().saturating_sub(1) as f64;

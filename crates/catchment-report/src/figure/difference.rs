@@ -13,7 +13,8 @@ use catchment_core::merit::comparison::{Comparison, Paired};
 use catchment_core::merit::slice;
 use catchment_core::pose::{Dof, PoseError};
 
-/// Accepted by both, by the first alone, by the second alone, by none: light where they agree, strong where they do not.
+/// Accepted by both, only by the first, only by the second, by neither: light for agreement, strong for
+/// differences.
 const COLOURS: [Rgb; 4] = [[0xa9, 0xcb, 0xe6], [0xd5, 0x5e, 0x00], [0x00, 0x7a, 0x5e], [0xe6, 0xe9, 0xed]];
 
 /// Room left of the maps, above them, below them, and between them to the right and downwards.
@@ -22,8 +23,8 @@ const TOP: f64 = 84.0;
 const BELOW: f64 = 84.0;
 const GAP: [f64; 2] = [26.0, 22.0];
 
-/// Draws where two acceptances of the same errors differ, with the border of the first. `names` say what the two are;
-/// the design's unit is that of the axes.
+/// Draws the differences of two acceptances of the same errors, with the border of the first. `names` are the
+/// names of the two; axes have the design's unit.
 ///
 /// # Errors
 /// Fewer than two errors, listed poses.

@@ -35,10 +35,10 @@ const GAP: f64 = 48.0;
 const COLUMN: f64 = 150.0;
 /// Bold letters are wider by this, about.
 const BOLD: f64 = 1.14;
-/// The largest offset itself is a border, where what touches inside may touch no longer.
+/// The largest offset itself is a border, at which contacts inside it may open.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// One design of the picture.
+/// A design of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct PicturedDesign<'a> {
     /// The design.
@@ -49,7 +49,7 @@ pub struct PicturedDesign<'a> {
     pub pair: &'a Pair,
     /// Offsets along x that are corrected without rotation, in D.
     pub reach: [f64; 2],
-    /// What its profile says, if it has one.
+    /// Bounds of its profile, if it has one.
     pub nilsson: Option<Nilsson>,
 }
 
@@ -60,7 +60,7 @@ impl PicturedDesign<'_> {
         if to >= -from { to } else { from }
     }
 
-    /// Where the moving half touches at the largest offset.
+    /// Pose of the moving half in contact at the largest offset.
     fn shifted(&self) -> Result<MovingHalfPose, FigureError> {
         let x = self.offset() * INSIDE;
         let pose = CorPose { lateral: DVec2::new(x, 0.0), rotation: DMat3::IDENTITY };

@@ -22,7 +22,8 @@ const STATIC: Rgb = [0x5f, 0x6b, 0x7a];
 /// Pairs of features that are drawn.
 const SHOWN: usize = 5;
 
-/// Draws which share of what docks without friction docks still, and beside it the features on which the first poses stick.
+/// Draws the share of frictionless successes that still docks, and the features on which the first poses
+/// stick.
 pub fn friction(report: &FrictionReport) -> Picture {
     let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
     let bars = Rect { x: 540.0, y: top, w: 380.0, h: size[1] };
@@ -62,10 +63,11 @@ pub fn friction(report: &FrictionReport) -> Picture {
     Picture::of(svg)
 }
 
-/// The share of what docks without friction whose critical friction is marked.
+/// The share of frictionless successes whose critical friction is marked.
 const MARKED: f64 = 0.95;
 
-/// The poses that dock without friction and still dock, and those that the static test says do, as shares of the first.
+/// The poses that dock without friction and still dock, and those that the static test predicts to dock, as
+/// shares of the first.
 fn lines(report: &FrictionReport) -> Vec<ChartLine> {
     let percent = |share: f64| 100.0 * share;
     let base = report.curve.first().map_or(0, |rung| rung.aligned.count);

@@ -54,7 +54,7 @@ fn path(text: &Node<'_, '_>, face: &Face<'_>, to: &mut String) {
     to.push_str("/>");
 }
 
-/// The glyphs of a text, where each begins, and how wide all are, in units of the font.
+/// The glyphs of a text, the start of each, and the total width, in units of the font.
 fn laid_out(face: &Face<'_>, text: &str) -> (Vec<(GlyphId, f64)>, f64) {
     let kerning = |left: GlyphId, right: GlyphId| {
         let tables = face.tables().kern.iter().flat_map(|kern| kern.subtables);
@@ -121,7 +121,7 @@ impl OutlineBuilder for Outline<'_> {
 mod tests {
     use super::*;
 
-    /// Where the path of a text begins and ends.
+    /// Start and end of the path of a text.
     fn extent(anchor: &str, content: &str) -> [f64; 2] {
         let svg = format!(
             r##"<svg xmlns="http://www.w3.org/2000/svg"><text x="100" y="50" font-size="20.48" text-anchor="{anchor}" fill="#123456">{content}</text></svg>"##

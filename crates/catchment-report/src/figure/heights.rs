@@ -9,9 +9,10 @@ use crate::Report;
 use catchment_core::acceptance::Acceptance;
 use catchment_core::pose::{Dof, PoseError};
 
-/// Draws the heights over a pair of errors, the others at the values of `at`, under the numbers of the `report`;
-/// `acceptance` has the border, over the grid of the run or a finer one of the pair alone. `height` gives z of the COR at first
-/// contact, in D, for a cell of the grid; not finite where the halves pass each other by.
+/// Draws the heights over a pair of errors, the others at the values of `at`, below the numbers of the
+/// `report`; `acceptance` has the border, over the grid of the run or a finer grid of the pair alone.
+/// `height` returns z of the COR at first contact, in D, for a cell of the grid; not finite if the halves
+/// pass each other by.
 ///
 /// # Errors
 /// A pair that the grid does not have, listed poses instead of a grid, no contact anywhere in the slice.
@@ -87,7 +88,7 @@ mod tests {
     use super::*;
     use crate::schema::testing::{blob, design};
 
-    /// A bowl with a second dip beside it, and no contact in one corner.
+    /// A bowl with a second dip beside it, and no contact in a corner.
     pub(crate) fn bowl(x: f64, pitch: f64) -> f64 {
         if x + pitch > 2.0 {
             return f64::NEG_INFINITY;

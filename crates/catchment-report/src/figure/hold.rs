@@ -14,7 +14,7 @@ const RADIUS: f64 = 180.0;
 const BARS: Rect = Rect { x: 590.0, y: 150.0, w: 300.0, h: 360.0 };
 /// Rings of the polar chart, at most.
 const RINGS: f64 = 4.0;
-/// What lies beyond so many times the median of what is finite is drawn at the rim, so that the rest can be seen.
+/// Values beyond this multiple of the finite median are drawn at the rim, so that the rest is visible.
 const BEYOND: f64 = 4.0;
 /// Shares of the preload below this are nothing: rounding.
 const NOTHING: f64 = 1e-6;
@@ -35,16 +35,16 @@ const COLUMNS: [Column; 4] = [
 ];
 
 impl Column {
-    /// Infinite where any load is withstood; none where nothing is known.
+    /// Infinite if any load is resisted; `None` if unknown.
     fn of(&self, withstood: &LoadLimits) -> Option<f64> {
         withstood.columns()[self.number]
     }
 }
 
-/// Draws what a half withstands over the direction of the force, and torques beside it.
+/// Draws the holding force over the direction of the force, and the holding torques.
 ///
 /// # Errors
-/// If nothing that is free can be pushed.
+/// If no free error can be loaded.
 pub fn hold(report: &HoldReport) -> Result<Picture, FigureError> {
     if report.sideways.is_empty() && report.torques.is_empty() {
         return Err(FigureError::Empty { what: "no free error can be pushed" });
@@ -77,7 +77,7 @@ fn legend(svg: &mut Svg, rough: bool) {
     }
 }
 
-/// What is drawn at the rim of a chart: a round number above all that is finite and not far beyond the others.
+/// The value drawn at the rim of a chart: a round number above all finite values close to the others.
 fn rim(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| *value > NOTHING && value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
@@ -151,7 +151,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
     weakest(svg, report, at);
 }
 
-/// The weakest direction of what decides: free, with friction where it was asked for.
+/// The weakest direction of the decisive column: free, with friction if requested.
 fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]) {
     let found = report.weakest.rough_free.or(report.weakest.smooth_free);
     let (Some(side), Some(force)) = (found, report.least_force) else { return };

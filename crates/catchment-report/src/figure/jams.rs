@@ -31,12 +31,12 @@ const SPACE: [f64; 2] = [180.0, 190.0];
 /// Above the panels.
 const TOP: f64 = 76.0;
 
-/// What a panel shows.
+/// Content of a panel.
 struct Panel<'a> {
     head: String,
     contacts: &'a [FeatureContact],
     placement: MovingHalfPose,
-    /// Below what touches and where.
+    /// Text below: the contacts and their positions.
     tail: Vec<String>,
 }
 
@@ -89,10 +89,10 @@ fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> 
     }
 }
 
-/// Draws the rests with most of the poses.
+/// Draws the rests with the largest basins.
 ///
 /// # Errors
-/// If nothing comes to rest.
+/// If there are no rests.
 pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, FigureError> {
     if report.rests.is_empty() {
         return Err(FigureError::Empty { what: "none of the poses comes to rest" });

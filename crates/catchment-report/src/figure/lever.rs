@@ -14,15 +14,15 @@ use glam::DVec2;
 
 /// Length of the drawn normal, in SVG units.
 const NORMAL: f64 = 62.0;
-/// Smaller angles, in radians, are told beside the drawing alone.
+/// Smaller angles, in radians, are listed beside the drawing only.
 const LEAST: f64 = 0.02;
 /// Segments of an arc per radian.
 const ARC: f64 = 24.0;
 
-/// Draws the contact of a start; figures 3.3 and 3.4 of the dissertation with the numbers of one pose.
+/// Draws the contact of a start; figures 3.3 and 3.4 of the dissertation with the numbers of a given pose.
 ///
 /// # Errors
-/// If nothing touches, or corner meets corner.
+/// If nothing touches, or if a corner meets a corner.
 pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Result<Picture, FigureError> {
     let Some((lever, height)) = start.lever.zip(start.height) else {
         return Err(FigureError::Empty { what: "no corner touches an edge" });

@@ -10,7 +10,7 @@ use catchment_core::landscape::Grid;
 use catchment_core::merit::slice::GridSlice;
 use catchment_core::pose::{Dof, PoseError};
 
-/// Two axes of a grid, where the others are fixed, and the outcomes there.
+/// Two axes of a grid, with the others fixed, and the outcomes there.
 pub(super) struct Map {
     pub(super) slice: GridSlice,
     pub(super) outcomes: Vec<Outcome>,
@@ -38,13 +38,14 @@ impl Map {
         PlotFrame { rect, x: units.axis(&self.slice.axes[0]), y: units.axis(&self.slice.axes[1]) }
     }
 
-    /// The fixed errors in words; empty if there are none.
+    /// The fixed errors in words; empty without fixed errors.
     pub(super) fn fixed(&self, units: &ShownUnits) -> String {
         let values: Vec<String> = self.slice.at.iter().map(|(dof, v)| units.value(*dof, *v)).collect();
         values.join(", ")
     }
 
-    /// What it shows, and where it lies among the errors that are fixed, in at most this width: `…, slice through zero`, `…, slice at yaw = 1.5°`.
+    /// Its content, and its position among the fixed errors, within this width: `…, slice through zero`,
+    /// `…, slice at yaw = 1.5°`.
     pub(super) fn heading(&self, shows: &str, units: &ShownUnits, width: f64) -> String {
         if self.slice.at.is_empty() {
             return shows.to_owned();
@@ -67,7 +68,7 @@ impl Map {
         count as f64 / self.outcomes.len().max(1) as f64
     }
 
-    /// One pixel per cell, first axis to the right, second upwards.
+    /// A pixel for each cell, first axis to the right, second upwards.
     pub(super) fn paint(&self, svg: &mut Svg, frame: &PlotFrame, colours: &[Rgb]) -> Result<(), FigureError> {
         let [width, height] = [self.slice.axes[0].cells, self.slice.axes[1].cells];
         svg.image(frame.rect, &raster::cells(width, height, colours)?, true);
@@ -97,7 +98,7 @@ impl Map {
     }
 }
 
-/// The maximal runs `from..to` of 0..n where `holds`.
+/// The maximal runs `from..to` of 0..n in which `holds` is true.
 fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     for k in (0..n).filter(|k| holds(*k)) {
@@ -109,7 +110,7 @@ fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     found
 }
 
-/// Paints outcomes, border, zero lines, the ONAA cube (nothing where it has no bounds), and the axes.
+/// Paints outcomes, border, zero lines, the ONAA cube (nothing without bounds), and the axes.
 pub(super) fn outcomes(
     svg: &mut Svg,
     map: &Map,
@@ -150,7 +151,7 @@ pub(super) fn zero_lines(svg: &mut Svg, frame: &PlotFrame) {
     }
 }
 
-/// The cube's shadow on the two axes; dashed where the slice does not cut it.
+/// The cube's shadow on the two axes; dashed if the slice does not cut it.
 fn cube(svg: &mut Svg, map: &Map, frame: &PlotFrame, units: &ShownUnits, onaa: &[Interval]) {
     let range = |dof: Dof| onaa.iter().find(|i| i.axis == dof).map(|i| (i.lo, i.hi));
     let [a, b] = [map.slice.axes[0].dof, map.slice.axes[1].dof];
@@ -169,14 +170,14 @@ fn cube(svg: &mut Svg, map: &Map, frame: &PlotFrame, units: &ShownUnits, onaa: &
 
 /// The outcomes and the cube that maps show, in words from left to right.
 pub(super) struct Legend {
-    /// What the shares are of; empty where there are none.
+    /// The total to which the shares refer; empty without shares.
     of: &'static str,
     /// A fill (none for the cube) and the words.
     entries: Vec<(Option<Rgb>, String)>,
 }
 
 impl Legend {
-    /// Of a single map, with the share that each outcome has of what it shows.
+    /// Legend of a single map, with the share of each outcome in it.
     pub(super) fn of(map: &Map, onaa: bool) -> Self {
         let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
         Self::new(of, std::slice::from_ref(map), onaa, |outcome| {
@@ -262,8 +263,8 @@ pub(super) fn colour_bar(
     Ok(())
 }
 
-/// Path data of the lines where a field over cell centres takes `level`: marching squares, straight in each square.
-/// Squares with a corner that is not finite are left out.
+/// Path data of the lines at which a field over cell centres equals `level`: marching squares, straight in
+/// each square. Squares with a corner that is not finite are skipped.
 pub(super) fn contour(frame: &PlotFrame, [width, height]: [usize; 2], field: &[f64], level: f64) -> String {
     let at = |i: usize, j: usize| field[i + j * width];
     let place = |i: f64, j: f64| {
@@ -296,7 +297,7 @@ pub(super) fn contour(frame: &PlotFrame, [width, height]: [usize; 2], field: &[f
     data
 }
 
-/// Every pair of axes, or those asked for; an error if there is none.
+/// Every pair of axes, or the requested ones; an error if there is none.
 pub(super) fn pairs_or_all(grid: &Grid, pairs: &[[Dof; 2]]) -> Result<Vec<[Dof; 2]>, FigureError> {
     let all = if pairs.is_empty() { catchment_core::merit::slice::pairs(grid) } else { pairs.to_vec() };
     if all.is_empty() {

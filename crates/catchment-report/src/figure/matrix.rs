@@ -94,7 +94,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
     Ok(Picture::of(svg))
 }
 
-/// Where the moving half is drawn: straight above, as the slices have it at their centre.
+/// Pose of the moving half: straight above, as at the centre of the slices.
 const SHOWN: PoseError = PoseError { x: 0.0, y: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
 
 fn subtitle(design: &Design, found: &Slices) -> String {

@@ -118,19 +118,19 @@ use catchment_core::merit::MeritError;
 /// Why a picture cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// The grid does not have what the picture shows.
+    /// The grid does not have the content of the picture.
     #[error(transparent)]
     Merit(#[from] MeritError),
     /// There is nothing to show.
     #[error("there is nothing to draw: {what}")]
     Empty {
-        /// What is missing.
+        /// The missing item.
         what: &'static str,
     },
     /// The image could not be encoded.
     #[error("cannot encode the image: {reason}")]
     Encode {
-        /// What the encoder says.
+        /// Message of the encoder.
         reason: String,
     },
 }
@@ -142,12 +142,12 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What was drawn.
+    /// A picture from a drawing.
     pub fn of(drawing: draw::svg::Svg) -> Self {
         Self { svg: drawing.finish() }
     }
 
-    /// The picture as SVG. Text asks for `DejaVu Sans` and falls back to what the viewer has.
+    /// The picture as SVG. Text requests `DejaVu Sans` and falls back to fonts of the viewer.
     pub fn svg(&self) -> &str {
         &self.svg
     }
@@ -176,7 +176,7 @@ fn headline(report: &Report) -> String {
     format!("Sum {sum}{share}{onaa}  ·  by {}", report.method)
 }
 
-/// Where the largest cube of a run lies; nowhere if there is none.
+/// Bounds of the largest cube of a run; empty if there is none.
 fn cube(report: &Report) -> &[Interval] {
     report.onaa.as_ref().map_or(&[], |onaa| &onaa.bounds)
 }
@@ -245,7 +245,7 @@ pub(crate) mod testing {
         Report::new(design, acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap()
     }
 
-    /// The same with a Sum that random poses corrected to an eighth of the error box.
+    /// The same with a Sum corrected by samples to an eighth of the error box.
     pub(crate) fn corrected(mut report: Report, sum: f64, ci95: [f64; 2]) -> Report {
         let acceptance = &mut report.body.acceptance;
         (acceptance.sum, acceptance.sum_ci95, acceptance.fraction) = (sum, Some(ci95), 0.125);

@@ -30,7 +30,7 @@ pub enum Colouring {
 /// How a number is written into its cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Digits {
-    /// Two decimals below 10, one below 100, none above; no trailing zeros.
+    /// Two decimals below 10, one decimal below 100, integers above; no trailing zeros.
     Short,
     /// Always so many decimals.
     Decimals(usize),
@@ -39,7 +39,7 @@ pub enum Digits {
 /// A table to draw.
 #[derive(Debug, Clone)]
 pub struct NumberMap<'a> {
-    /// What it shows.
+    /// Its title.
     pub title: &'a str,
     /// Names of the rows.
     pub rows: &'a [String],
@@ -55,7 +55,7 @@ pub struct NumberMap<'a> {
     pub marks: Vec<([usize; 2], &'a str)>,
 }
 
-/// What stands above the maps, and their sizes, in units of the drawing.
+/// The text above the maps, and their sizes, in units of the drawing.
 #[derive(Debug, Clone)]
 pub struct NumberSheet<'a> {
     /// The title of the picture.

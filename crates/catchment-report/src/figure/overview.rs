@@ -10,7 +10,7 @@ use catchment_core::acceptance::Acceptance;
 use catchment_core::connector::Connector;
 use catchment_core::pose::{Dof, PoseError};
 
-/// From one map to the next, in SVG units.
+/// Distance between maps, in SVG units.
 const BETWEEN: f64 = 370.0;
 
 /// Draws an overview over a pair of errors, the others zero. The numbers are those of the `report`; the shares of the
@@ -87,7 +87,7 @@ mod tests {
         assert_eq!(picture, drawn());
     }
 
-    /// A grid so coarse that none of its cells is accepted, and random poses that know better.
+    /// A grid too coarse for any accepted cell, and samples with the correct Sum.
     #[test]
     fn five_errors_have_the_corrected_sum_of_their_report() {
         let design = design(DofSet::ALL);

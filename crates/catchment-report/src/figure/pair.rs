@@ -9,10 +9,10 @@ use catchment_core::contact::face::misdrawn;
 use catchment_core::contact::mated::CONTACT_TOLERANCE;
 use catchment_core::problem::Problem;
 
-/// How far apart the halves are drawn in space, in D.
+/// Distance at which the halves are drawn apart in space, in D.
 const LIFT: f64 = 0.6;
 
-/// Draws the two halves of a problem: what a person compares with the parts before they believe a number.
+/// Draws the two halves of a problem: a check of the input against the parts.
 ///
 /// # Errors
 /// If there is nothing to draw.

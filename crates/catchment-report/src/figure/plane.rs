@@ -12,12 +12,12 @@ use catchment_core::design::Design;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// Where halves are cut: one plane, or one through each of two layers.
+/// Planes in which halves are cut: one plane, or one through each of two layers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plane {
     /// Angle from x to the direction along the plane, in (−π/2, π/2].
     pub(super) azimuth: f64,
-    /// How far beside the axis, from far to near, in D.
+    /// Offsets beside the axis, from far to near, in D.
     pub(super) offsets: Vec<f64>,
     /// Whether it was laid through contacts.
     pub(super) through_contacts: bool,
@@ -26,11 +26,11 @@ pub(super) struct Plane {
 /// Two halves that touch along a face, an edge or at a point.
 #[derive(Debug, Clone)]
 pub(super) struct Patch {
-    /// Where.
+    /// Positions.
     pub(super) points: Vec<DVec3>,
     /// The normal there.
     pub(super) normal: DVec3,
-    /// How far the moving half's first place is from where it is docked, in plan view.
+    /// Offset of a first contact point of the moving half from its docked position, in plan view.
     pub(super) off: DVec2,
 }
 
@@ -43,12 +43,12 @@ impl Patch {
     }
 }
 
-/// Where a patch is seen at one place, however deep: a point, or an edge straight across the plane.
+/// Appearance of a patch at one position, at any depth: a point, or an edge straight across the plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stroke {
     /// Along the plane and upwards, in D.
     pub(super) at: [f64; 2],
-    /// How far beside the axis, from where to where, in D.
+    /// Range of offsets beside the axis, in D.
     reach: [f64; 2],
 }
 
@@ -64,7 +64,7 @@ impl Stroke {
 }
 
 impl Patch {
-    /// Its points in a world so turned that planes are those of constant y, by where they are seen.
+    /// Its points in a world rotated so that planes have constant y, by their visible positions.
     pub(super) fn strokes(&self, turn: &DMat3) -> Vec<Stroke> {
         let mut strokes: Vec<Stroke> = Vec::new();
         for point in &self.points {
@@ -81,18 +81,18 @@ impl Patch {
 
 /// Nearer than this is in the plane, in D.
 const IN_PLANE: f64 = 2e-3;
-/// Horizontal parts below this say no direction.
+/// Horizontal components below this define no direction.
 const UPRIGHT: f64 = 0.02;
-/// An angle that is none, radians.
+/// Angles below this count as zero, radians.
 const NO_ANGLE: f64 = 1e-3;
 
 impl Plane {
-    /// The plane y = 0, or one through each layer.
+    /// The plane y = 0, or a plane through each layer.
     pub(super) fn across(connector: &Connector) -> Self {
         Self { azimuth: 0.0, offsets: super::section::cuts(connector), through_contacts: false }
     }
 
-    /// The plane in which most of what touches lies; the usual one where that will do.
+    /// The plane that contains most of the contacts; the usual plane if it is sufficient.
     pub(super) fn through(connector: &Connector, patches: &[Patch]) -> Self {
         let usual = Self::across(connector);
         let Some(azimuth) = direction(patches) else { return usual };
@@ -115,15 +115,16 @@ impl Plane {
         Self { azimuth: if is_usual { 0.0 } else { azimuth }, offsets: vec![offset], through_contacts: true }
     }
 
-    /// The plane through what touches; the usual one where that shows next to nothing of either half, as at a corner or a side, or where nothing
-    /// touches; turned about the axis where that one would show the fixed half as a plain block.
+    /// The plane through the contacts; the usual plane if that shows almost nothing of either half, as at a
+    /// corner or a side, or without contacts; rotated about the axis if it would show the fixed half as a
+    /// plain block.
     pub(super) fn showing(
         design: &Design,
         connector: &Connector,
         placement: &MovingHalfPose,
         patches: &[Patch],
     ) -> Self {
-        /// Less than so much of what the usual cut shows of a half is next to nothing.
+        /// Share of the usual cut of a half below which a cut shows almost nothing.
         const SLIVER: f64 = 0.2;
         let (usual, plane) = (Self::across(connector), Self::through(connector, patches));
         let halves =
@@ -161,12 +162,12 @@ impl Plane {
         self.offsets.iter().flat_map(|y| cut(half, turn * rotation, turn * face, *y)).collect()
     }
 
-    /// Turns the world so that the plane is one of constant y.
+    /// Rotates the world so that the plane has constant y.
     pub(super) fn turn(&self) -> DMat3 {
         if self.azimuth == 0.0 { DMat3::IDENTITY } else { DMat3::from_rotation_z(-self.azimuth) }
     }
 
-    /// What its direction is called on an axis: `x`, or `along 30°` from x.
+    /// Name of its direction on an axis: `x`, or `along 30°` from x.
     pub(super) fn name(&self) -> String {
         if self.azimuth == 0.0 {
             return "x".to_owned();
@@ -178,7 +179,7 @@ impl Plane {
     }
 }
 
-/// What outlines enclose, those of holes taken away, in D².
+/// Area enclosed by outlines, without holes, in D².
 fn area(outlines: &[Vec<[f64; 2]>]) -> f64 {
     let one = |outline: &Vec<[f64; 2]>| -> f64 {
         let next = outline.iter().cycle().skip(1);
@@ -187,7 +188,8 @@ fn area(outlines: &[Vec<[f64; 2]>]) -> f64 {
     outlines.iter().map(one).sum::<f64>().abs()
 }
 
-/// The angle from x of the main horizontal direction of the normals, or else of the ways home, or of the contacts; none where nothing touches.
+/// The angle from x of the main horizontal direction of the normals, or else of the vectors to the docked
+/// positions, or of the contacts; `None` without contacts.
 fn direction(patches: &[Patch]) -> Option<f64> {
     let normals = patches.iter().map(|patch| patch.normal.truncate());
     let upright = normals.clone().all(|normal| normal.length() < UPRIGHT);
@@ -249,7 +251,7 @@ mod tests {
         assert_eq!(plane.name(), "along 50° from x");
     }
 
-    /// What stands beside its hole is cut the way that it is off, turned or not.
+    /// A peg beside its hole is cut in the direction of its offset, rotated or not.
     #[test]
     fn what_carries_straight_up_is_cut_towards_where_it_should_be() {
         let beside = |turn: DMat3, off: DVec3| {
@@ -263,7 +265,7 @@ mod tests {
         assert!((plane.azimuth.to_degrees() + 71.0).abs() < 2.0, "{plane:?}");
     }
 
-    /// A side that touches along the border of the halves, where a cut shows a block and no other half.
+    /// A side that touches along the border of the halves, at which a cut shows a block and no other half.
     #[test]
     fn where_next_to_nothing_would_be_seen_the_usual_cut_is_shown() {
         use crate::schema::testing::design;
@@ -294,7 +296,7 @@ mod tests {
         assert_eq!(Plane::showing(&design, &pyramid(), &mated, &[]), Plane::across(&pyramid()));
     }
 
-    /// Two points of one feature on either side of a plane are not in it; an edge straight across is.
+    /// Two points of a feature on opposite sides of a plane are not in it; an edge straight across is.
     #[test]
     fn only_what_lies_in_the_plane_is_in_it() {
         let apart = patch(&[[0.3, -0.14, 0.0], [0.1, -0.38, 0.0]], [-0.7, 0.0, 0.7]);

@@ -22,7 +22,7 @@ pub(super) fn encode(width: usize, height: usize, alpha: bool, data: &[u8]) -> R
     Ok(bytes)
 }
 
-/// PNG of a map: one pixel per cell, `colours` with the first axis fastest and the second one upwards.
+/// PNG of a map: a pixel for each cell, `colours` with the first axis fastest and the second upwards.
 pub(super) fn cells(width: usize, height: usize, colours: &[Rgb]) -> Result<Vec<u8>, FigureError> {
     if width == 0 || height == 0 {
         return Err(FigureError::Empty { what: "a slice without cells" });

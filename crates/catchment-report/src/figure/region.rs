@@ -15,7 +15,7 @@ const LEAST: f64 = 0.5;
 /// Room around the accepted offsets.
 const MARGIN: f64 = 1.15;
 
-/// Draws a zero-rotation area of acceptance over x and y, or over its one axis.
+/// Draws a zero-rotation area of acceptance over x and y, or over its single axis.
 pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture {
     let units = ShownUnits::of(design);
     let left = 78.0;

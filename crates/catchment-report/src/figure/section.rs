@@ -15,7 +15,7 @@ use catchment_core::pose::{Dof, PoseError, face_from_cor};
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
-/// Where the moving half is.
+/// Pose of the moving half.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingHalfPose {
     /// The pose error of its face centre.
@@ -42,17 +42,17 @@ impl MovingHalfPose {
 const CONTACT: &str = "#c0262d";
 /// Contacts this near to the cut are in it, in D.
 const CLOSE: f64 = 5e-3;
-/// Contacts seen nearer to each other than this are one, in SVG units.
+/// Contacts closer to each other than this are merged, in SVG units.
 const APART: f64 = 3.0;
 
-/// Marks where halves touch: full, or hollow where that is seen through something.
+/// Marks a contact: full, or hollow if it is seen through something.
 pub(super) fn contact_mark(svg: &mut Svg, at: [f64; 2], full: bool) {
     let fill = if full { CONTACT } else { "none" };
     svg.circle(at, 5.4, r##"fill="none" stroke="#ffffff" stroke-width="3""##);
     svg.circle(at, 4.4, &format!(r#"fill="{fill}" stroke="{CONTACT}" stroke-width="1.6""#));
 }
 
-/// Whether a place is not seen where one of those shown before is; then it is one of them.
+/// Whether a position differs from all positions shown before; if not, it is merged.
 pub(super) fn seen_apart(shown: &mut Vec<[f64; 2]>, at: [f64; 2]) -> bool {
     let is_apart = shown.iter().all(|other| (other[0] - at[0]).hypot(other[1] - at[1]) >= APART);
     if is_apart {
@@ -113,12 +113,12 @@ pub(super) fn describe(design: &Design, placement: &MovingHalfPose) -> String {
     if apart > 1e-9 { "aligned, drawn apart".to_owned() } else { "aligned".to_owned() }
 }
 
-/// A section with its extent: shared by the pictures that show one.
+/// A section with its extent: shared by the pictures with sections.
 pub(super) struct View<'a> {
     design: &'a Design,
     connector: &'a Connector,
     units: ShownUnits,
-    /// Where it is cut.
+    /// The cutting plane.
     plane: Plane,
     /// Turns the world so that the cuts are at constant y.
     turn: DMat3,
@@ -127,7 +127,7 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// A view that shows the fixed half and the moving one at all of `placements`.
+    /// A view of the fixed half and the moving half at all of `placements`.
     pub(super) fn new(
         design: &'a Design,
         connector: &'a Connector,
@@ -136,7 +136,7 @@ impl<'a> View<'a> {
         Self::along(design, connector, placements, Plane::across(connector))
     }
 
-    /// The same, cut along a plane of one's own.
+    /// The same, cut along a given plane.
     pub(super) fn along(
         design: &'a Design,
         connector: &'a Connector,
@@ -202,7 +202,7 @@ impl<'a> View<'a> {
         [self.lo[1], self.hi[1]]
     }
 
-    /// The largest size with the view's own proportions inside the given one.
+    /// The largest size with the view's own proportions inside the given size.
     pub(super) fn fit(&self, width: f64, height: f64) -> (f64, f64) {
         let [w, h] = self.size();
         let scale = (width / w).min(height / h);
@@ -219,7 +219,7 @@ impl<'a> View<'a> {
         PlotFrame { rect, x: axis(&self.plane.name(), mx - rx, mx + rx), y: axis("z", mz - rz, mz + rz) }
     }
 
-    /// Both halves, the moving one at `placement`, with its face centre and centre of rotation.
+    /// Both halves, the moving half at `placement`, with its face centre and centre of rotation.
     pub(super) fn halves(&self, svg: &mut Svg, frame: &PlotFrame, placement: &MovingHalfPose) {
         svg.begin_clip(frame.rect);
         approach_axis(svg, frame);
@@ -267,7 +267,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Where a point of the world is seen.
+    /// Visible position of a point of the world.
     pub(super) fn seen(&self, frame: &PlotFrame, point: DVec3) -> [f64; 2] {
         let point = self.turn * point;
         self.place(frame, [point.x, point.z])
@@ -277,7 +277,7 @@ impl<'a> View<'a> {
         frame.at([x * self.units.lengths(), z * self.units.lengths()])
     }
 
-    /// Where the halves touch: full in the plane of the cut, hollow where that is seen through to.
+    /// The contacts: full in the plane of the cut, hollow if seen through.
     pub(super) fn contacts(&self, svg: &mut Svg, frame: &PlotFrame, patches: &[Patch]) {
         for patch in patches {
             let in_cut = |stroke: &Stroke| self.plane.offsets.iter().any(|y| stroke.holds(*y, CLOSE));
@@ -293,7 +293,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Where it is cut, in words, if that is not the usual place.
+    /// The cutting plane in words, if it is not the usual plane.
     pub(super) fn words(&self) -> Option<String> {
         let [offset] = self.plane.offsets[..] else { return None };
         self.plane.through_contacts.then(|| {
@@ -336,7 +336,8 @@ pub(super) fn approach_axis(svg: &mut Svg, frame: &PlotFrame) {
     svg.line([x, frame.rect.y], [x, frame.rect.y + frame.rect.h], &style);
 }
 
-/// Where to cut: y = 0, or either side of it if a half has facets there or nothing at all. From far (+y) to near.
+/// Positions of cuts: y = 0, or either side of it if a half has facets there or does not meet it. From far
+/// (+y) to near.
 pub(super) fn cuts(connector: &Connector) -> Vec<f64> {
     const IN_PLANE: f64 = 1e-9;
     let lies_in = |s: &Surface| {
@@ -358,10 +359,10 @@ pub(super) fn cuts(connector: &Connector) -> Vec<f64> {
     [0.5 * hi, 0.5 * lo].into_iter().filter(|y| y.abs() > IN_PLANE).collect()
 }
 
-/// The closed outlines, in x and z, of a half turned by `rotation` and moved by `shift`, cut at `y`.
+/// The closed outlines, in x and z, of a half rotated by `rotation` and moved by `shift`, cut at `y`.
 ///
-/// A corner counts as beyond the plane if it lies on it. Then every facet is crossed by none or two of its edges, and
-/// every crossed edge belongs to two facets: the outlines close by themselves, with no tolerance.
+/// A corner on the plane counts as beyond it. Then zero or two edges of every facet cross the plane, and
+/// every crossed edge belongs to two facets: the outlines close without any tolerance.
 pub(super) fn cut(half: &Half, rotation: DMat3, shift: DVec3, y: f64) -> Vec<Vec<[f64; 2]>> {
     let mut outlines = Vec::new();
     for surface in &half.surfaces {

@@ -7,8 +7,8 @@ use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::SensitivityReport;
 
-/// Draws the Sum over ρ. The points are of the same random poses: their band moves as a whole, their differences are
-/// known better than it is wide.
+/// Draws the Sum over ρ. The points use the same random poses: their band moves as a whole, and their
+/// differences are more accurate than its width.
 pub fn sensitivity(report: &SensitivityReport) -> Picture {
     let mut svg = Svg::new(620.0, 440.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);

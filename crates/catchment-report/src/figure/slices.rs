@@ -9,10 +9,11 @@ use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::merit::MeritError;
 use catchment_core::pose::{Dof, PoseError};
 
-/// Draws the outcomes over each pair of errors (all pairs if none is named), the others at the values of `at`, with the
-/// border of the accepted set and the largest axis-oriented cube of the `report`, dashed where the slice misses it. Shares are those of the
-/// cells of a slice; the headline has those of the error box. A pair that one of
-/// `finer` has for its only axes is drawn from that one: it must have been computed with the other errors zero.
+/// Draws the outcomes over each pair of errors (all pairs if none is given), the others at the values of
+/// `at`, with the border of the accepted set and the largest axis-oriented cube of the `report`, dashed if
+/// the slice misses it. Shares are those of the cells of a slice; the headline has those of the error box. A
+/// pair that is the axes of an entry of `finer` is drawn from that entry: it must have been computed with the
+/// other errors zero.
 ///
 /// # Errors
 /// Fewer than two free errors, a pair that the grid does not have, listed poses instead of a grid.

@@ -51,7 +51,7 @@ pub fn panel(
     touching(svg, rect, design, connector, placement, &[])
 }
 
-/// The same with where the halves touch: full where that is seen, hollow where a half hides it.
+/// The same with the contacts: full if visible, hollow if a half hides them.
 ///
 /// # Errors
 /// If neither half has a facet.
@@ -91,7 +91,7 @@ pub(super) fn touching(
 /// Surfaces in the world frame, as an image in a rectangle of a picture.
 ///
 /// # Errors
-/// If none has a facet.
+/// If no surface has a facet.
 pub(super) fn bodies(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<(), FigureError> {
     seen(svg, rect, bodies).map(|_| ())
 }
@@ -99,7 +99,7 @@ pub(super) fn bodies(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<(), F
 /// Pixels per SVG unit in the finished image.
 const PIXELS: f64 = 2.0;
 
-/// The same, and where in the picture points of the world are.
+/// The same, with the map from points of the world to the picture.
 fn seen(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<Seen, FigureError> {
     let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
     let (camera, canvas) = draw(bodies, size)?;
@@ -115,7 +115,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// Where a point is in the picture, and whether something is in front of it.
+    /// Position of a point in the picture, and whether something is in front of it.
     fn place(&self, point: DVec3) -> ([f64; 2], bool) {
         /// So much in front of a point hides it, in fine pixels: less is the facet that it lies on.
         const HIDES: f64 = 12.0;
@@ -149,7 +149,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Edges where two facets meet at more than [`BEND`], with the numbers of the facets that they border.
+    /// Edges at which two facets meet at more than [`BEND`], with the numbers of these facets.
     fn bends(&self) -> impl Iterator<Item = ([DVec3; 2], Vec<usize>)> + '_ {
         /// Cosine of 20°: the facets of a tessellated cone meet at less, those of a designed edge at more.
         const BEND: f64 = 0.94;
@@ -282,7 +282,8 @@ struct Canvas {
 /// Half-width of a line, in fine pixels.
 const HALF: i32 = 2;
 
-/// Facets this near to each other, in fine pixels, lie in one plane: the one drawn first stays, and no pattern of rounding shows.
+/// Facets this close to each other, in fine pixels, are coplanar: the first drawn stays, so that no pattern
+/// of rounding is visible.
 const COINCIDENT: f64 = 1e-6;
 
 impl Canvas {
@@ -327,9 +328,9 @@ impl Canvas {
         )
     }
 
-    /// A line a little in front of the facets it borders, where one of them is seen.
+    /// A line slightly in front of its facets, if one of them is visible.
     fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb, facets: &[u32]) {
-        /// How far it stands out, in fine pixels.
+        /// Its offset to the front, in fine pixels.
         const PROUD: f64 = 9.0;
         let steps = (b - a).truncate().length().ceil().max(1.0);
         for k in 0..=steps as usize {
@@ -347,7 +348,8 @@ impl Canvas {
         }
     }
 
-    /// RGBA pixels of the finished image: averages blocks of fine ones; where nothing was drawn the image is transparent.
+    /// RGBA pixels of the finished image: averages blocks of fine pixels; pixels without drawing are
+    /// transparent.
     fn averaged(&self) -> Vec<u8> {
         let (width, height) = (self.width / FINER, self.height / FINER);
         let mut pixels = Vec::with_capacity(4 * width * height);
@@ -408,7 +410,8 @@ mod tests {
         assert!(most * 10 > shades.len() * 8, "one facet, one shade: {most} of {}", shades.len());
     }
 
-    /// Of two boxes whose fronts lie in one plane, the second showed through the first; so did the ends of edges that go backwards.
+    /// For two boxes with coplanar fronts, the second showed through the first; so did the ends of receding
+    /// edges.
     #[test]
     fn edges_are_seen_where_their_facets_are() {
         let block = |lo: [f64; 3], hi: [f64; 3]| {

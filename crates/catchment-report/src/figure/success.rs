@@ -9,14 +9,15 @@ use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use crate::SuccessesReport;
 use catchment_study::success::{RobotDocking, in_percent};
 
-/// Colour of what is required.
+/// Colour of the required success.
 const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
-/// Factors below it say little: nearly all docks.
+/// Factors below this are of little interest: nearly all errors dock.
 const LEAST: f64 = 0.25;
 /// Curves that are drawn: as many as there are colours.
 const MOST: usize = CURVES.len();
 
-/// Draws the success over the factor for each robot (the first five), and beside it the gains of the one that docks most seldom.
+/// Draws the success over the factor for each robot (the first five), and the gains of the robot with the
+/// lowest success.
 pub fn success(report: &SuccessesReport) -> Picture {
     let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
     let bars = Rect { x: 590.0, y: top, w: 300.0, h: size[1] };
@@ -78,7 +79,7 @@ fn lines(report: &SuccessesReport) -> Vec<ChartLine> {
     lines
 }
 
-/// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
+/// A bar for each error, with the interval of its gain; if all gains are zero, a line.
 fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &RobotDocking, rect: Rect) {
     let units = ShownUnits::of(&report.design);
     let head = if report.robots.len() > 1 {

@@ -30,7 +30,7 @@ const MOST_MAPS: usize = 12;
 /// Outlines that are drawn at most.
 const MOST_OUTLINES: usize = 400;
 
-/// The axes of a sweep as rows and columns: the last one gives columns, the others together rows.
+/// The axes of a sweep as rows and columns: the last axis gives columns, the others together rows.
 fn table(axes: &[SweepAxis]) -> (Vec<String>, Vec<String>) {
     let named = |axis: &SweepAxis, value: &str| format!("{} {value}", short_name(axis));
     let (columns, others) = match axes {
@@ -111,7 +111,7 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
     Some(number_maps(&sheet, &maps))
 }
 
-/// Draws the slice through zero of every design, all to one scale; `None` where there is none, or too many.
+/// Draws the slice through zero of every design, at a common scale; `None` if there is none, or too many.
 ///
 /// # Errors
 /// A map cannot be encoded.
@@ -171,7 +171,7 @@ pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureErr
     Ok(Some(Picture::of(svg)))
 }
 
-/// The frame of one outline on the scale that all share.
+/// The frame of an outline on the common scale.
 fn shared_frame(rect: Rect, outline: &Outline, reach: [f64; 2], units: &ShownUnits) -> PlotFrame {
     let scale = |axis: usize| {
         let (dof, half) = (outline.axes[axis], reach[axis] * units.factor(outline.axes[axis]));
@@ -180,7 +180,7 @@ fn shared_frame(rect: Rect, outline: &Outline, reach: [f64; 2], units: &ShownUni
     PlotFrame { rect, x: scale(0), y: scale(1) }
 }
 
-/// One slice, in its part of the shared frame.
+/// A slice, in its part of the shared frame.
 fn draw(
     svg: &mut Svg,
     outline: &Outline,

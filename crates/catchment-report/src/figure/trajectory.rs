@@ -17,9 +17,10 @@ use glam::DVec3;
 /// Ghosts of the moving half, the first and the last pose included.
 const GHOSTS: usize = 7;
 
-/// Draws a trajectory: left the section with the moving half ghosted along its path, cut through what touches at its end where it jams, else through what touches
-/// first; right its errors over the path length (in the ρ-metric, D). Where it moves out of a plane, in between, both halves in space where they first touch and at
-/// the end. ● and ○ are contacts.
+/// Draws a trajectory: left the section with the moving half ghosted along its path, cut through the contacts
+/// at its end for a jam, else through the first contacts; right its errors over the path length (in the
+/// ρ-metric, D). If it moves out of a plane, in between, both halves in space at first contact and at the
+/// end. ● and ○ are contacts.
 ///
 /// # Errors
 /// If the halves never met, so that there is no path.
@@ -98,7 +99,7 @@ const fn placed(w: &Waypoint) -> MovingHalfPose {
     MovingHalfPose { error: w.error, height: w.height }
 }
 
-/// What touches: points with the same normal are of one face or edge.
+/// The contacts: points with the same normal belong to a face or edge.
 fn patches(design: &Design, waypoint: &Waypoint) -> Vec<Patch> {
     /// Cosine of a fiftieth of a degree.
     const SAME: f64 = 1.0 - 1e-7;

@@ -77,7 +77,7 @@ pub fn watersheds(
     Ok(Picture::of(svg))
 }
 
-/// How far the halves are drawn apart, in D.
+/// Distance at which the halves are drawn apart, in D.
 const LIFT: f64 = 0.5;
 
 /// A number in [0, 1) that differs most between numbers near each other: multiples of the golden ratio.
@@ -87,7 +87,7 @@ fn share(label: u32) -> f64 {
 
 /// The colour of a first label.
 fn shade(label: u32, watersheds: &Watersheds) -> Rgb {
-    /// Two turns around the colours, one darker.
+    /// Two turns around the colours, the second darker.
     const DARKER: f64 = 0.3;
     match label {
         DAM => BETWEEN,

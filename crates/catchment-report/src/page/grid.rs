@@ -19,7 +19,7 @@ use rayon::prelude::*;
 /// Most cells of a chunk, unless a row has more.
 const CHUNK_CELLS: usize = 1 << 20;
 
-/// Outcomes over two axes, in one piece.
+/// Outcomes over two axes, in a single block.
 pub(super) struct Plane {
     /// Its axes, the first fastest.
     pub(super) axes: Vec<AxisReport>,
@@ -36,7 +36,7 @@ pub(super) fn plane(acceptance: &Acceptance, exec: &Exec) -> Result<Plane, PageE
     Ok(Plane { axes: axes(acceptance), packed })
 }
 
-/// Each outcome's code ⊕ the one a row before.
+/// The code of each outcome ⊕ the code a row before.
 fn by_rows(outcomes: &[Outcome], row: usize) -> Vec<u8> {
     let code = |k: usize| outcomes[k] as u8;
     (0..outcomes.len()).map(|k| if k < row { code(k) } else { code(k) ^ code(k - row) }).collect()
@@ -70,7 +70,7 @@ pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, Pag
     Ok(Chunks { cells, packed })
 }
 
-/// Whole leading axes, and as many steps of the next one as fit.
+/// Whole leading axes, and as many steps of the next axis as fit.
 fn chunk_cells(shape: &[usize]) -> usize {
     let mut cells = 1;
     for length in shape {

@@ -37,33 +37,35 @@ use std::io::Write as _;
 
 /// The viewer, for the page itself.
 const VIEWER: &str = include_str!("bundle/viewer.js");
-/// What the viewer runs beside the page: outcomes, surfaces, motions.
+/// The worker script of the viewer: outcomes, surfaces, motions.
 const WORKER: &str = include_str!("bundle/worker.js");
-/// What draws in space beside the page.
+/// The drawing script of the viewer.
 const PAINTER: &str = include_str!("bundle/painter.js");
 /// How it looks.
 const STYLE: &str = include_str!("bundle/viewer.css");
 /// The core of the library as WebAssembly, deflated (zlib).
 const MOTIONS: &[u8] = include_bytes!("bundle/motions.wasm.z");
 
-/// What a page shows.
+/// Content of a page.
 #[derive(Debug, Clone)]
 pub struct Page<'a> {
     /// The run.
     pub report: &'a Report,
     /// The outcomes behind it, over a grid.
     pub acceptance: &'a Acceptance,
-    /// Outcomes over planes through zero ([`catchment_study::planes`]); none: slices at zero show the cells of the grid.
+    /// Outcomes over planes through zero ([`catchment_study::planes`]); empty: slices at zero show the cells
+    /// of the grid.
     pub planes: &'a [Acceptance],
-    /// The halves; `None` where they cannot be had any more: nothing is drawn in space then, and no pose can be followed.
+    /// The halves; `None` if they are no longer available: nothing is drawn in space then, and no pose can be
+    /// followed.
     pub halves: Option<&'a Connector>,
-    /// Where it jams.
+    /// The jams.
     pub jams: Option<&'a JamsReport>,
     /// The window.
     pub window: Option<&'a WindowReport>,
-    /// What a person should know of the page, such as why a part of it is missing.
+    /// Notes about the page, such as the reason for a missing part.
     pub notes: Vec<String>,
-    /// Whether it is served by the program, which computes again where the page asks for it.
+    /// Whether the program serves it, and recomputes results at the page's request.
     pub is_served: bool,
 }
 
@@ -82,13 +84,13 @@ pub enum PageError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl Page<'_> {
-    /// What the page may do, for a header of whoever serves it: the same stands in the page.
+    /// The permissions of the page, for a header of its server: the page contains the same.
     pub fn policy(&self) -> String {
         policy(&[VIEWER], &[STYLE], self.is_served)
     }
@@ -164,7 +166,7 @@ fn packed(page: Html, id: &'static str, number: Option<usize>, bytes: &[u8]) -> 
     text_element(page, id, number).bytes(bytes).fixed(END)
 }
 
-/// A report without what differs between equal runs, and without the design, which the run has.
+/// A report without the parts that differ between equal runs, and without the design, which the run contains.
 fn told<T: serde::Serialize>(report: &T) -> Result<Value, serde_json::Error> {
     let mut value = serde_json::to_value(report)?;
     value["timing"] = Value::Null;

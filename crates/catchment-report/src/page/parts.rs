@@ -30,22 +30,22 @@ pub struct PageParts {
     pub acceptance: Acceptance,
     /// Outcomes over planes through zero, once they are studied.
     pub planes: Vec<Acceptance>,
-    /// What was decided, where its halves can be had.
+    /// The decided problem, if its halves are available.
     pub problem: Option<Problem>,
-    /// Where it jams.
+    /// The jams.
     pub jams: Option<JamsReport>,
     /// The window.
     pub window: Option<WindowReport>,
-    /// What a person should know of the page.
+    /// Notes about the page.
     pub notes: Vec<String>,
 }
 
-/// What is studied beside a result.
+/// Studies beside a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Studies {
     /// Planes through zero, of a grid of three or more errors.
     pub planes: bool,
-    /// Where it jams.
+    /// Whether to compute the jams.
     pub jams: bool,
     /// The largest box that docks.
     pub window: bool,
@@ -59,10 +59,11 @@ impl PageParts {
         Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes: Vec::new() }
     }
 
-    /// Of a result that was stored, its folder or its group, with what is stored of jams and window. Halves that come from files are read again; where they cannot be, or are others by
-    /// now, the page has none and says so.
+    /// Parts of a stored result, from its folder or its group, with its stored jams and window. Halves from
+    /// files are read again; if they are missing or have changed, the page omits them and notes this.
     ///
     /// # Errors
+    /// It cannot be read.
     /// It cannot be read.
     #[cfg(feature = "zarr")]
     pub fn stored(path: &std::path::Path, exec: &Exec) -> Result<Self, crate::zarr::ZarrError> {
@@ -93,10 +94,10 @@ impl PageParts {
         Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })
     }
 
-    /// Adds studies, with the friction of the run. One that finds nothing leaves a note.
+    /// Adds studies, with the friction of the run. A study without a result leaves a note.
     ///
     /// # Errors
-    /// It was asked to stop.
+    /// The computation was cancelled.
     pub fn study(&mut self, studies: Studies, exec: &Exec) -> Result<(), Cancelled> {
         let Some(problem) = &self.problem else { return Ok(()) };
         let (design, friction) = (problem.design(), self.report.friction());
@@ -156,7 +157,8 @@ enum PlanesError {
     Cancelled(#[from] Cancelled),
 }
 
-/// The planes that the pictures of the result show: by the motions of its method; none where the method's own cells are shown.
+/// The planes of the result's pictures: by the motions of its method; empty if the method's own cells are
+/// shown.
 fn through_zero(
     problem: &Problem,
     report: &Report,
@@ -181,7 +183,7 @@ fn sampled(path: &std::path::Path) -> Option<Report> {
     (report.axes.is_empty() && report.check().is_ok()).then_some(report)
 }
 
-/// The problem of a stored design, if it still is the same; else what to say.
+/// The problem of a stored design, if it is unchanged; else a note.
 #[cfg(feature = "zarr")]
 fn again(design: &Design) -> Result<Problem, String> {
     let without = "the page has no halves and no motions";

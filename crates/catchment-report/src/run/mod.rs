@@ -245,8 +245,8 @@ impl RunBody {
     }
 }
 
-/// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`. Where half the interval is more than the Sum, its upper
-/// end alone: too few sampled poses docked to say more.
+/// The Sum with its unit, and half its interval, if any: `12.587 ± 0.023 D²·rad³`. If half the interval
+/// exceeds the Sum, only its upper end: too few sampled poses docked for an estimate.
 pub(super) fn sum(a: &AcceptanceReport) -> String {
     let sum = match (upper_end(a), a.sum_ci95) {
         (Some(hi), _) => format!("below {}", significant(hi)),
@@ -268,7 +268,7 @@ fn edge(onaa: &OnaaReport) -> String {
     format!("{:.4} of every range: the largest box that docks, anywhere", onaa.edge)
 }
 
-/// Where motions rest that do not dock, in short.
+/// Summary of the rests outside the seat.
 fn describe_jams(document: &mut Document, found: &Jams, design: &Design) {
     let count = found.jams.len();
     let places = match count {
@@ -293,7 +293,7 @@ fn describe_jams(document: &mut Document, found: &Jams, design: &Design) {
     }
 }
 
-/// What is known long before the rest of a long run: the tolerances with roll and pitch locked, as lines.
+/// Early results of a long run: the tolerances with roll and pitch locked, as lines.
 pub fn first_look(design: &Design, found: &Upright) -> Vec<String> {
     let UprightReport { window, tolerances } = found.into();
     let mut document = Document::default();
@@ -354,7 +354,7 @@ fn in_own_unit(limit: &ToleranceReport, design: &Design) -> String {
     }
 }
 
-/// `±0.5` where both sides agree, `−0.5 / +0.3` where they do not; a star where the error box cut it off.
+/// `±0.5` if both sides agree, `−0.5 / +0.3` if not; with a star at the border of the error box.
 fn both(t: &ToleranceReport, scale: f64, digits: usize, unit: &str) -> String {
     let side = |value: f64, is_open: bool| {
         format!("{:.digits$}{unit}{}", value * scale, if is_open { "*" } else { "" })

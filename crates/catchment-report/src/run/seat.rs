@@ -5,10 +5,11 @@ use catchment_core::document::{Cell, Column, DesignUnits, Document, Table};
 use catchment_core::pose::Dof;
 use catchment_core::run::Seating;
 
-/// Play and residuals below this are none, in D and radians: what rounding and the ends of motions leave.
+/// Play and residuals below this count as zero, in D and radians: the effect of rounding and of the ends of
+/// motions.
 const NONE: f64 = 5e-4;
 
-/// A sharp seat takes a row, one with play a table.
+/// A sharp seat takes a row, a seat with play a table.
 pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design) {
     let units = DesignUnits::of(design);
     let depth = if design.unit.is_some() { units.length(found.depth) } else { format!("{} D", found.depth) };

@@ -19,7 +19,7 @@ use catchment_core::run::window::{HalfWidths, ToleranceWindow, WindowDetails};
 use catchment_core::run::{Seating, Upright};
 use serde::{Deserialize, Serialize};
 
-/// Everything one run has to say, with its head.
+/// The complete report of a run, with its head.
 pub type Report = ReportEnvelope<RunBody>;
 
 /// Result of a run.
@@ -312,18 +312,18 @@ impl RunBody {
         self.settings.get(name).or_else(|| self.settings.get("descent")?.get(name))?.as_f64()
     }
 
-    /// The coefficient of friction of the motions that decided; 0 of methods that know none.
+    /// Friction coefficient of the motions that decided; 0 for methods without friction.
     pub fn friction(&self) -> f64 {
         self.of_motions("friction").unwrap_or(0.0)
     }
 }
 
 impl Report {
-    /// Evaluates an acceptance. `settings` are those of the method that gave it. The doubts that the accepted set
-    /// itself raises are added to the method's own.
+    /// Evaluates an acceptance. `settings` are those of its method. The warnings of the accepted set itself
+    /// are added to those of the method.
     ///
     /// # Errors
-    /// When the figures of merit do not fit into memory, or are cancelled.
+    /// If the figures of merit do not fit into memory, or are cancelled.
     pub fn new(
         design: &Design,
         acceptance: &Acceptance,
@@ -435,7 +435,7 @@ impl From<Warning> for WarningReport {
 }
 
 impl WarningReport {
-    /// A doubt that is only a sentence.
+    /// A warning that is only a sentence.
     pub fn note(text: &(impl ToString + ?Sized)) -> Self {
         Self::from(Warning::Note { text: text.to_string() })
     }

@@ -41,7 +41,8 @@ const fn open() -> [f64; 2] {
 }
 
 impl Report {
-    /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
+    /// Adds certified bounds: the Sum is at least the certified measure, and at most that plus the undecided
+    /// measure.
     #[must_use]
     pub(crate) fn with_certificate(mut self, found: BoxCertificate) -> Self {
         let [docks, _, open] = found.measures;
@@ -54,7 +55,7 @@ impl Report {
         self
     }
 
-    /// Replaces the Sum by the corrected one.
+    /// Replaces the Sum by the corrected Sum.
     #[must_use]
     pub fn with_sample(mut self, corrected: &RunCorrection) -> Self {
         let acceptance = &mut self.body.acceptance;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatershedsReport {
-    /// First labels, merged ones, and cells of either fate.
+    /// Numbers of first and merged labels, and of dam and moved cells.
     #[serde(flatten)]
     pub counts: WatershedCounts,
     /// Share of all cells whose first watershed was merged into another.

@@ -62,7 +62,7 @@ impl ReportBody for SolidsBody {
 }
 
 impl SolidsReport {
-    /// Of a shape, with the doubts about its design.
+    /// Report of a solid, with the warnings about its design.
     pub fn new(design: &Design, shape: &Solids, warnings: Vec<WarningReport>) -> Self {
         let (low, high) = bounds(shape);
         let sum = |count: fn(&Solid) -> usize| shape.solids.iter().map(count).sum();
@@ -116,7 +116,7 @@ impl Printed for SolidsBody {
     }
 }
 
-/// What a shape is, in words.
+/// Description of a solid.
 pub fn in_words(shape: SolidShape) -> &'static str {
     match shape {
         SolidShape::Halves => "both halves as convex pieces, docked",
@@ -136,7 +136,7 @@ pub fn bounds(shape: &Solids) -> (DVec3, DVec3) {
     (corners().reduce(DVec3::min).unwrap_or_default(), corners().reduce(DVec3::max).unwrap_or_default())
 }
 
-/// One line on the axes of a file, for its head.
+/// A line on the axes of a file, for its head.
 fn heading(shape: &Solids) -> String {
     let axis = |(file, axis): (&str, &&str)| {
         format!("{file} is {axis} ({})", if is_angle(axis) { "rad" } else { "D" })

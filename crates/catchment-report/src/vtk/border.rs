@@ -32,7 +32,7 @@ const FACE_BYTES: u64 = 4 * 8 + 8 + 1 + 3 * 8;
 /// The border of a view as a `.vtp` file.
 ///
 /// # Errors
-/// The view has one axis; it does not fit into memory, or it was asked to stop.
+/// The view has a single axis; it does not fit into memory, or the computation is cancelled.
 pub fn border(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
     if view.shown.len() < 2 {
         return Err(ViewError::OneAxis);
@@ -55,7 +55,7 @@ pub fn border(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
 
 struct Surface<'a> {
     view: &'a View<'a>,
-    /// The number of the point at every corner of a cell, where it is used.
+    /// The number of the point at every corner of a cell, if it is used.
     numbers: Vec<Option<std::num::NonZeroU32>>,
     points: Vec<[f64; 3]>,
     corners: Vec<[usize; 4]>,

@@ -19,7 +19,7 @@ const CELL_BYTES: u64 = 1 + 1 + 4 + 4 + 8;
 /// A view as a `.vti` file.
 ///
 /// # Errors
-/// It does not fit into memory, or it was asked to stop.
+/// It does not fit into memory, or the computation is cancelled.
 pub fn image(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
     let needed = CELL_BYTES.saturating_mul(view.len() as u64);
     exec.ensure_fits("an image of the set", needed, |_| vec![Advice::MoreMemory])?;
@@ -50,7 +50,7 @@ pub fn image(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
 
 /// How many cells of the grid are accepted over every cell that is shown.
 fn counts(view: &View, exec: &Exec) -> Result<Vec<u32>, ViewError> {
-    /// Cells between two looks at whether to stop.
+    /// Cells between two checks for cancellation.
     const AT_ONCE: usize = 1 << 20;
     // What a step along each axis of the grid adds to the number of the cell that is shown.
     let mut strides = vec![0; view.grid.axes.len()];

@@ -35,7 +35,7 @@ use catchment_core::pose::{Dof, DofSet, PoseError};
 /// Why a set cannot be shown so.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// What was decided is a list of poses.
+    /// The result has listed poses instead of a grid.
     #[error("the outcomes are over no grid")]
     NotAGrid,
     /// The grid has no such axis.
@@ -49,10 +49,10 @@ pub enum ViewError {
     /// A picture in space has three axes.
     #[error("{count} axes cannot be shown at once: choose up to three of them")]
     TooMany {
-        /// How many were asked for.
+        /// The requested number.
         count: usize,
     },
-    /// The border of a set along one axis is no surface.
+    /// The border of a set along a single axis is not a surface.
     #[error("a surface needs two axes or three; this grid shows one")]
     OneAxis,
     /// A value was given for an axis that is shown.
@@ -76,12 +76,12 @@ pub enum ViewError {
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// A decided grid along up to three of its axes; along the others one row of cells.
+/// A decided grid along up to three of its axes; along the others a single row of cells.
 #[derive(Debug, Clone)]
 pub struct View<'a> {
     grid: &'a Grid,
@@ -95,10 +95,11 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Of a grid with its heights, where they are known. Without `axes` the first three are shown; the others are at the cells that hold
-    /// the values of `at`.
+    /// A view of a grid with its heights, if known. Without `axes` the first three are shown; the others are
+    /// at the cells that contain the values of `at`.
     ///
     /// # Errors
+    /// See [`ViewError`].
     /// See [`ViewError`].
     pub fn new(
         acceptance: &'a Acceptance,
@@ -164,7 +165,7 @@ impl<'a> View<'a> {
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| self.index([i, j, k]))))
     }
 
-    /// The lower corner of the first cell, and the size of one: 1 along axes that are not there.
+    /// The lower corner of the first cell, and the size of a cell: 1 along missing axes.
     fn lattice(&self) -> ([f64; 3], [f64; 3]) {
         let axis = |k: usize| self.shown.get(k).map(|axis| &self.grid.axes[*axis]);
         let origin = std::array::from_fn(|k| axis(k).map_or(0.0, |axis| axis.lo));
@@ -172,7 +173,7 @@ impl<'a> View<'a> {
         (origin, spacing)
     }
 
-    /// One line on what the axes of a file show.
+    /// A line on the meaning of the axes of a file.
     fn heading(&self) -> String {
         let shown = ["x", "y", "z"].into_iter().zip(self.axes());
         let mut words: Vec<String> =
@@ -190,7 +191,7 @@ impl<'a> View<'a> {
         all.filter(|(k, _)| !self.shown.contains(k)).map(|(_, (axis, cell))| (axis, *cell))
     }
 
-    /// What is shown, and how much of it is accepted, as text.
+    /// Description of the view, and its accepted share, as text.
     pub fn table(&self) -> String {
         let mut document = Document::default();
         let names: Vec<String> =

@@ -17,7 +17,7 @@ use catchment_core::connector::{Connector, Half};
 use catchment_core::pose::{Dof, PoseError};
 use glam::DVec3;
 
-/// A motion as a `.vtp` file; `None` where the halves never met, so that there is no way.
+/// A motion as a `.vtp` file; `None` if the halves never met, so that there is no path.
 pub fn motion(trace: &TraceReport, connector: &Connector) -> Option<Vec<u8>> {
     let (first, last) = trace.waypoints.first().zip(trace.waypoints.last())?;
     let mut file = Motion::default();

@@ -43,7 +43,7 @@ pub(super) struct File {
 }
 
 impl File {
-    /// An empty file of a kind of data set, such as `ImageData`; `heading` says in a line what it is.
+    /// An empty file of a kind of data set, such as `ImageData`; `heading` is its description in a line.
     pub(super) fn new(kind: &'static str, heading: &str) -> Self {
         // Two hyphens would end a comment.
         let heading = heading.replace("--", "- -");

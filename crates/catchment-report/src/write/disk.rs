@@ -13,17 +13,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
-/// What a folder's owner may do who works in it.
+/// Permissions of the owner of a temporary folder.
 #[cfg(unix)]
 const OWNER: u32 = 0o700;
-/// What anybody may do, without the bits that mean something else.
+/// Permission bits of all users, without the special bits.
 #[cfg(unix)]
 const EVERYBODY: u32 = 0o777;
 
 /// How long [`abandon`] waits for steps that have begun: a disk that does not answer must not hold the process.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Who changes files, and what would be left behind now.
+/// Active writers, and the items that would be left behind now.
 struct Gate {
     busy: usize,
     shut: bool,
@@ -37,10 +37,10 @@ fn gate() -> MutexGuard<'static, Gate> {
     GATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Ends all writing of this process, for a process that must end at once: waits for steps that have begun, removes
-/// what is unfinished, and holds up whoever wants to write from now on, for ever. Call it right before the end.
+/// Ends all writing of this process, for a process that must end at once: waits for steps that have begun,
+/// removes unfinished items, and blocks all further writers, forever. Call it right before the end.
 ///
-/// What was there stays, and what was completed stays.
+/// Existing and completed items are unchanged.
 pub fn abandon() {
     let mut gate = gate();
     gate.shut = true;
@@ -66,12 +66,12 @@ fn remove(path: &Path) -> io::Result<()> {
     fs::remove_dir(path)
 }
 
-/// What is in a folder, which is not kept open.
+/// Content of a folder, which is not kept open.
 pub(super) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
 }
 
-/// Whether the system refuses another open file: nothing is known of what it was to be opened for.
+/// Whether the system refuses another open file: nothing is then known about the item to be opened.
 pub(super) fn is_exhausted(error: &io::Error) -> bool {
     #[cfg(any(target_os = "linux", target_vendor = "apple"))]
     {
@@ -86,8 +86,8 @@ pub(super) fn is_exhausted(error: &io::Error) -> bool {
     }
 }
 
-/// The same where memory ran out: waits for nobody, and asks for as good as no memory. A folder that somebody is just working on is left
-/// to the next start, and so is everything where the list of it is just being changed.
+/// The same if memory ran out: does not wait, and allocates practically no memory. A folder that is currently
+/// being worked on is left to the next start, and so is everything while the list of items is being changed.
 pub fn abandon_at_once() {
     let mut gate = match GATE.try_lock() {
         Ok(gate) => gate,
@@ -106,7 +106,7 @@ pub fn abandon_at_once() {
     }
 }
 
-/// Waits until files may be changed. Not to be asked for by somebody who has one.
+/// Waits until files may be changed. Must not be called by a holder of a permit.
 pub(crate) fn permit() -> Permit {
     let mut gate = CHANGED.wait_while(gate(), |gate| gate.shut).unwrap_or_else(PoisonError::into_inner);
     gate.busy += 1;
@@ -124,7 +124,7 @@ impl Drop for Permit {
 }
 
 impl Permit {
-    /// One change of something at `path`.
+    /// A change of an item at `path`.
     #[expect(clippy::unused_self, reason = "the permit is what allows it")]
     pub(crate) fn step<T, E: From<io::Error>>(
         &self,
@@ -148,7 +148,7 @@ impl Permit {
         }
     }
 
-    /// Makes a folder: with `like`, no more open than what has these permissions, and open to its owner.
+    /// Creates a folder: with `like`, at most as open as these permissions, and open to its owner.
     pub(super) fn create_dir(&self, path: &Path, like: Option<&Permissions>) -> io::Result<()> {
         let mut builder = DirBuilder::new();
         #[cfg(unix)]
@@ -161,7 +161,7 @@ impl Permit {
         self.step(path, || builder.create(path))
     }
 
-    /// Makes a file: with `like`, no more open than what has these permissions.
+    /// Creates a file: with `like`, at most as open as these permissions.
     pub(super) fn create(&self, path: &Path, like: Option<&Permissions>) -> io::Result<File> {
         let mut options = OpenOptions::new();
         options.write(true).create_new(true);
@@ -197,7 +197,7 @@ impl Permit {
         self.step(to, || fs::rename(from, to))
     }
 
-    /// Renames, unless something is there. Where the system cannot do both in one step, it looks first.
+    /// Renames, unless the target exists. If the system cannot do both in one step, it checks first.
     pub(super) fn rename_to_new(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.step(to, || match renamed(from, to, Manner::NoReplace) {
             Some(done) => done,
@@ -206,7 +206,7 @@ impl Permit {
         })
     }
 
-    /// Exchanges two folders in one step; `None` where the system cannot.
+    /// Exchanges two folders in one step; `None` if the system cannot.
     pub(super) fn exchange(&self, a: &Path, b: &Path) -> io::Result<Option<()>> {
         #[cfg(test)]
         if super::faults::cannot_exchange(b) {
@@ -235,12 +235,12 @@ impl Permit {
     }
 }
 
-/// What another has removed already is removed.
+/// Treats an item that another process has already removed as removed.
 fn gone(result: io::Result<()>) -> io::Result<()> {
     result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
 
-/// Lets the owner remove what is in a folder, which may have taken over the permissions of a read-only one.
+/// Lets the owner remove the content of a folder, which may have the permissions of a read-only folder.
 pub(super) fn open_up(folder: &Path) {
     #[cfg(unix)]
     if let Ok(meta) = fs::symlink_metadata(folder) {
@@ -255,7 +255,7 @@ pub(super) fn open_up(folder: &Path) {
     let _ = folder;
 }
 
-/// Whether something else than what lies around it is mounted here. Where the system does not say, it is not.
+/// Whether the path is a mount point. False if the system does not report it.
 #[cfg(target_os = "linux")]
 pub(super) fn is_mount_point(path: &Path) -> bool {
     use rustix::fs::{AtFlags, CWD, StatxAttributes, StatxFlags, statx};
@@ -275,7 +275,7 @@ enum Manner {
     Exchange,
 }
 
-/// Renames in a manner that not every system has; `None` if this one has not.
+/// Renames in a manner that is not available on every system; `None` if it is not.
 #[cfg(any(target_os = "linux", target_vendor = "apple"))]
 fn renamed(from: &Path, to: &Path, manner: Manner) -> Option<io::Result<()>> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};

@@ -14,19 +14,19 @@ pub enum WriteError {
     /// No room left.
     #[error("cannot write {}: the disk is full", shown(path))]
     DiskFull {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// The system does not allow it.
     #[error("cannot write {}: permission denied", shown(path))]
     Denied {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// The folder to write into does not exist.
     #[error("cannot write {}: its folder does not exist; create it first", shown(path))]
     NoFolder {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// Something without a manifest is there, and it would be lost.
@@ -36,7 +36,7 @@ pub enum WriteError {
         shown(path)
     )]
     NotAResult {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// A result of another kind is there, and it would be lost.
@@ -45,11 +45,11 @@ pub enum WriteError {
         shown(path)
     )]
     OtherKind {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
-        /// What is there.
+        /// The item found there.
         found: String,
-        /// What was to be written there.
+        /// Kind of the content to be written.
         kind: String,
     },
     /// Something in the result that is there would be lost.
@@ -70,34 +70,34 @@ pub enum WriteError {
     /// A file is there that is not to be replaced.
     #[error("cannot write {}: it exists", shown(path))]
     Exists {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
-    /// A folder is where a file shall be.
+    /// A folder exists in place of the file.
     #[error("cannot write {}: it is a folder", shown(path))]
     IsFolder {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// A device, a pipe or a socket is there.
     #[error("cannot write {}: it is not an ordinary file", shown(path))]
     NotAFile {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
-    /// A disk of its own is there, which cannot be exchanged with what lies beside it.
+    /// The path is a mount point, which cannot be exchanged with items beside it.
     #[error(
         "cannot write {}: it is a mount point, which cannot be replaced; name something inside it",
         shown(path)
     )]
     MountPoint {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
-    /// The name leaves no room for a temporary one, or is too long for the system.
+    /// The name leaves no room for a temporary name, or is too long for the system.
     #[error("cannot write {}: its name is too long", shown(path))]
     NameTooLong {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// Another process keeps the folder locked.
@@ -105,12 +105,12 @@ pub enum WriteError {
     Locked {
         /// The folder.
         path: PathBuf,
-        /// Which one.
+        /// The process.
         by: Holder,
         /// How long it was waited for.
         seconds: u64,
     },
-    /// A process that started this one keeps the folder locked, and each would wait for the other.
+    /// A process that started this program keeps the folder locked, and each would wait for the other.
     #[error(
         "cannot write {}: {by}, which started this program, keeps the folder locked and waits for this program to end; \
          lock a file beside the folder, not the folder itself",
@@ -119,7 +119,7 @@ pub enum WriteError {
     LockedAbove {
         /// The folder.
         path: PathBuf,
-        /// Which one.
+        /// The process.
         by: Holder,
     },
     /// The system refuses another open file.
@@ -128,16 +128,16 @@ pub enum WriteError {
         shown(path)
     )]
     TooManyOpen {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
-    /// It was asked to stop while it waited.
+    /// The computation was cancelled while it waited.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// Groups are named in UTF-8.
     #[error("cannot write {}: the path is not UTF-8, which stored grids need", shown(path))]
     NotUtf8 {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
     },
     /// The path names no file.
@@ -149,9 +149,9 @@ pub enum WriteError {
     /// Anything else the system reports.
     #[error("cannot write {}: {source}", shown(path))]
     Io {
-        /// What was to be written.
+        /// Target of the writing.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
 }

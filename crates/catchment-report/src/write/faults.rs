@@ -4,12 +4,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What happens at the chosen step.
+/// The fault at the chosen step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// The process dies: this step and every later one does nothing.
+    /// The process dies: this and all later steps do nothing.
     Crash,
-    /// The system refuses this one step.
+    /// The system refuses this single step.
     Fail,
 }
 
@@ -20,7 +20,7 @@ struct Set {
     after: usize,
     reached: usize,
     exchange: bool,
-    /// What somebody else puts there in the last moment.
+    /// An item that another process creates there at the last moment.
     late: Option<PathBuf>,
 }
 
@@ -64,7 +64,7 @@ pub(super) fn reach(path: &Path) -> io::Result<()> {
     if happens { Err(io::Error::other("a fault for a test")) } else { Ok(()) }
 }
 
-/// Whether the system cannot exchange folders here; asked right before it would.
+/// Whether the system cannot exchange folders here; checked right before it would.
 pub(super) fn cannot_exchange(path: &Path) -> bool {
     let mut sets = sets();
     let Some(set) = sets.iter_mut().find(|set| path.starts_with(&set.home)) else { return false };

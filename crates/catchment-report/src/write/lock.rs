@@ -23,22 +23,22 @@ use std::time::Duration;
 
 /// How long a lock is waited for before anything is computed.
 pub(super) const BEFORE: Duration = Duration::from_secs(5);
-/// The same where a result would be lost.
+/// The same if a result would be lost.
 pub(super) const AFTER: Duration = Duration::from_mins(1);
 /// Between two tries.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Which process holds a lock, as far as the system says.
+/// The process that holds a lock, as reported by the system.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Holder {
     /// A process.
     Process {
         /// Its number.
         id: u32,
-        /// Its name; empty where it cannot be read.
+        /// Its name; empty if it cannot be read.
         name: String,
     },
-    /// The system does not say.
+    /// Unknown to the system.
     Unknown,
 }
 
@@ -53,7 +53,7 @@ impl fmt::Display for Holder {
 }
 
 impl Holder {
-    /// What to do about it.
+    /// Advice.
     pub(super) fn remedy(&self) -> String {
         match self {
             Self::Process { id, .. } => {
@@ -71,11 +71,11 @@ struct HeldLock {
     above: bool,
 }
 
-/// Takes the lock of the folder at `place`, which is kept until the file is dropped; `None` where there is no folder, or where the
-/// system has no locks.
+/// Takes the lock of the folder at `place`, which is held until the file is dropped; `None` if there is no
+/// folder, or if the system has no locks.
 ///
 /// # Errors
-/// Another keeps it for longer than `patience`, or a stop was requested.
+/// Another process holds it for longer than `patience`, or a stop was requested.
 pub(super) fn claim(place: &Path, patience: Duration, exec: &Exec) -> Result<Option<File>, WriteError> {
     let since = Stopwatch::start();
     let mut first = true;
@@ -110,7 +110,7 @@ pub(super) fn claim(place: &Path, patience: Duration, exec: &Exec) -> Result<Opt
     }
 }
 
-/// Whether a file or folder that was opened is still the one at `path`.
+/// Whether an opened file or folder is still the item at `path`.
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {
@@ -156,8 +156,8 @@ fn held(_: &File) -> HeldLock {
     HeldLock { by: Holder::Unknown, above: false }
 }
 
-/// The process that holds the `flock` lock of an inode, such as `08:01:42`, by lines as `/proc/locks` has them:
-/// `1: FLOCK  ADVISORY  WRITE 4711 08:01:42 0 EOF`. 0 stands for one that cannot be seen from here.
+/// The process that holds the `flock` lock of an inode, such as `08:01:42`, from lines of `/proc/locks`:
+/// `1: FLOCK  ADVISORY  WRITE 4711 08:01:42 0 EOF`. 0 stands for a process that is not visible from here.
 #[cfg(target_os = "linux")]
 fn holder_in(locks: &str, inode: &str) -> Option<u32> {
     // `->` stands before those who wait.
@@ -169,7 +169,7 @@ fn holder_in(locks: &str, inode: &str) -> Option<u32> {
     })
 }
 
-/// The process that started another; none for the first.
+/// The parent of a process; `None` for the first process.
 #[cfg(target_os = "linux")]
 fn parent(id: u32) -> Option<u32> {
     let status = fs::read_to_string(format!("/proc/{id}/status")).ok()?;

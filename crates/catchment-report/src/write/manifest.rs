@@ -56,10 +56,10 @@ impl Manifest {
         Ok(Self { catchment: env!("CARGO_PKG_VERSION").to_owned(), kind: kind.to_owned(), files })
     }
 
-    /// Of the folder, if it has one that can be read.
+    /// The manifest of the folder, if it has a readable one.
     ///
     /// # Errors
-    /// The system refuses another open file, so that it cannot be known.
+    /// The system refuses another open file, so that this cannot be determined.
     pub(super) fn read(folder: &Path) -> io::Result<Option<Self>> {
         let path = folder.join(MANIFEST);
         // Nothing else, such as a pipe, is opened.
@@ -121,7 +121,8 @@ impl Manifest {
         matches!(self.strange(folder), Ok(None)) && self.files.keys().all(there)
     }
 
-    /// Removes what is listed, the manifest and the folder; nothing else, even if it came a moment ago.
+    /// Removes the listed files, the manifest and the folder; nothing else, even if it was added a moment
+    /// ago.
     pub(super) fn remove(&self, folder: &Path, permit: &Permit) -> io::Result<()> {
         open_up(folder);
         let mut folders = BTreeSet::new();
@@ -138,7 +139,7 @@ impl Manifest {
     }
 }
 
-/// A path as the manifest says it.
+/// The form of a path in the manifest.
 fn word(name: &Path) -> Option<String> {
     let words: Option<Vec<&str>> = name.iter().map(|word| word.to_str()).collect();
     words.map(|words| words.join("/"))

@@ -55,10 +55,10 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
 }
 
-/// Where a path leads when links are followed; it need not exist.
+/// Target of a path after following links; it need not exist.
 ///
 /// # Errors
-/// It has no name at its end, or links lead in a circle.
+/// The path has no name at its end, or links form a circle.
 pub fn place(path: &Path) -> Result<PathBuf, WriteError> {
     // Without the separator or the dot at its end, which would follow a link.
     let mut place: PathBuf = path.components().collect();
@@ -79,13 +79,13 @@ pub(crate) fn check_utf8(path: &Path) -> Result<(), WriteError> {
     if place(path)?.to_str().is_some() { Ok(()) } else { Err(WriteError::NotUtf8 { path: path.to_owned() }) }
 }
 
-/// Makes a rename survive a power cut, where the system can.
+/// Makes a rename durable across a power cut, if the system can.
 fn sync_parent(path: &Path) {
     // Some systems cannot open folders; the rename itself has already happened.
     let _ = File::open(parent(path)).and_then(|folder| folder.sync_all());
 }
 
-/// Where a file goes, and the permissions that it takes over.
+/// Target of a file, and the permissions that it takes over.
 fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissions>), WriteError> {
     let there = fs::metadata(path).ok();
     if let Some(meta) = &there {
@@ -140,10 +140,10 @@ pub fn file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), WriteError> 
     Ok(())
 }
 
-/// Writes a file into a folder that is being filled; `name` may name one folder in it, which is made.
+/// Writes a file into a folder that is being filled; `name` may contain a folder, which is created.
 ///
 /// # Errors
-/// Whatever the system refuses.
+/// Errors of the system.
 pub fn part(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
     let path = folder.join(name);
     let write = || -> io::Result<()> {
@@ -157,14 +157,14 @@ pub fn part(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
     write().map_err(|error| WriteError::at(&path, error))
 }
 
-/// What is at the place of a folder.
+/// State of the place of a folder.
 enum There {
     Nothing,
     Empty,
     Ours(Manifest),
 }
 
-/// What is at a place that may be used for a folder of this kind.
+/// State of a place that may be used for a folder of this kind.
 fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
     let path = || place.to_owned();
     match fs::symlink_metadata(place) {
@@ -187,14 +187,15 @@ fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
     Ok(There::Ours(manifest))
 }
 
-/// The same while no other process of this program works on it, and what keeps others waiting until it is dropped.
+/// The same while no other process of this program works on it, with a guard that keeps others waiting until
+/// it is dropped.
 fn look_undisturbed(
     place: &Path,
     kind: &str,
     patience: Duration,
     exec: &Exec,
 ) -> Result<(Option<File>, There), WriteError> {
-    /// Where the system has no locks, others cannot be kept away.
+    /// Number of attempts; on systems without locks, others cannot be excluded.
     const TRIES: usize = 100;
     for _ in 0..TRIES {
         if let Some(others_wait) = claim(place, patience, exec)? {
@@ -220,10 +221,11 @@ fn nothing_strange(manifest: &Manifest, folder: &Path, shown: &Path) -> Result<(
     }
 }
 
-/// Refuses a place for a folder as [`folder`] would, and tries it out; puts in order what a killed run left there.
+/// Rejects a place for a folder as [`folder`] would, and tries it; cleans up the remains of a killed run
+/// there.
 ///
 /// # Errors
-/// Those of [`folder`]; a lock is waited for 5 s.
+/// Those of [`folder`]; it waits 5 s for a lock.
 pub fn check_folder(path: &Path, kind: &str, exec: &Exec) -> Result<(), WriteError> {
     let place = place(path)?;
     sweep(&place)?;
@@ -231,11 +233,12 @@ pub fn check_folder(path: &Path, kind: &str, exec: &Exec) -> Result<(), WriteErr
     Temporary::folder(&place).map(drop)
 }
 
-/// Writes a folder: `fill` fills an empty one, which then takes the place of `path`. What is there already is
+/// Writes a folder: `fill` fills an empty folder, which then takes the place of `path`. An existing folder is
 /// replaced only if it is of the same kind and nothing in it was added or changed.
 ///
 /// # Errors
-/// Those of `fill`, and whatever the system refuses; a lock is waited for 60 s. What was there is there again.
+/// Those of `fill`, and errors of the system; it waits 60 s for a lock. The previous content is then
+/// restored.
 pub fn folder<E: From<WriteError>>(
     path: &Path,
     kind: &str,
@@ -265,7 +268,8 @@ pub fn folder<E: From<WriteError>>(
     Ok(())
 }
 
-/// Lets a complete folder take its place; says `false` if somebody else was faster and it has to be tried again.
+/// Moves a complete folder to its place; returns `false` if another process was faster and it must be
+/// retried.
 fn put(new: &mut Temporary, place: &Path, kind: &str, exec: &Exec) -> Result<bool, WriteError> {
     let at = |error| WriteError::at(place, error);
     let (others_wait, there) = look_undisturbed(place, kind, AFTER, exec)?;

@@ -7,7 +7,7 @@ use crate::folder::{Files, SaveError, StudyFolder};
 use crate::save::save_drawn;
 use catchment_core::exec::Exec;
 
-/// How one writer writes a version, and which one is there, whole.
+/// A writer of a given version, and a test which version is present, complete.
 struct Writer<'a> {
     write: &'a dyn Fn(&Path, usize) -> bool,
     check: &'a dyn Fn(&Path) -> bool,

@@ -29,7 +29,8 @@ pub(super) const NEW: &str = "tmp";
 /// Stepped aside.
 pub(super) const ASIDE: &str = "old";
 
-/// Threads of one process, and processes of one number on several machines, that write to one place at the same time.
+/// Largest number of threads of a process, and of processes with the same number on several machines, that
+/// write to the same place simultaneously.
 const WRITERS: usize = 64;
 
 /// Something unfinished beside its place: removed when dropped.
@@ -41,7 +42,7 @@ pub(super) struct Temporary {
     lock: Option<File>,
 }
 
-/// What was made under a name that was free.
+/// An item created under an unused name.
 enum Made<T> {
     /// It can be locked by this.
     Locked(File, T),
@@ -52,7 +53,7 @@ enum Made<T> {
 }
 
 impl Temporary {
-    /// An empty folder, open to nobody to whom the folder that it will replace is closed.
+    /// An empty folder, at most as accessible as the folder that it will replace.
     pub(super) fn folder(place: &Path) -> Result<Self, WriteError> {
         let replaced = fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir);
         let permissions = replaced.map(|meta| meta.permissions());
@@ -73,7 +74,7 @@ impl Temporary {
         .map(|(made, ())| made)
     }
 
-    /// An empty file, open to nobody to whom the file that it will replace is closed.
+    /// An empty file, at most as accessible as the file that it will replace.
     pub(super) fn file(place: &Path, permissions: Option<&Permissions>) -> Result<(Self, File), WriteError> {
         Self::make(place, |permit, path| {
             let file = permit.create(path, permissions)?;
@@ -105,7 +106,7 @@ impl Temporary {
         Err(WriteError::at(place, ErrorKind::ResourceBusy.into()))
     }
 
-    /// It has its place, or must stay where it is.
+    /// It has been moved to its place, or must stay.
     pub(super) fn keep(&mut self) {
         permit().unfinished(&self.path, false);
         self.finished = true;
@@ -139,7 +140,7 @@ pub(super) fn hidden(place: &Path, number: usize, ending: &str) -> Result<PathBu
     Ok(place.with_file_name(hidden))
 }
 
-/// What shows that a hidden name is from here.
+/// The mark of a hidden name of this program.
 pub(super) fn mark(start: &OsStr, number: &str) -> String {
     const DIGITS: usize = 8;
     let digest = Sha256::new().chain_update(start.as_encoded_bytes()).chain_update(number).finalize();
@@ -153,7 +154,7 @@ fn start(name: &OsStr) -> OsString {
     start
 }
 
-/// The ending of a hidden name of this start, if it is one, and whether it has its mark.
+/// The suffix of a hidden name with this start, if it is one, and whether it has its mark.
 fn ending(name: &OsStr, start: &OsStr) -> Option<(&'static str, bool)> {
     let rest = name.as_encoded_bytes().strip_prefix(start.as_encoded_bytes())?;
     let (number, rest) = std::str::from_utf8(rest).ok()?.split_once('.')?;
@@ -170,10 +171,10 @@ fn is_held(file: &File) -> bool {
     matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock))
 }
 
-/// Restores and removes what killed processes left beside a place.
+/// Restores and removes the remains of killed processes beside a place.
 ///
 /// # Errors
-/// A left-over holds something that is not from this program.
+/// The remains contain something that is not from this program.
 pub(crate) fn sweep(place: &Path) -> Result<(), WriteError> {
     let Some(name) = place.file_name() else { return Ok(()) };
     let start = start(name);

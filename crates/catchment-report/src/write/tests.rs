@@ -17,7 +17,7 @@ pub(super) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A folder for a test, in memory where there is one: nothing here is about disks that lose what was synced.
+/// A folder for a test, in memory if available: these tests do not cover disks that lose synced data.
 pub(super) fn home() -> tempfile::TempDir {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { tempfile::tempdir_in(memory).unwrap() } else { tempfile::tempdir().unwrap() }
@@ -156,7 +156,7 @@ fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
     assert_eq!(saved(path), Some(3));
 }
 
-/// Notes that are put into the old result while the new one is computed and written.
+/// Notes added to the old result while the new result is computed and written.
 #[test]
 fn what_comes_while_the_new_is_written_is_kept() {
     for exchange in [true, false] {
@@ -227,7 +227,7 @@ fn links_stay_and_so_do_permissions() {
     assert!(matches!(save(&at("empty"), 3), Err(SaveError::Write(WriteError::Strange { .. }))));
 }
 
-/// Whoever may not look into the old one may not look into the new one while it is filled.
+/// A user without access to the old result has no access to the new one while it is filled.
 #[cfg(unix)]
 #[test]
 fn what_is_unfinished_is_no_more_open_than_what_it_replaces() {
@@ -379,7 +379,7 @@ fn many_write_to_one_place() {
     assert_eq!(names(home.path()), ["out"]);
 }
 
-/// Whoever sweeps may remove a folder before who made it has locked it.
+/// A cleanup may remove a folder before its creator has locked it.
 #[test]
 fn what_is_unfinished_has_one_owner() {
     let home = home();

@@ -45,7 +45,7 @@ pub const LAYOUT: u32 = 1;
 /// The kind of the folder in its manifest, `.catchment.json`, which readers of Zarr pass over.
 pub(super) const KIND: &str = "group";
 
-/// Cells per chunk at most: a megabyte or a few, read in one go.
+/// Largest number of cells per chunk: a megabyte or a few, read at once.
 const CHUNK_CELLS: usize = 1 << 20;
 
 /// Level of compression: outcomes are long runs, more effort gains nothing.
@@ -68,12 +68,12 @@ pub enum ZarrError {
         /// Number of cells.
         cells: usize,
     },
-    /// What is there is no group to read.
+    /// The path is not a readable group.
     #[error("cannot read {}: {reason}", shown(path))]
     Content {
         /// The group.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// It does not fit into memory.
@@ -82,10 +82,10 @@ pub enum ZarrError {
     /// The storage library refused.
     #[error("the Zarr group: {reason}")]
     Storage {
-        /// What it says.
+        /// Its message.
         reason: String,
     },
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -100,7 +100,7 @@ fn storage<E: std::error::Error>(error: E) -> ZarrError {
     ZarrError::Storage { reason: error.to_string() }
 }
 
-/// What a method knows of every cell beside its outcome, in the order of the grid's cells.
+/// Results of a method for every cell besides its outcome, in the order of the grid's cells.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CellLayers<'a> {
     /// z of the COR at first contact, in D; values that are not finite stand for no contact.
@@ -318,7 +318,7 @@ fn unravel(mut number: usize, shape: &[usize]) -> Vec<usize> {
     place
 }
 
-/// The values of the cells of one chunk, row-major; beyond the array the fill value.
+/// The values of the cells of a chunk, row-major; beyond the array the fill value.
 fn gather<T: Copy>(
     shape: &[usize],
     chunk: &[usize],

@@ -17,15 +17,16 @@ use serde_json::{Value, json};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Most bytes of the metadata of an array: those of this program take less than one thousand.
+/// Largest size of an array's metadata, in bytes: those of this program take less than one thousand.
 const METADATA_BYTES: u64 = 1 << 20;
 
-/// Most bytes of a chunk as it is stored: what does not compress grows by five bytes in 64 kB, and a head and a tail.
+/// Largest size of a stored chunk, in bytes: incompressible data grows by five bytes in 64 kB, plus a head
+/// and a tail.
 const CHUNK_BYTES: u64 = (CHUNK_CELLS + CHUNK_CELLS / 1024 + 1024) as u64;
 
 /// Why there are no outcomes.
 pub(super) enum Refused {
-    /// The file, and what is wrong with it.
+    /// The file, and its error.
     Content(PathBuf, String),
     Cancelled(Cancelled),
 }
@@ -44,7 +45,7 @@ pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Ou
     })
 }
 
-/// The heights over `shape`, row-major, in D, NaN without contact; `None` of a group that has none.
+/// The heights over `shape`, row-major, in D, NaN without contact; `None` for a group without heights.
 pub(super) fn heights(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Option<Vec<f32>>, Refused> {
     if !folder.join("height").is_dir() {
         return Ok(None);
@@ -131,7 +132,7 @@ fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), Refuse
     Ok(())
 }
 
-/// What a message repeats of a value.
+/// The short form of a value for a message.
 fn short(value: &Value) -> String {
     const SHOWN: usize = 60;
     let text = value.to_string();

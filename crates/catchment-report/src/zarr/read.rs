@@ -69,10 +69,12 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     Ok((report, acceptance))
 }
 
-/// The heights of first contact of a group over the grid of its outcomes, in D, NaN without contact; `None` where they were not kept.
+/// The heights of first contact of a group over the grid of its outcomes, in D, NaN without contact; `None`
+/// if they were not stored.
 ///
 /// # Errors
-/// What is there is no array over this grid that this program would have written, or it does not fit into the memory allowed.
+/// The content is not an array over this grid as written by this program, or it does not fit into the
+/// permitted memory.
 pub fn read_heights(path: &Path, grid: &Grid, exec: &Exec) -> Result<Option<Vec<f32>>, ZarrError> {
     let bytes = (size_of::<f32>() as u64).saturating_mul(grid.len() as u64);
     exec.ensure_fits("the heights of a stored result", bytes, |_| vec![Advice::MoreMemory])?;
@@ -154,7 +156,7 @@ mod tests {
         assert!(read_heights(&path, grid, &Exec::new()).unwrap().is_none());
     }
 
-    /// A group of 7 × 7 cells, and what is said of it when a file of it is replaced.
+    /// A group of 7 × 7 cells, and the message after replacing a file of it.
     fn spoilt(file: &str, bytes: &[u8]) -> String {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("out.zarr");

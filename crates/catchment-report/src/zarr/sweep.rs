@@ -25,7 +25,7 @@ use zarrs::filesystem::FilesystemStore;
 /// Writes the group `sweep.zarr` into a folder that is being filled.
 ///
 /// # Errors
-/// What the system or the storage library refuses, or it was asked to stop.
+/// Errors of the system or the storage library, or the computation is cancelled.
 pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(), ZarrError> {
     let folder = &folder.join("sweep.zarr");
     write::permit().step(folder, || std::fs::create_dir_all(folder).map_err(ZarrError::from))?;
@@ -94,7 +94,8 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
     finish(folder, &head, &arrays)
 }
 
-/// The axes as names of dimensions: their last words, or all of them where an error or another axis has that one.
+/// The axes as names of dimensions: their last words, or the full path if an error or another axis has that
+/// name.
 fn names(axes: &[SweepAxis]) -> Vec<String> {
     let taken = |axis: &SweepAxis| {
         let same = |other: &SweepAxis| other.key != axis.key && other.name() == axis.name();
@@ -129,7 +130,7 @@ fn variables(report: &SweepReport) -> Vec<(String, String, Variable)> {
     list
 }
 
-/// The slices of all designs, where those that have one have it over the same cells.
+/// The slices of all designs, if all slices have the same cells.
 fn outlines<'a>(figures: &[Option<&'a Figures>]) -> Option<Vec<Option<&'a Outline>>> {
     let outlines: Vec<Option<&Outline>> =
         figures.iter().map(|f| f.and_then(|f| f.outline.as_ref())).collect();

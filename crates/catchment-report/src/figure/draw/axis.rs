@@ -8,7 +8,7 @@ use catchment_core::pose::Dof;
 /// How a design's lengths and angles are shown.
 #[derive(Debug, Clone, Copy)]
 pub struct ShownUnits {
-    /// What one D is called on an axis.
+    /// Value of 1 D on an axis.
     width: f64,
     symbol: &'static str,
 }
@@ -22,7 +22,7 @@ impl ShownUnits {
         }
     }
 
-    /// What a library value must be multiplied by to be shown.
+    /// Factor from a library value to the displayed value.
     pub fn factor(&self, dof: Dof) -> f64 {
         if dof.is_rotation() { 1f64.to_degrees() } else { self.width }
     }
@@ -58,13 +58,13 @@ impl ShownUnits {
         self.symbol
     }
 
-    /// What a length in D must be multiplied by to be shown.
+    /// Factor from a length in D to the displayed value.
     pub const fn lengths(&self) -> f64 {
         self.width
     }
 }
 
-/// One decimal less than would be noise.
+/// A short number without insignificant decimals.
 pub fn short(value: f64) -> String {
     let digits = if value.abs() >= 100.0 {
         0
@@ -81,24 +81,24 @@ pub fn short(value: f64) -> String {
 /// A labelled range of shown values.
 #[derive(Debug, Clone)]
 pub struct AxisScale {
-    /// What is measured, with its unit.
+    /// The quantity, with its unit.
     pub label: String,
-    /// Where it begins.
+    /// Start of the range.
     pub lo: f64,
-    /// Where it ends.
+    /// End of the range.
     pub hi: f64,
     degrees: bool,
 }
 
 impl AxisScale {
-    /// A range with its label; `degrees` asks for ticks at multiples of 15 where they fit.
+    /// A range with its label; `degrees` requests ticks at multiples of 15 if they fit.
     pub const fn new(label: String, lo: f64, hi: f64, degrees: bool) -> Self {
         Self { label, lo, hi, degrees }
     }
 
     /// Round numbers in the range, about `wanted` of them.
     pub fn ticks(&self, wanted: usize) -> Vec<f64> {
-        /// A step may be this much finer than wanted before the next rounder one is taken.
+        /// A step may be finer than wanted by this factor before the next rounder step is used.
         const FINER: f64 = 0.8;
         const DEGREES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0];
         let span = self.hi - self.lo;
@@ -129,7 +129,7 @@ impl AxisScale {
 /// A frame with two scales: shown values to places in the picture.
 #[derive(Debug, Clone)]
 pub struct PlotFrame {
-    /// Where it lies in the picture.
+    /// Its position in the picture.
     pub rect: Rect,
     /// The scale of its lower side.
     pub x: AxisScale,

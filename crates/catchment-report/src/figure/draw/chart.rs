@@ -4,9 +4,9 @@ use super::axis::{AxisScale, PlotFrame, tick_label};
 use super::colour::{Rgb, hex};
 use super::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 
-/// One line.
+/// A line.
 pub struct ChartLine {
-    /// What the legend calls it.
+    /// Its name in the legend.
     pub name: String,
     /// Its colour.
     pub colour: Rgb,
@@ -14,7 +14,7 @@ pub struct ChartLine {
     pub points: Vec<ChartPoint>,
 }
 
-/// One point of a line, with the interval of its value where it has one.
+/// A point of a line, with the interval of its value, if any.
 #[derive(Debug, Clone, Copy)]
 pub struct ChartPoint {
     /// Along the scale.
@@ -35,7 +35,7 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// Where a value lies along the scale.
+    /// Position of a value along the scale.
     fn at(self, x: f64) -> f64 {
         if self == Self::Logarithmic { x.log10() } else { x }
     }
@@ -55,13 +55,13 @@ impl Spacing {
 
 /// A chart of lines.
 pub struct Chart<'a> {
-    /// Where it lies in the picture.
+    /// Its position in the picture.
     pub rect: Rect,
-    /// What the x scale measures.
+    /// Quantity of the x scale.
     pub x_label: &'a str,
     /// How it is spaced.
     pub spacing: Spacing,
-    /// What the y scale measures.
+    /// Quantity of the y scale.
     pub y_label: &'a str,
     /// The lines.
     pub lines: &'a [ChartLine],
@@ -74,9 +74,9 @@ pub struct Chart<'a> {
 pub struct Mark<'a> {
     /// The value.
     pub x: f64,
-    /// Where a curve has this value there, the y that it is read off at.
+    /// The y at which this value is read off a curve, if it is.
     pub y: Option<f64>,
-    /// What it is.
+    /// Its description.
     pub words: &'a str,
 }
 
@@ -206,7 +206,7 @@ pub fn legend(svg: &mut Svg, lines: &[ChartLine], [mut x, y]: [f64; 2]) {
     }
 }
 
-/// Round numbers between 10^`lo` and 10^`hi`: of a decade 1, 2 and 5 where there is room, else powers of ten.
+/// Round numbers between 10^`lo` and 10^`hi`: 1, 2 and 5 of each decade if they fit, else powers of ten.
 fn decades(lo: f64, hi: f64, width: f64) -> Vec<f64> {
     /// Units that a tick's number needs.
     const ROOM: f64 = 34.0;
@@ -225,7 +225,7 @@ fn decades(lo: f64, hi: f64, width: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Scales that ended at the interval of the last point cut off the wider ones before it.
+    /// Scales that end at the interval of the last point cut off wider intervals before it.
     #[test]
     fn every_interval_lies_within_the_frame() {
         let rect = Rect { x: 50.0, y: 20.0, w: 300.0, h: 200.0 };

@@ -5,7 +5,7 @@ use catchment_core::acceptance::Outcome;
 /// Red, green and blue.
 pub type Rgb = [u8; 3];
 
-/// Where nothing is known or nothing touches.
+/// Unknown outcome, or no contact.
 pub const NOTHING: Rgb = [0xe6, 0xe9, 0xed];
 /// The fixed half.
 pub const FIXED: Rgb = [0x8f, 0xa9, 0xc9];

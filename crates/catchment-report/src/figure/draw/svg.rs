@@ -18,7 +18,7 @@ pub struct Rect {
     pub h: f64,
 }
 
-/// Where a text hangs on its point.
+/// Alignment of a text at its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// Its start.
@@ -38,7 +38,7 @@ pub const TICK: f64 = 10.5;
 
 /// The colour of text and lines.
 pub const INK: &str = "#1f2933";
-/// The colour of what is less important.
+/// The colour of secondary elements.
 pub const SOFT: &str = "#5f6b7a";
 
 /// Style of lines whose ends and corners are round.
@@ -89,7 +89,7 @@ impl Svg {
         }
     }
 
-    /// A text; what XML or a terminal could take amiss is escaped.
+    /// A text; characters with a meaning in XML or on a terminal are escaped.
     pub fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, fill: &str, content: &str) {
         self.write_text([x, y], size, anchor, &format!(r#"fill="{fill}""#), content);
     }
@@ -149,7 +149,7 @@ impl Svg {
         self.push(format_args!(r#"<g opacity="{}">"#, n(opacity)));
     }
 
-    /// Ends what was begun last.
+    /// Ends the most recently begun element.
     pub fn end(&mut self) {
         self.body.push_str("</g>\n");
     }

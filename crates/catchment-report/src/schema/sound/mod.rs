@@ -12,7 +12,7 @@ use catchment_core::pose::Dof;
 pub struct UnsoundError {
     /// Which, as the JSON has it.
     pub field: String,
-    /// What should hold of it.
+    /// The violated rule.
     pub rule: &'static str,
 }
 

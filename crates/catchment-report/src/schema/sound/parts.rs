@@ -7,7 +7,7 @@ use catchment_core::method::flood::ToleranceReason;
 use catchment_core::run::jams::Jams;
 
 impl RunBody {
-    /// What must hold of the parts that are there.
+    /// Checks the parts that are present.
     pub(super) fn check_parts(&self) -> Result<(), UnsoundError> {
         if let Some(basins) = &self.basins {
             check_basins(basins, self.acceptance.cells)?;
