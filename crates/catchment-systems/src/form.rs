@@ -39,19 +39,20 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Problems that are told; more are counted.
+/// Number of errors that are listed; further ones are counted.
 const MOST: usize = 20;
 
-/// Collects the problems of one text.
+/// Collects the errors of a text.
 #[derive(Debug)]
 pub struct Form<'t> {
     found: Vec<Diagnostic>,
-    /// Where the text is no TOML: what is wrong there is an echo, and what is missing may have been swallowed.
+    /// Ranges in which the text is not TOML: errors there are consequences, and missing keys may have been
+    /// lost.
     broken: Vec<Range<usize>>,
     text: &'t str,
 }
 
-/// One table of a form. It remembers the keys it was asked for: all others are unknown.
+/// A table of a form. It records the requested keys: all others are unknown.
 #[derive(Debug)]
 pub struct FormTable<'t> {
     path: String,
@@ -70,7 +71,7 @@ pub struct Word<'t> {
 }
 
 impl<'t> FormTable<'t> {
-    /// Where the table stands.
+    /// Byte range of the table.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
@@ -85,7 +86,7 @@ impl<'t> FormTable<'t> {
         self.table.is_some()
     }
 
-    /// Where a key's value stands; the table where it is not written.
+    /// Byte range of a key's value; of the table if the key is missing.
     pub fn span_of(&self, key: &'static str) -> Range<usize> {
         self.table.and_then(|table| table.get(key)).map_or_else(|| self.span(), Spanned::span)
     }
@@ -144,7 +145,7 @@ impl<'t> Form<'t> {
         }
     }
 
-    /// Whether anything is wrong so far: then what follows from several values need not be checked.
+    /// Whether there is any error so far: then conditions on several values need not be checked.
     pub fn is_refused(&self) -> bool {
         !self.found.is_empty()
     }
@@ -166,7 +167,7 @@ impl<'t> Form<'t> {
         }
     }
 
-    /// A table; an empty one where it is not written.
+    /// A table; an empty table if it is missing.
     pub fn table<'s>(&mut self, parent: &FormTable<'s>, key: &'static str) -> FormTable<'s> {
         let path = parent.place(key);
         let none = |span| FormTable { path: path.clone(), span, table: None, asked: RefCell::default() };
@@ -199,7 +200,7 @@ impl<'t> Form<'t> {
         sections
     }
 
-    /// Complains about every key that was not asked for.
+    /// Reports every key that was not requested.
     pub fn close(&mut self, section: &FormTable<'_>) {
         let asked = section.asked.borrow();
         let named =
@@ -394,7 +395,7 @@ impl<'t> Form<'t> {
         }
     }
 
-    /// One of the named values; the first is the default.
+    /// A choice among the named values; the first is the default.
     pub fn choice<T: Copy>(
         &mut self,
         section: &FormTable<'_>,

@@ -31,7 +31,7 @@ pub enum CatalogAttribute {
     ApproachAngle,
 }
 
-/// Attribute, name in the table's file, other names, what a person reads above it.
+/// Attribute, name in the table's file, other names, heading for people.
 type Named = (CatalogAttribute, &'static str, &'static [&'static str], &'static str);
 
 const NAMES: [Named; 11] = [
@@ -90,12 +90,12 @@ impl CatalogAttribute {
         NAMES.iter().find(|(_, key, others, _)| is(key) || others.iter().any(|o| is(o))).map(|named| named.0)
     }
 
-    /// The value in the terms that the text defines: the printed one, but for [`ODDITIES`].
+    /// The value in the terms that the text defines: the printed value, except for [`ODDITIES`].
     pub fn normal(self, printed: &str) -> &str {
         self.oddity(printed).map_or(printed, |oddity| oddity.normal)
     }
 
-    /// What is odd about a printed value.
+    /// The oddity of a printed value, if any.
     pub fn oddity(self, printed: &str) -> Option<&'static Oddity> {
         ODDITIES.iter().find(|oddity| oddity.attribute == self && oddity.printed == printed)
     }
@@ -115,9 +115,9 @@ pub struct Oddity {
     pub reason: &'static str,
 }
 
-/// What a value is called that the table leaves open.
+/// Name of a value that the table leaves open.
 const UNSTATED: &str = "unstated";
-/// What a value is called that the table says does not apply.
+/// Name of a value that does not apply according to the table.
 const NOT_APPLICABLE: &str = "not applicable";
 const NO_AGENCY: &str = "a dash is printed, and the text does not say what it means";
 const PEBBLES: &str = "its row is a passive system that assembles itself";

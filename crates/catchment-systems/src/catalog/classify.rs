@@ -9,7 +9,7 @@ use catchment::method::zraa::{AcceptedSquare, Zraa, ZraaError, ZraaSettings, run
 use catchment::problem::Problem;
 use serde::Serialize;
 
-/// What the table prints where nothing is known.
+/// Printed form of an unknown value.
 const UNKNOWN: &str = "-";
 
 /// A design, classified.
@@ -19,9 +19,9 @@ pub struct Classified {
     pub name: String,
     /// Which offsets it corrects without rotation.
     pub zraa: Zraa,
-    /// The largest square among them; where one translation is locked, its edge is the length of the interval.
+    /// The largest square among them; if one translation is locked, its edge is the length of the interval.
     pub square: AcceptedSquare,
-    /// How far they reach through zero.
+    /// Their extent on the axes through zero.
     pub extents: Extents,
     /// The degree by the rule.
     pub degree: Degree,
@@ -61,7 +61,7 @@ pub enum ClassifyError {
 /// Classifies a design by its own geometry.
 ///
 /// # Errors
-/// Where its zero-rotation area of acceptance is not decided.
+/// If its zero-rotation area of acceptance cannot be decided.
 pub fn classify(problem: &Problem, exec: &Exec) -> Result<Classified, ClassifyError> {
     let zraa = run(problem.pair(), &ZraaSettings::default(), exec)?;
     let square = AcceptedSquare::of(&zraa, exec)?;
@@ -77,7 +77,7 @@ pub fn classify(problem: &Problem, exec: &Exec) -> Result<Classified, ClassifyEr
 }
 
 impl Classified {
-    /// Its area, in D²; `None` where one translation is locked.
+    /// Its area, in D²; `None` if one translation is locked.
     pub const fn area(&self) -> Option<f64> {
         match &self.zraa {
             Zraa::Region { area, .. } => Some(*area),
@@ -90,7 +90,7 @@ impl Classified {
         if self.ungendered { "Ungendered" } else { "Gendered" }
     }
 
-    /// Its row: what geometry does not decide is left open.
+    /// Its row: attributes that do not follow from geometry are left open.
     pub fn row(&self) -> System {
         let value = |attribute| match attribute {
             CatalogAttribute::SelfAligningDegree => self.degree.name(),

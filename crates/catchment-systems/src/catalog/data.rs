@@ -7,7 +7,7 @@ use serde::Serialize;
 const CONNECTORS: &str = include_str!("../../data/table-1.1-connectors.csv");
 const ZRAA: &str = include_str!("../../data/table-2.1-zraa.csv");
 
-/// The same system in table 1.1 and in table 2.1, where both have it. Names are joined by this list alone.
+/// The same system in table 1.1 and in table 2.1, if both list it. Names are joined only by this list.
 pub const ALIASES: [(&str, &str); 8] = [
     ("I-Cubes", "I-Cubes"),
     ("CONRO", "CONRO"),
@@ -19,7 +19,7 @@ pub const ALIASES: [(&str, &str); 8] = [
     ("Vacuubes", "Vacuubes"),
 ];
 
-/// Other names of a system that a person may ask for, and the name in the catalogue.
+/// Other names of a system that users may enter, and the name in the catalogue.
 const ASKED: [(&str, &str); 9] = [
     ("PolyBot", "Polybot G3"),
     ("PolyBot G3", "Polybot G3"),
@@ -37,7 +37,7 @@ const X_FACE: &str = "3-D X-Face";
 /// Its zero-rotation area, in D² (section 4.1.2).
 const X_FACE_AREA: f64 = 2.0;
 
-/// One of the published tables.
+/// The published tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PublishedTable {
     /// Table 1.1, connectors and their attributes.
@@ -86,11 +86,11 @@ pub struct PublishedZraa {
 /// A row of the catalogue.
 #[derive(Debug, Clone, PartialEq)]
 pub struct System {
-    /// Its name: that of table 1.1 where it stands there.
+    /// Its name: that of table 1.1 if listed there.
     pub name: String,
-    /// Where the row comes from.
+    /// Source of the row.
     pub source: RowSource,
-    /// The printed values by [`CatalogAttribute::index`]; `None` where table 1.1 does not have it.
+    /// The printed values by [`Attribute::index`]; `None` if table 1.1 does not list it.
     pub attributes: Option<[String; 11]>,
     /// The published area.
     pub published: Option<PublishedZraa>,
@@ -109,7 +109,7 @@ impl System {
         self.printed(attribute).map(|printed| attribute.normal(printed))
     }
 
-    /// The published area, or the one computed of an appended design, in D².
+    /// The published area, or the computed area of an appended design, in D².
     pub fn area(&self) -> Option<f64> {
         self.published.as_ref().map(|zraa| zraa.area_d2).or(self.computed)
     }
@@ -124,7 +124,7 @@ impl System {
     }
 }
 
-/// What is wrong with the data of a table.
+/// An error in the data of a table.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the data of table {table} cannot be read, line {line}: {reason}")]
 pub struct DataError {
@@ -132,7 +132,7 @@ pub struct DataError {
     pub table: &'static str,
     /// Line of its file, from 1.
     pub line: u64,
-    /// What is wrong.
+    /// Description.
     pub reason: String,
 }
 
@@ -146,10 +146,10 @@ pub struct Catalog {
 }
 
 impl Catalog {
-    /// What was published.
+    /// The published catalogue.
     ///
     /// # Errors
-    /// Where the data of a table is not of its form.
+    /// If the data of a table is malformed.
     pub fn published() -> Result<Self, DataError> {
         let mut areas = zraa_rows(ZRAA)?;
         let zraa_order = areas.iter().map(|(name, _)| name.clone()).collect();
@@ -177,7 +177,7 @@ impl Catalog {
         Ok(Self { systems, zraa_order })
     }
 
-    /// The row of a name: that of either table, or one that people use for it; upper and lower case do not count.
+    /// The row of a name: that of either table, or a common name for it; case is ignored.
     pub fn find(&self, name: &str) -> Option<&System> {
         let meant =
             ASKED.iter().find(|(asked, _)| asked.eq_ignore_ascii_case(name)).map_or(name, |(_, of)| of);
@@ -190,7 +190,7 @@ impl Catalog {
     /// A published table, byte for byte.
     ///
     /// # Errors
-    /// None at present: every record has the columns of its table.
+    /// Never at present: every record has the columns of its table.
     pub fn as_printed(&self, table: PublishedTable) -> Result<Vec<u8>, csv::Error> {
         let mut rows: Vec<Vec<String>> = Vec::new();
         match table {

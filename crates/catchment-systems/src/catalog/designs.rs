@@ -1,11 +1,11 @@
 //! Design files of published geometries.
 
-/// A design file and what it shows.
+/// A design file with its description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DesignText {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub summary: &'static str,
     /// The file.
     pub text: &'static str,
@@ -55,7 +55,7 @@ mod tests {
         assert!(DesignText::named("cone").is_some() && DesignText::named("dragon").is_none());
     }
 
-    /// The example beside the other designs is what the command writes.
+    /// The committed example equals the design that the command writes.
     #[test]
     fn the_committed_example_is_the_design_that_is_written() {
         let path =

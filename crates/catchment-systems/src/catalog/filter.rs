@@ -19,7 +19,7 @@ pub struct Condition {
 pub enum RowOrder {
     /// As printed, which is by date; rows without a date last.
     Introduced,
-    /// By area, the largest first; rows without one last.
+    /// By area, the largest first; rows without an area last.
     Zraa,
 }
 
@@ -29,15 +29,15 @@ pub enum UnknownError {
     /// It is not of the form `attribute=value`.
     #[error("`{text}` is no condition: write attribute=value, such as gendering=Ungendered")]
     Form {
-        /// What was written.
+        /// The text as written.
         text: String,
     },
     /// There is no such attribute.
     #[error("there is no attribute `{written}`{}", suggested(.meant.as_deref()))]
     Attribute {
-        /// What was written.
+        /// The text as written.
         written: String,
-        /// What it may stand for.
+        /// The name that was probably meant.
         meant: Option<String>,
         /// Every attribute.
         known: Vec<String>,
@@ -47,9 +47,9 @@ pub enum UnknownError {
     Value {
         /// Of this attribute.
         attribute: &'static str,
-        /// What was written.
+        /// The text as written.
         written: String,
-        /// What it may stand for.
+        /// The name that was probably meant.
         meant: Option<String>,
         /// Every value.
         known: Vec<String>,
@@ -57,9 +57,9 @@ pub enum UnknownError {
     /// There is no such system.
     #[error("there is no system `{written}`{}", suggested(.meant.as_deref()))]
     System {
-        /// What was written.
+        /// The text as written.
         written: String,
-        /// What it may stand for.
+        /// The name that was probably meant.
         meant: Option<String>,
         /// Every system.
         known: Vec<String>,
@@ -67,7 +67,7 @@ pub enum UnknownError {
 }
 
 impl UnknownError {
-    /// What is known instead.
+    /// The known names.
     pub fn help(&self) -> Option<String> {
         let (Self::Attribute { known, .. } | Self::Value { known, .. } | Self::System { known, .. }) = self
         else {
@@ -86,10 +86,10 @@ fn likely(written: &str, known: &[String]) -> Option<String> {
 }
 
 impl Catalog {
-    /// Reads `attribute=value`; upper and lower case do not count.
+    /// Reads `attribute=value`; case is ignored.
     ///
     /// # Errors
-    /// Where either is unknown, with those that are known.
+    /// If either is unknown, with the known names.
     pub fn condition(&self, text: &str) -> Result<Condition, UnknownError> {
         let Some((name, value)) = text.split_once('=') else {
             return Err(UnknownError::Form { text: text.to_owned() });
@@ -124,7 +124,7 @@ impl Catalog {
     /// The row of a name.
     ///
     /// # Errors
-    /// Where there is none, with all names.
+    /// If there is none, with all names.
     pub fn named(&self, name: &str) -> Result<&System, UnknownError> {
         self.find(name.trim()).ok_or_else(|| {
             let known: Vec<String> = self.systems.iter().map(|system| system.name.clone()).collect();
@@ -132,7 +132,7 @@ impl Catalog {
         })
     }
 
-    /// The rows that meet all conditions, of which those about one attribute are alternatives.
+    /// The rows that meet all conditions; conditions on the same attribute are alternatives.
     #[must_use]
     pub fn filtered(mut self, conditions: &[Condition]) -> Self {
         let holds = |system: &System, wanted: &Condition| {
@@ -148,7 +148,7 @@ impl Catalog {
         self
     }
 
-    /// The rows in another order; equal ones keep theirs.
+    /// The rows in another order; equal rows keep theirs.
     #[must_use]
     pub fn sorted(mut self, order: RowOrder) -> Self {
         match order {

@@ -107,7 +107,7 @@ fn through_zero(polygons: &[Vec<DVec2>], axis: DVec2) -> [f64; 2] {
     joined.into_iter().find(|[from, to]| *from <= SEAM && *to >= -SEAM).unwrap_or([0.0; 2])
 }
 
-/// Where a convex polygon meets an axis.
+/// Intersection of a convex polygon with an axis.
 fn on_axis(polygon: &[DVec2], axis: DVec2) -> Option<[f64; 2]> {
     let mut found: Option<[f64; 2]> = None;
     let mut meet = |t: f64| {

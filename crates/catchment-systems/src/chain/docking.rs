@@ -24,10 +24,11 @@ use catchment::problem::Problem;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
-/// A design as a chain uses it: x and pitch free, its centre of rotation the last rotor, ρ as asked for.
+/// A design as a chain uses it: x and pitch free, its centre of rotation the last rotor, with the requested
+/// ρ.
 ///
 /// # Errors
-/// The design cannot be free so.
+/// The design cannot have these free errors.
 pub fn as_chain_uses_it(
     design: Design,
     body: &ModuleDimensions,
@@ -47,10 +48,10 @@ pub fn pose_error(body: &ModuleDimensions, [lateral, _, angle]: [f64; 3]) -> Pos
     PoseError { x: -lateral / body.face, pitch: angle, ..PoseError::default() }
 }
 
-/// Which of the chains dock.
+/// Whether each of the chains docks.
 ///
 /// # Errors
-/// It was asked to stop.
+/// The computation was cancelled.
 pub fn docks(
     problem: &Problem,
     body: &ModuleDimensions,
@@ -73,17 +74,17 @@ pub struct Probability {
 }
 
 impl Probability {
-    /// The share of what is true.
+    /// The share of true values.
     pub fn of(docked: &[bool]) -> Self {
         let hits = docked.iter().filter(|docked| **docked).count();
         Self { probability: hits as f64 / docked.len().max(1) as f64, ci95: wilson95(hits, docked.len()) }
     }
 }
 
-/// Lateral offsets in D that the connector corrects without any rotation: `[from, to]`.
+/// Lateral offsets in D that the connector corrects without rotation: `[from, to]`.
 ///
 /// # Errors
-/// The exact answer does not exist for these halves, or it was asked to stop; as a sentence.
+/// No exact result exists for these halves, or the computation was cancelled; as a sentence.
 pub fn offsets_without_rotation(problem: &Problem, exec: &Exec) -> Result<[f64; 2], String> {
     let free: DofSet = std::iter::once(Dof::X).collect();
     let design = problem.design().clone().with_free(free).map_err(|error| error.to_string())?;
@@ -150,10 +151,11 @@ mod tests {
         assert!((from + 1.0).abs() < 1e-9 && (to - 1.0).abs() < 1e-9, "{from} {to}");
     }
 
-    /// The published table: X-Face, aspect ratio 1, ρ = 0.5 D, within its ± 0.03 and our own 95 % interval, of 4 000 chains at most
-    /// ± 0.016. (20 000 chains: 14 of the 15 within ± 0.03; 16 modules at 1° have 0.598 for 0.565. Of 150 clouds of a thousand
-    /// chains, 0.592 on average, six lie at 0.565 or below: chance. With offsets at the centre of rotation it would be 0.56, but
-    /// 0.88 for 16 modules at 0.5°, where 0.918 is published.)
+    /// The published table: X-Face, aspect ratio 1, ρ = 0.5 D, within its ± 0.03 and our own 95 % interval,
+    /// of 4 000 chains at most ± 0.016. (20 000 chains: 14 of the 15 within ± 0.03; 16 modules at 1° have
+    /// 0.598 for 0.565. Of 150 clouds of a thousand chains, 0.592 on average, six lie at 0.565 or below:
+    /// chance. With offsets at the centre of rotation it would be 0.56, but 0.88 for 16 modules at 0.5°, for
+    /// which 0.918 is published.)
     #[test]
     fn straight_chains_dock_as_published() {
         let (problem, body, exec) = (x_face(0.5), ModuleDimensions::default(), Exec::new());
@@ -174,7 +176,7 @@ mod tests {
         }
     }
 
-    /// With the other sign the answer is another one: published as 0.968 where the right one gives 0.988.
+    /// With the other sign the result differs: published as 0.968, while the correct sign gives 0.988.
     #[test]
     fn the_sign_of_the_pitch_decides() {
         let (problem, body, exec) = (x_face(0.5), ModuleDimensions::default(), Exec::new());

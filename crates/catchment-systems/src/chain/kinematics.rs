@@ -33,7 +33,7 @@ impl Default for ModuleDimensions {
 }
 
 impl ModuleDimensions {
-    /// Where the last rotor lies, in D in front of the face: behind it, so negative.
+    /// Position of the last rotor, in D in front of the face: behind it, so negative.
     pub fn center_of_rotation(&self) -> f64 {
         -self.overhang / self.face
     }
@@ -57,7 +57,7 @@ impl PlanarPose {
         DVec2::new(self.x, self.y)
     }
 
-    /// Where the heading points.
+    /// Direction of the heading.
     pub fn along(&self) -> DVec2 {
         direction(self.heading)
     }

@@ -17,7 +17,7 @@ const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 pub enum Term {
     /// Of joint k, counted from 0.
     Joint(usize),
-    /// How far the encoder's last step of joint k is off.
+    /// Rounding error of joint k's encoder.
     Encoder(usize),
     /// Of the length of link k.
     Link(usize),
@@ -38,7 +38,7 @@ impl Term {
     }
 }
 
-/// The draws of one chain.
+/// The draws of a chain.
 #[derive(Debug, Clone, Copy)]
 pub struct Draws(u64);
 

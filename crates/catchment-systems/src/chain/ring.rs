@@ -39,8 +39,8 @@ pub struct Corners {
     pub rank_by_force: usize,
 }
 
-/// Largest force along the normal that joints of this torque (N·m) can hold, and the one of the nearest of `turned` across its
-/// lever, in N; infinite where nothing has a lever.
+/// Largest force along the normal that joints of this torque (N·m) can hold, and the force of the nearest of
+/// `turned` across its lever, in N; infinite without levers.
 pub fn forces(closing: &Closing, torque: f64, turned: &[usize]) -> (f64, f64) {
     const METRE: f64 = 1e3;
     let levers = closing.levers();
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(found[1].corners, [2, 5, 8, 11]);
     }
 
-    /// The stall force at one pitch, 114.7 N: 12 times what latches.
+    /// The stall force at one pitch, 114.7 N: 12 times the latching force.
     #[test]
     fn the_p_presses_with_the_published_force() {
         let angles = ChainShape::P.angles();

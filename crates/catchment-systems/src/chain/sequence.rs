@@ -60,7 +60,7 @@ pub struct CommandSequence {
     pub steps: Vec<CommandStep>,
     /// Pairs that may latch.
     pub latches: Vec<LatchingPair>,
-    /// Where the commands come from.
+    /// Source of the commands.
     pub source: &'static str,
 }
 
@@ -79,7 +79,7 @@ impl CommandSequence {
     /// The sequence of a shape.
     ///
     /// # Errors
-    /// None at present: the stored table is read in a test.
+    /// Never at present: a test reads the stored table.
     pub fn of(shape: ChainShape) -> Result<Self, Diagnostics> {
         let steps = match shape {
             ChainShape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
@@ -112,7 +112,7 @@ impl CommandSequence {
         Ok(Self { steps, latches: latches(&shape.angles()), source })
     }
 
-    /// What every joint of a chain is told at the end of every step; joint k is at k − 1.
+    /// Commands to all joints of a chain at the end of every step; joint k is at k − 1.
     pub fn commanded(&self, modules: usize) -> Vec<Vec<Command>> {
         let mut now = vec![STRAIGHT; modules];
         let mut found = Vec::with_capacity(self.steps.len());
@@ -127,8 +127,8 @@ impl CommandSequence {
         found
     }
 
-    /// Angles that the commands of every step mean; a slack joint is taken to lie at the quarter turn that is nearest to its last
-    /// angle, where the latched faces pull it.
+    /// Angles for the commands of every step; a slack joint is assumed at the quarter turn nearest to its
+    /// last angle, to which the latched faces pull it.
     pub fn commanded_angles(&self, modules: usize) -> Vec<Vec<f64>> {
         let mut now = vec![0.0; modules];
         let told = self.commanded(modules);
@@ -160,8 +160,8 @@ fn lattice_step(start_s: f64, bend: usize, press: usize) -> Vec<CommandStep> {
         .to_vec()
 }
 
-/// All corners fold together; then the two far ones press the last face onto the first, twice. Four slack corners would shear the
-/// ring, so the first holds.
+/// All corners fold together; then the two far corners press the last face onto the first, twice. Four slack
+/// corners would shear the ring, so the first holds.
 fn ring(corners: &[usize]) -> Vec<CommandStep> {
     let [first, far, farther, last] = corners else { return Vec::new() };
     let all = |command| corners.iter().map(|k| (*k, command)).collect::<Vec<_>>();

@@ -40,7 +40,7 @@ pub enum ModuleFace {
 }
 
 impl ModuleFace {
-    /// How far it is turned from the heading that it is fixed to.
+    /// Rotation from the heading to which it is fixed.
     pub const fn turn(self) -> f64 {
         match self {
             Self::Front => 0.0,
@@ -179,7 +179,7 @@ impl ChainShape {
         (1..=self.modules()).map(|k| if turned.contains(&k) { -FRAC_PI_2 } else { 0.0 }).collect()
     }
 
-    /// What is the dissertation's and what is our reading.
+    /// The dissertation's statements and our reading.
     pub const fn reading(self) -> &'static str {
         match self {
             Self::P => "joints and commands of table 6.2",
@@ -223,7 +223,7 @@ pub fn latches(angles: &[f64]) -> Vec<LatchingPair> {
     found
 }
 
-/// The face of a module that looks in a direction, if it has one there.
+/// The face of a module that faces a direction, if it has one there.
 fn side(angles: &[f64], module: usize, towards: f64) -> Option<ModuleFace> {
     /// Far above rounding, far below a quarter turn.
     const SAME: f64 = 1e-6;
@@ -275,7 +275,8 @@ mod tests {
         }
     }
 
-    /// Latched faces coincide and look at each other: the chain closes exactly, to the rounding of a dozen sines.
+    /// Latched faces coincide and face each other: the chain closes exactly, to the rounding of a dozen
+    /// sines.
     #[test]
     fn latched_faces_coincide() {
         let body = ModuleDimensions::default();

@@ -20,14 +20,14 @@ use catchment::exec::{Cancelled, Exec};
 use catchment::problem::{Draft, Problem, ProblemError};
 use serde::{Deserialize, Serialize};
 
-/// What changes the answer beside the file.
+/// Settings that change the result, besides the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainSettings {
     /// Random chains.
     pub chains: u64,
     /// Their seed.
     pub seed: u64,
-    /// Numbers of modules for the table; empty for none.
+    /// Numbers of modules for the table; empty without a table.
     pub modules: Vec<usize>,
     /// Joint errors for the table, in radians; empty for the file's own.
     pub joint_sigmas: Vec<f64>,
@@ -98,9 +98,9 @@ pub struct Length {
 pub struct ChainConnector {
     /// The problem, with the chain's centre of rotation.
     pub problem: Problem,
-    /// The centre of rotation that the design says, in D.
+    /// Centre of rotation of the design, in D.
     pub own_center_of_rotation: f64,
-    /// Offsets that are corrected without rotation, in D; a sentence where that has no exact answer.
+    /// Offsets that are corrected without rotation, in D; a sentence if they have no exact result.
     pub offsets: Result<[f64; 2], String>,
 }
 
@@ -111,7 +111,7 @@ pub struct Study {
     pub file: ChainFile,
     /// The settings.
     pub settings: ChainSettings,
-    /// The connector, if one is named.
+    /// The connector, if named.
     pub docking: Option<ChainConnector>,
     /// The last face of the straight chain.
     pub straight: ArrivalErrors,
@@ -136,15 +136,16 @@ pub enum ChainError {
     /// Something in its connector's design.
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Answers a chain file.
+/// Computes the results of a chain file.
 ///
 /// # Errors
-/// A connector that cannot be read or cannot be free in x and pitch, a sequence that collides, being asked to stop.
+/// A connector that cannot be read or cannot be free in x and pitch, a sequence that collides, a cancelled
+/// computation.
 pub fn run(file: &ChainFile, settings: &ChainSettings, exec: &Exec) -> Result<Study, ChainError> {
     let folded = follow(file, exec)?;
     let docking = docking(file, exec)?;

@@ -12,9 +12,9 @@ use glam::DVec2;
 
 /// Side of a panel, in SVG units.
 const SIDE: f64 = 300.0;
-/// Where the panels begin, from above.
+/// Top of the panels.
 const TOP: f64 = 96.0;
-/// From one panel to the next.
+/// Distance between panels.
 const PITCH: f64 = SIDE + 76.0;
 /// Room around a region, as a share of its extent.
 const MARGIN: f64 = 0.08;
@@ -43,7 +43,7 @@ fn path(frame: &PlotFrame, region: &Region) -> String {
     region.outlines().into_iter().map(data).collect()
 }
 
-/// Where a robot's frame has its origin, and which way it faces.
+/// Origin of a robot's frame, and its facing direction.
 fn robot(svg: &mut Svg, frame: &PlotFrame, facing: Option<DVec2>) {
     let [x, y] = frame.at([0.0, 0.0]);
     svg.circle([x, y], 3.6, &format!(r##"fill="{INK}" stroke="#ffffff" stroke-width="1.2""##));
@@ -59,7 +59,7 @@ fn robot(svg: &mut Svg, frame: &PlotFrame, facing: Option<DVec2>) {
     }
 }
 
-/// The overlap as an image, clear where there is none.
+/// The overlap as an image, transparent without overlap.
 fn image(map: &OverlapMap) -> Result<Vec<u8>, FigureError> {
     let largest = map.values.iter().copied().fold(0.0, f64::max);
     let mut pixels = Vec::with_capacity(4 * map.values.len());
@@ -83,7 +83,7 @@ fn image(map: &OverlapMap) -> Result<Vec<u8>, FigureError> {
 /// Draws a composition.
 ///
 /// # Errors
-/// Where there is nothing to draw.
+/// If there is nothing to draw.
 pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
     let slice = &found.slices[found.shown];
     let unit = found.halves[0].measure.symbol();

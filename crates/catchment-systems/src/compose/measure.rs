@@ -13,7 +13,7 @@ use std::collections::BinaryHeap;
 
 /// Search until the side is known to this share of the extent.
 const SLACK: f64 = 2e-5;
-/// Most cells that are looked at; a ridge of equal squares would take many.
+/// Largest number of cells examined; a ridge of equal squares would need many.
 const MOST_CELLS: usize = 100_000;
 
 /// The largest axis-parallel square in a region.
@@ -31,7 +31,7 @@ pub struct LargestSquare {
     pub at_most: f64,
 }
 
-/// How far one may be off along an axis, from a point, until the region ends first.
+/// Tolerance along an axis, from a point to the nearest end of the region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisReach {
     /// Towards −x and +x.
@@ -100,7 +100,7 @@ fn chessboard(a: DVec2, b: DVec2) -> f64 {
     [a, b].into_iter().chain(inner).map(|p| p.abs().max_element()).fold(f64::INFINITY, f64::min)
 }
 
-/// The largest axis-parallel square in a region; none where it has no area.
+/// The largest axis-parallel square in a region; `None` if it has no area.
 pub fn largest_square(region: &Region) -> Option<LargestSquare> {
     let [low, high] = region.bounds()?;
     let borders = Borders::of(region);
@@ -145,7 +145,7 @@ pub fn square_about(region: &Region, point: DVec2) -> Option<f64> {
     region.contains(point).then(|| Borders::of(region).room(point).max(0.0))
 }
 
-/// How far a point may move along each axis within the region; `None` outside of it.
+/// Tolerances of a point along each axis within the region; `None` outside of it.
 pub fn reach(region: &Region, point: DVec2) -> Option<AxisReach> {
     if !region.contains(point) {
         return None;

@@ -104,7 +104,7 @@ impl Default for ComposeSettings {
     }
 }
 
-/// Where the halves meet, at one heading.
+/// The approach region at a given heading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeadingSlice {
     /// Relative heading, in radians.
@@ -126,30 +126,30 @@ pub struct OverlapMap {
     pub values: Vec<f64>,
 }
 
-/// Where two halves meet, and what that is worth.
+/// The approach region of two halves, with its measures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Composition {
     /// The two halves.
     pub halves: [ParsedRegion; 2],
-    /// The robots' bodies, where they are known.
+    /// The robots' bodies, if known.
     pub bodies: Option<[ParsedRegion; 2]>,
-    /// What was asked.
+    /// The settings.
     pub settings: ComposeSettings,
-    /// One slice a heading.
+    /// A slice for each heading.
     pub slices: Vec<HeadingSlice>,
-    /// Which slice is described: the one nearest to heading 0.
+    /// The described slice: that nearest to heading 0.
     pub shown: usize,
-    /// ∫ area dψ over the headings, in mm²·rad, by the trapezoidal rule; none with one heading.
+    /// ∫ area dψ over the headings, in mm²·rad, by the trapezoidal rule; `None` for a single heading.
     pub volume: Option<[f64; 2]>,
     /// The largest square in the inner region shown.
     pub square: Option<LargestSquare>,
-    /// How far each axis may be off from its centre.
+    /// Tolerance along each axis from its centre.
     pub reach: Option<AxisReach>,
-    /// Side of the largest square about d = 0; none where that is outside.
+    /// Side of the largest square about d = 0; `None` if that is outside.
     pub square_about_zero: Option<f64>,
     /// Overlap of the outer regions, at the heading shown; bodies take nothing from it.
     pub map: OverlapMap,
-    /// The largest overlap, at the heading shown; bodies take nothing from it. None where a region is empty.
+    /// The largest overlap, at the heading shown; the bodies do not reduce it. `None` if a region is empty.
     pub peak: Option<Peak>,
 }
 
@@ -189,10 +189,10 @@ fn added(second: &Bracket, frames: RegionFrames, heading: f64) -> Bracket {
     second.map(|region| region.turned(angle))
 }
 
-/// Where the two halves meet.
+/// Computes the approach region of the two halves.
 ///
 /// # Errors
-/// Where lengths are in different units, regions too fine or too large, or the run was stopped.
+/// If lengths are in different units, regions too fine or too large, or the computation is cancelled.
 pub fn compose(
     halves: [ParsedRegion; 2],
     bodies: Option<[ParsedRegion; 2]>,
@@ -255,7 +255,8 @@ pub fn compose(
     })
 }
 
-/// The overlap over a grid around all places where the first region meets the second as it stands.
+/// The overlap over a grid around all positions at which the first region meets the second in its
+/// orientation.
 fn map(
     first: &Region,
     stands: &Region,

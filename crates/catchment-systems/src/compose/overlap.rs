@@ -29,7 +29,7 @@ pub struct RegionOverlap {
     second: Vec<Convex>,
 }
 
-/// An overlap and what bounds it around a place.
+/// An overlap with its bounds around a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Around {
     /// At the place.
@@ -47,7 +47,7 @@ struct Convex {
     high: DVec2,
 }
 
-/// What two convex polygons have in common.
+/// The intersection of two convex polygons.
 #[derive(Debug, Clone, Copy, Default)]
 struct Common {
     area: f64,
@@ -77,8 +77,8 @@ impl Convex {
         self.low.cmple(other.high + d + near).all() && (other.low + d).cmple(self.high + near).all()
     }
 
-    /// The intersection with another one that is moved by d, and grown: each of its sides is moved outwards, so that a square with half the side
-    /// `grown` about every point of it is inside.
+    /// The intersection with another polygon that is moved by d, and grown: each of its sides is moved
+    /// outwards, so that a square with half the side `grown` about every point of it is inside.
     fn common(&self, other: &Self, d: DVec2, grown: f64) -> Common {
         if !self.is_near(other, d, grown) {
             return Common::default();
@@ -109,7 +109,8 @@ fn sides(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + '_ {
     (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]])
 }
 
-/// What of a convex polygon lies left of a side of the second one, which is moved outwards for a square of half side `grown`.
+/// The part of a convex polygon left of a side of the second, which is moved outwards for a square of half
+/// side `grown`.
 fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64) -> Vec<Corner> {
     let outwards = grown * along.abs().element_sum();
     let mut kept = Vec::with_capacity(polygon.len() + 1);
@@ -136,7 +137,7 @@ impl RegionOverlap {
         Self { first: parts(a), second: parts(b) }
     }
 
-    /// How many pairs of convex polygons a value looks at.
+    /// Number of pairs of convex polygons for a value.
     pub(super) fn pairs(&self) -> usize {
         self.first.len() * self.second.len()
     }

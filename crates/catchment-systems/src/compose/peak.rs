@@ -19,11 +19,11 @@ use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The search ends where the bound is above the largest value by no more than this share of it.
+/// The search ends if the bound exceeds the largest value by at most this share of it.
 const SLACK: f64 = 1e-4;
-/// Most places that are looked at.
+/// Largest number of positions examined.
 const MOST_PLACES: usize = 20_000;
-/// Most pairs of convex polygons that are looked at, over all places.
+/// Largest number of pairs of convex polygons examined, over all positions.
 const MOST_PAIRS: usize = 40_000_000;
 
 /// The largest overlap, in mm² or D².
@@ -37,7 +37,8 @@ pub struct Peak {
     pub at_most: f64,
 }
 
-/// A square of places, the one with the highest bound first; of equal bounds the one that was made last, which is the smallest.
+/// A square of positions, the square with the highest bound first; among equal bounds the most recent, which
+/// is the smallest.
 struct Cell {
     center: DVec2,
     half: f64,
@@ -62,10 +63,10 @@ impl Ord for Cell {
     }
 }
 
-/// The largest area of A ∩ (B + d) over all d; none where the regions have no place in common.
+/// The largest area of A ∩ (B + d) over all d; `None` if the regions never overlap.
 ///
 /// # Errors
-/// The run was stopped.
+/// The computation was cancelled.
 pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cancelled> {
     let (Some([la, ha]), Some([lb, hb])) = (a.outer.bounds(), b.outer.bounds()) else { return Ok(None) };
     let overlap = RegionOverlap::new(&a.outer, &b.outer);
@@ -121,7 +122,7 @@ mod tests {
         peak(&a, &b, &Exec::new()).unwrap().unwrap()
     }
 
-    /// Discs of one size overlap wholly at one place only, which no grid of places hits.
+    /// Discs of equal size overlap wholly at a single position only, which is not on any grid of positions.
     #[test]
     fn two_discs_overlap_by_the_area_of_the_smaller() {
         for (first, second) in [(30.0, 30.0), (50.0, 30.0), (10.0, 70.0)] {
@@ -135,7 +136,8 @@ mod tests {
         }
     }
 
-    /// Bars across and along each other, which overlap alike at many places, and an L with a square, at one.
+    /// Bars across and along each other, which overlap equally at many positions, and an L with a square, at
+    /// one.
     #[test]
     fn bars_and_corners_overlap_as_drawn() {
         let bar = |width, height| SweptShape::Box { width, height };

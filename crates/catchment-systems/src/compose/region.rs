@@ -26,7 +26,7 @@ pub const REACH: f64 = (1u64 << 20) as f64;
 
 /// A point of the lattice.
 pub(super) type Node = IntPoint<i64>;
-/// Outlines of one part, the outer one first.
+/// Outlines of a part, the outer outline first.
 pub(super) type Part = Vec<Vec<Node>>;
 
 /// A closed set of points of the plane: polygons with holes, segments and points.
@@ -43,7 +43,7 @@ pub(super) fn node(p: DVec2) -> Node {
     Node::new(snapped(p.x), snapped(p.y))
 }
 
-/// Where a point of the lattice lies.
+/// Position of a point of the lattice.
 pub(super) fn place(p: Node) -> DVec2 {
     DVec2::new(p.x as f64, p.y as f64) * UNIT
 }
@@ -63,7 +63,8 @@ fn doubled(outline: &[Node]) -> i128 {
 
 /// Whether an outline encloses no more than rounding can make: thinner than a few units of the lattice.
 fn is_sliver(outline: &[Node]) -> bool {
-    /// Widest sliver, in lattice units: a crossing is off by one, and so is each of its neighbours.
+    /// Widest sliver, in lattice units: the error of a crossing is one unit, and so is that of its
+    /// neighbours.
     const THIN: f64 = 8.0;
     let around: f64 = sides(outline).map(|[a, b]| place(a).distance(place(b))).sum::<f64>() / UNIT;
     doubled(outline).abs() as f64 <= THIN * around
@@ -74,7 +75,7 @@ pub(super) fn sides(outline: &[Node]) -> impl Iterator<Item = [Node; 2]> + '_ {
     (0..outline.len()).map(|k| [outline[k], outline[(k + 1) % outline.len()]])
 }
 
-/// What the overlay makes of outlines.
+/// Result of the overlay of outlines.
 fn overlaid(subject: &[Vec<Node>], clip: &[Vec<Node>], rule: OverlayRule, fill: FillRule) -> Vec<Part> {
     let capacity = subject.iter().chain(clip).map(Vec::len).sum();
     let mut overlay = Overlay::<i64>::new_custom(capacity, IntOverlayOptions::default(), Solver::default());
@@ -84,12 +85,12 @@ fn overlaid(subject: &[Vec<Node>], clip: &[Vec<Node>], rule: OverlayRule, fill: 
 }
 
 impl Region {
-    /// What lies inside an odd number of closed outlines. Their direction does not matter.
+    /// The points inside an odd number of closed outlines. Their direction does not matter.
     pub fn of_outlines(outlines: &[Vec<DVec2>]) -> Self {
         Self::filled(outlines, FillRule::EvenOdd)
     }
 
-    /// What outlines run around more often counter-clockwise than clockwise.
+    /// The points that outlines wind around more often counter-clockwise than clockwise.
     pub(super) fn of_chains(outlines: &[Vec<DVec2>]) -> Self {
         Self::filled(outlines, FillRule::Positive)
     }
@@ -99,7 +100,7 @@ impl Region {
         Self { parts: overlaid(&nodes, &[], OverlayRule::Subject, fill), thin: Vec::new() }
     }
 
-    /// What lies inside any of these outlines, whichever way they run.
+    /// The points inside any of these outlines, for any direction.
     pub(super) fn of_nodes(outlines: &[Vec<Node>]) -> Self {
         let forward: Vec<Vec<Node>> = outlines
             .iter()
@@ -147,24 +148,25 @@ impl Region {
         Self { parts: overlaid(&own, &clip, rule, FillRule::NonZero), thin: Vec::new() }
     }
 
-    /// What lies in this region and not in the other, with its border. Parts without area are left out.
+    /// The part of this region outside the other, with its border. Parts without area are removed.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         self.clipped(other, OverlayRule::Difference)
     }
 
-    /// What lies in both. Parts without area are left out.
+    /// The intersection of both. Parts without area are removed.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         self.clipped(other, OverlayRule::Intersect)
     }
 
-    /// All outlines: outer ones counter-clockwise, holes clockwise.
+    /// All outlines: outer outlines counter-clockwise, holes clockwise.
     pub(super) fn nodes(&self) -> impl Iterator<Item = &[Node]> {
         self.parts.iter().flatten().map(Vec::as_slice)
     }
 
-    /// All outlines, in mm or D: outer ones counter-clockwise, holes clockwise, the holes of a part after its outer outline.
+    /// All outlines, in mm or D: outer outlines counter-clockwise, holes clockwise, the holes of a part after
+    /// its outer outline.
     pub fn outlines(&self) -> Vec<Vec<DVec2>> {
         self.nodes().map(|outline| outline.iter().map(|p| place(*p)).collect()).collect()
     }

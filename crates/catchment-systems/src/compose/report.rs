@@ -44,7 +44,7 @@ pub struct ComposeBody {
     pub volume: Option<[f64; 2]>,
     /// Overlap of the two regions as a function of the second robot's position.
     pub overlap: OverlapReport,
-    /// Outlines of the inner region: outer ones counter-clockwise, holes clockwise.
+    /// Outlines of the inner region: outer outlines counter-clockwise, holes clockwise.
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
@@ -170,7 +170,7 @@ fn outlines(slice: &HeadingSlice) -> Vec<Vec<[f64; 2]>> {
     inner.into_iter().map(|outline| outline.into_iter().map(|p| p.to_array()).collect()).collect()
 }
 
-/// One number where both ends agree to four digits, else both.
+/// A single number if both ends agree to four digits, else both.
 pub(super) fn bracket([inner, outer]: [f64; 2]) -> String {
     let [a, b] = [inner, outer].map(|v| format!("{v:.1}"));
     let [a, b] = if outer < 1000.0 { [inner, outer].map(significant) } else { [a, b] };
@@ -276,7 +276,8 @@ impl ComposeBody {
         format!("{} {}²  in {parts} with {holes}", bracket(region.area), self.unit)
     }
 
-    /// Outlines of the inner region, which can be read again: `x,y,ring`, and the heading where there are several.
+    /// Outlines of the inner region, which can be read again: `x,y,ring`, and the heading if there are
+    /// several.
     fn outline_table(&self) -> Table {
         let unit = self.unit;
         let mut columns = vec![format!("x [{unit}]"), format!("y [{unit}]"), "ring".to_owned()];

@@ -13,7 +13,8 @@ use catchment::polytope::planar_hull;
 use i_triangle::i_overlay::core::fill_rule::FillRule;
 use i_triangle::int::minkowski::{IntMinkowskiOperand, IntMinkowskiSolver};
 
-/// Most pairs of convex polygons of one sum: their union takes more than their number in time.
+/// Largest number of pairs of convex polygons of a sum: the time of their union grows faster than their
+/// number.
 const MOST_PAIRS: usize = 250_000;
 
 /// Why there is no sum.
@@ -45,10 +46,11 @@ fn operand(region: &Region) -> Option<IntMinkowskiOperand<i64>> {
     IntMinkowskiOperand::with_source(&outlines, FillRule::NonZero)
 }
 
-/// The Minkowski sum of two regions. The sum of a region with a point is the region moved there; with nothing, nothing.
+/// The Minkowski sum of two regions. The sum of a region with a point is the region moved there; with an
+/// empty region it is empty.
 ///
 /// # Errors
-/// Where it would take too long, or reach too far.
+/// If it would take too long, or reach too far.
 pub fn minkowski_sum(a: &Region, b: &Region) -> Result<Region, SumError> {
     let (first, second) = (operand(a), operand(b));
     let parts = |operand: &Option<IntMinkowskiOperand<i64>>| -> Vec<Vec<Node>> {
@@ -88,7 +90,7 @@ pub fn minkowski_sum(a: &Region, b: &Region) -> Result<Region, SumError> {
     Ok(all)
 }
 
-/// Corners of the convex hull of all sums, counter-clockwise; one or two where it has no area.
+/// Corners of the convex hull of all sums, counter-clockwise; one or two if it has no area.
 pub(super) fn convex_sum(a: &[Node], b: &[Node]) -> Vec<Node> {
     let mut points: Vec<Node> =
         a.iter().flat_map(|p| b.iter().map(move |q| Node::new(p.x + q.x, p.y + q.y))).collect();

@@ -41,7 +41,8 @@ enum Bound {
 /// A shape at rest, lengths in mm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SweptShape {
-    /// A hook's reach: between two circles, from one direction to another, in radians counter-clockwise from +y.
+    /// A hook's reach: between two circles, from a direction to another, in radians counter-clockwise from
+    /// +y.
     AnnularSector {
         /// Radius of the inner circle, 0 for a sector.
         inner: f64,
@@ -56,7 +57,7 @@ pub enum SweptShape {
     HalfEllipse {
         /// Half its width along x.
         half_width: f64,
-        /// How far it reaches along +y.
+        /// Its extent along +y.
         reach: f64,
     },
     /// A disc about the origin.
@@ -80,7 +81,7 @@ pub enum SweptShape {
 pub enum Motion {
     /// It turns about a pivot, by angles in radians, counter-clockwise.
     Turn {
-        /// What stays.
+        /// The fixed point.
         pivot: DVec2,
         /// First angle.
         from: f64,
@@ -89,7 +90,7 @@ pub enum Motion {
     },
     /// It grows about a point, by factors.
     Scale {
-        /// What stays.
+        /// The fixed point.
         about: DVec2,
         /// First factor, at least 0.
         from: f64,
@@ -98,7 +99,7 @@ pub enum Motion {
     },
     /// It slides along a straight line.
     Slide {
-        /// From where it is drawn to its last place.
+        /// Displacement from the drawn to the last position.
         by: DVec2,
     },
 }
@@ -136,7 +137,7 @@ impl Bracket {
     /// The Minkowski sum with another.
     ///
     /// # Errors
-    /// Where it would take too long, or reach too far.
+    /// If it would take too long, or reach too far.
     pub fn sum(&self, other: &Self) -> Result<Self, SumError> {
         let inner = minkowski_sum(&self.inner, &other.inner)?;
         let exact = self.inner == self.outer && other.inner == other.outer;
@@ -182,10 +183,10 @@ impl SweptShape {
 }
 
 impl Motion {
-    /// Everything that the shape touches on its way, arcs to `chord_error` in mm.
+    /// The swept region of the shape, arcs to `chord_error` in mm.
     ///
     /// # Errors
-    /// Where a sliding shape is too fine.
+    /// If a sliding shape is too fine.
     pub fn sweep(&self, shape: &Bracket, chord_error: f64) -> Result<Bracket, SumError> {
         match *self {
             Self::Turn { pivot, from, to } => Ok(Bracket {
@@ -222,7 +223,7 @@ fn arc(radius: f64, [from, to]: [f64; 2], error: f64, bound: Bound) -> Vec<DVec2
     }
 }
 
-/// What a region sweeps that turns about a pivot.
+/// The swept region of a region that turns about a pivot.
 fn turned(region: &Region, pivot: DVec2, [from, to]: [f64; 2], error: f64, bound: Bound) -> Region {
     let seen = region.mapped(|p| p - pivot);
     let mut swept = vec![seen.turned(from), seen.turned(to)];
@@ -235,9 +236,10 @@ fn turned(region: &Region, pivot: DVec2, [from, to]: [f64; 2], error: f64, bound
     Region::union(&swept).mapped(|p| p + pivot)
 }
 
-/// A closed outline in stretches along which the distance from the origin grows.
+/// A closed outline in segments along which the distance from the origin grows.
 ///
-/// An arc stands only where an outline turns back, so that no two arcs that stand for each other leave a slit between them.
+/// Arcs occur only at points at which an outline turns back, so that two arcs for the same curve leave no
+/// slit between them.
 fn outward(outline: &[Node]) -> Vec<Vec<DVec2>> {
     let mut points = Vec::with_capacity(2 * outline.len());
     for [a, b] in sides(outline).map(|ends| ends.map(place)) {
@@ -268,7 +270,8 @@ fn outward(outline: &[Node]) -> Vec<Vec<DVec2>> {
     ways
 }
 
-/// The outline of what a way outwards sweeps: out along it, around, back in along the turned way, back around.
+/// The outline of the swept region of an outward path: out along it, around, back in along the rotated path,
+/// back around.
 fn way_swept(way: &[DVec2], turn: [f64; 2], error: f64, bound: Bound) -> Vec<DVec2> {
     let around = |end: DVec2, bound| {
         let start = if end == DVec2::ZERO { 0.0 } else { end.to_angle() };
@@ -283,7 +286,7 @@ fn way_swept(way: &[DVec2], turn: [f64; 2], error: f64, bound: Bound) -> Vec<DVe
     chain
 }
 
-/// What a region sweeps that grows about a point.
+/// The swept region of a region that grows about a point.
 fn scaled(region: &Region, about: DVec2, [from, to]: [f64; 2]) -> Region {
     let grown = |factor: f64| region.mapped(|p| about + (p - about) * factor);
     let mut swept = vec![grown(from), grown(to)];
@@ -302,7 +305,8 @@ mod tests {
     const HOOK: SweptShape =
         SweptShape::AnnularSector { inner: 100.0, outer: 160.0, from: -FRAC_PI_3, to: FRAC_PI_3 };
 
-    /// Both areas around the exact one, and apart by at most twice the chord error along all arcs, whose length is given.
+    /// Both areas around the exact area, and apart by at most twice the chord error along all arcs, whose
+    /// length is given.
     fn brackets(bracket: &Bracket, exact: f64, arcs: f64, error: f64) {
         let [inner, outer] = bracket.area();
         assert!(inner < exact && exact < outer, "{inner} < {exact} < {outer}");

@@ -31,7 +31,7 @@ use catchment::method::zraa::{HeightFacet, area, clip};
 use catchment::polytope::planar_hull;
 use glam::DVec2;
 
-/// Corners nearer than this, in D, are one to who reads convex pieces.
+/// Corners closer than this, in D, are equal to readers of convex pieces.
 const POINT: f64 = 1e-9;
 
 impl Heights {
@@ -41,7 +41,7 @@ impl Heights {
         self.merged().without_slivers().merged().without_short_sides().without_slivers()
     }
 
-    /// Neighbouring pieces of one plane joined where they make a convex polygon.
+    /// Coplanar neighbouring pieces merged if they form a convex polygon.
     #[must_use]
     pub fn merged(mut self) -> Self {
         let mut k = 0;
@@ -78,7 +78,8 @@ impl Heights {
         self
     }
 
-    /// The neighbours of a sliver with their sides moved over it: level ones, and higher ones where those do not cover it.
+    /// The neighbours of a sliver with their sides moved over it: level neighbours, and higher ones if those
+    /// do not cover it.
     fn taken_over(&self, sliver: usize, kept: &[bool]) -> Vec<(usize, Vec<DVec2>)> {
         let thin = &self.facets[sliver];
         let long = longest_side(&thin.polygon);
@@ -144,12 +145,13 @@ impl Heights {
     }
 }
 
-/// What a distance between two planes is in height: at a wall, rounding to the side is much of it.
+/// Factor from a distance between two planes to a height: at a wall, sideways rounding has a large effect.
 pub(super) fn steepness(a: &HeightFacet, b: &HeightFacet) -> f64 {
     1.0 + a.gradient.length().max(b.gradient.length())
 }
 
-/// Whether a polygon turns left at every corner, once around: what moves of a side may leave behind of a tiny one is none.
+/// Whether a polygon turns left at every corner, once around: a moved side may leave a tiny polygon that does
+/// not.
 fn is_convex(polygon: &[DVec2]) -> bool {
     let n = polygon.len();
     let left = |k: usize| {
@@ -193,7 +195,7 @@ fn moved_over(polygon: &[DVec2], sliver: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DV
     })
 }
 
-/// A convex polygon with one side moved outward; none where its neighbours no longer meet it.
+/// A convex polygon with one side moved outward; `None` if its neighbours no longer meet it.
 fn moved(polygon: &[DVec2], side: usize, by: f64) -> Option<Vec<DVec2>> {
     let n = polygon.len();
     let at = |k: usize| polygon[(k + n) % n];
@@ -208,15 +210,16 @@ fn moved(polygon: &[DVec2], side: usize, by: f64) -> Option<Vec<DVec2>> {
     Some(out)
 }
 
-/// Where two lines, each a point and a direction, meet; none where they are nearly parallel.
+/// Intersection of two lines, each a point and a direction; `None` if they are nearly parallel.
 fn met((p, u): (DVec2, DVec2), (q, v): (DVec2, DVec2)) -> Option<DVec2> {
-    /// Least sine of lines whose crossing is told.
+    /// Smallest sine between lines whose intersection is used.
     const LEAST_SINE: f64 = 1e-3;
     let sine = u.perp_dot(v);
     (sine.abs() > LEAST_SINE).then(|| p + u * ((q - p).perp_dot(v) / sine))
 }
 
-/// The polygon without the side whose neighbours meet nearest beyond it; none where that is farther than a sliver is wide.
+/// The polygon without the side whose neighbours meet nearest beyond it; `None` if that is farther than the
+/// width of a sliver.
 fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
     let n = polygon.len();
     if n < 4 {
@@ -246,7 +249,8 @@ fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
     Some(out)
 }
 
-/// The polygon with a side that is a point to every reader closed to its middle; none where all are longer.
+/// The polygon with a side that readers treat as a point collapsed to its middle; `None` if all sides are
+/// longer.
 fn without_point_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
     let n = polygon.len();
     let side = (0..n).find(|k| n > 3 && polygon[*k].distance(polygon[(k + 1) % n]) <= POINT)?;
@@ -256,7 +260,7 @@ fn without_point_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
     Some(out)
 }
 
-/// The polygon of two pieces of one plane, where it is convex.
+/// The polygon of two coplanar pieces, if it is convex.
 fn joined(a: &HeightFacet, b: &HeightFacet) -> Option<Vec<DVec2>> {
     let most = ROUNDED * steepness(a, b);
     let alike = |p: &DVec2| (a.height(*p) - b.height(*p)).abs() <= most;

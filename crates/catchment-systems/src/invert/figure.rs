@@ -18,12 +18,12 @@ use catchment::report::figure::draw::svg::{
 use catchment::report::figure::{FigureError, MovingHalfPose, Picture, section_panel};
 use glam::DVec2;
 
-/// How far apart the halves are drawn, in D.
+/// Distance at which the halves are drawn apart, in D.
 const APART: f64 = 0.25;
 /// Height of both panels, and their widths, in SVG units.
 const HEIGHT: f64 = 380.0;
 const WIDTHS: [f64; 2] = [360.0, 400.0];
-/// Where the panels begin, from above.
+/// Top of the panels.
 const TOP: f64 = 112.0;
 /// Room around the heights, as a share of their extent.
 const MARGIN: f64 = 0.06;
@@ -128,7 +128,7 @@ fn profile(heights: &Heights) -> Vec<[DVec2; 2]> {
     pieces
 }
 
-/// Where what is reached stays below what is wanted: quadrangles between the two.
+/// Regions in which the reached heights are below the wanted heights: quadrangles between the two.
 fn gaps(wanted: &[[DVec2; 2]], reached: &[[DVec2; 2]]) -> Vec<[DVec2; 4]> {
     let at = |[from, to]: &[DVec2; 2], x: f64| from.lerp(*to, (x - from.x) / (to.x - from.x));
     let mut found = Vec::new();
@@ -159,7 +159,7 @@ mod tests {
         document.descendants().filter(is).collect()
     }
 
-    /// The picture had the halves alone: neither what was wanted of them nor what they reach.
+    /// The picture had only the halves: neither the wanted nor the reached heights.
     #[test]
     fn wanted_and_reached_heights_are_drawn() {
         let problem = family("pyramid");

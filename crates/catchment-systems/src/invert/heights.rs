@@ -12,7 +12,7 @@ pub struct Heights {
     pub facets: Vec<HeightFacet>,
 }
 
-/// The part of a convex polygon within another, both counter-clockwise; none where it is no more than rounding.
+/// The part of a convex polygon within another, both counter-clockwise; `None` if it is due to rounding.
 pub(super) fn common(polygon: &[DVec2], within: &[DVec2]) -> Option<Vec<DVec2>> {
     if apart(polygon, within) {
         return None;
@@ -57,7 +57,7 @@ pub(super) fn holds(polygon: &[DVec2], place: DVec2) -> bool {
 }
 
 impl Heights {
-    /// The largest value at a place; none where there is nothing.
+    /// The largest value at a position; `None` outside.
     pub fn at(&self, place: DVec2) -> Option<f64> {
         let here = self.facets.iter().filter(|facet| holds(&facet.polygon, place));
         here.map(|facet| facet.height(place)).reduce(f64::max)
@@ -72,8 +72,9 @@ impl Heights {
         Self { facets: self.facets.iter().filter_map(part).collect() }
     }
 
-    /// The function without its pieces narrower than [`NARROW`]: where two contacts meet rounding can leave a crack between them, in which
-    /// something far below shows. A wish so low at a single place would ask for much of the other half.
+    /// The function without its pieces narrower than [`NARROW`]: at the meeting of two contacts rounding can
+    /// leave a crack between them, in which something far below is visible. Such a low wish at a single
+    /// position would have a large effect on the other half.
     pub(super) fn without_cracks(&self) -> Self {
         let wide = |facet: &&HeightFacet| width(&facet.polygon) > NARROW;
         Self { facets: self.facets.iter().filter(wide).cloned().collect() }
@@ -95,12 +96,12 @@ impl Heights {
         self.facets.iter().map(|facet| area(&facet.polygon)).sum()
     }
 
-    /// What lies above the function, up to a height above all of it, as convex columns.
+    /// The region above the function, up to a height above all of it, as convex columns.
     pub fn above(&self, top: f64) -> Half {
         Half::of(self.facets.iter().filter_map(|f| column(f, top)).collect())
     }
 
-    /// Corners of the convex pieces of what lies between the function and a height.
+    /// Corners of the convex pieces of the region between the function and a height.
     pub fn columns(&self, end: f64) -> Vec<Vec<DVec3>> {
         self.facets.iter().map(|facet| column_corners(facet, end)).collect()
     }
@@ -118,8 +119,8 @@ fn column_corners(facet: &HeightFacet, end: f64) -> Vec<DVec3> {
     corners
 }
 
-/// The prism over a polygon, from its plane up to a level. Its lower side has the plane's own normal: one from the corners of a narrow
-/// polygon would be another.
+/// The prism over a polygon, from its plane up to a level. Its lower side has the plane's own normal: a
+/// normal from the corners of a narrow polygon would differ.
 fn column(facet: &HeightFacet, top: f64) -> Option<Surface> {
     let n = facet.polygon.len() as u32;
     let below = facet.polygon.iter().map(|p| p.extend(facet.height(*p)));

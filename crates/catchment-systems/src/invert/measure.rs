@@ -24,10 +24,10 @@ pub struct Shortfall {
     pub at: DVec2,
 }
 
-/// Where the heights that are reached stay below those that are wanted, polygon by polygon, the deepest first.
+/// Regions in which the reached heights stay below the wanted heights, polygon by polygon, the deepest first.
 ///
-/// What is narrower than [`NARROW`] is a side that was moved by rounding, and no shortfall; nor is what moving a slope by
-/// [`SIDEWAYS`] makes of its height.
+/// A region narrower than [`NARROW`] is a side moved by rounding, and not a shortfall; neither is the height
+/// change from moving a slope by [`SIDEWAYS`].
 pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> {
     let mut found = Vec::new();
     for want in &wanted.facets {

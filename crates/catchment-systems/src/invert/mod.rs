@@ -71,7 +71,8 @@ use catchment::pose::{Dof, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Half the strip along x over which a planar design is asked, in D: half the narrowest gap that a design may give its layers.
+/// Half the width of the strip along x over which heights of a planar design are requested, in D: half the
+/// narrowest gap that a design may give its layers.
 const STRIP: f64 = 0.005;
 /// Beyond every offset at which halves touch, in D.
 const FAR: f64 = 100.0;
@@ -109,19 +110,19 @@ impl Default for InvertSettings {
 /// The other half, and how it does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inverse {
-    /// What was wanted.
+    /// The wanted heights.
     pub wanted: Heights,
     /// Lower surface of the moving half, as mounted, over its plan.
     pub moving: Heights,
-    /// The connector: the fixed half, and the new moving one, as mounted.
+    /// The connector: the fixed half, and the new moving half, as mounted.
     pub connector: Connector,
     /// Heights of the result.
     pub reached: Heights,
-    /// Where the result stays below what was wanted.
+    /// Places at which the result stays below the wanted heights.
     pub shortfalls: Vec<Shortfall>,
-    /// Rotations beside none at which the heights were wanted.
+    /// Number of rotations besides 0 at which heights were wanted.
     pub turns: usize,
-    /// What holds between them.
+    /// Bounds between these rotations.
     pub between: Option<Between>,
     /// Area of the plan on which the halves touch at offset 0, in D².
     pub patch: f64,
@@ -133,7 +134,7 @@ pub struct Inverse {
     pub narrowest: f64,
     /// z of the back of the moving half, as mounted.
     pub back: f64,
-    /// What was asked.
+    /// The settings.
     pub settings: InvertSettings,
 }
 
@@ -149,7 +150,7 @@ pub enum InvertError {
     /// A planar design has neither roll nor yaw.
     #[error("a planar design turns in its plane alone: --pitch, not --roll or --yaw")]
     Planar,
-    /// More rotations than can be asked for.
+    /// Too many rotations.
     #[error(
         "{count} rotations, more than {MOST_TURNS}: give fewer angles, all combinations of which are asked for"
     )]
@@ -181,10 +182,10 @@ fn counted(design: &Design, heights: Heights) -> Heights {
     heights.within(&strip)
 }
 
-/// Heights of first contact of a connector's face centres, turned by a rotation.
+/// Heights of first contact of a connector's face centres, rotated by a rotation.
 ///
 /// # Errors
-/// Where the contacts are too many, or the run was stopped.
+/// If there are too many contacts, or the computation is cancelled.
 pub fn heights_of(
     design: &Design,
     connector: &Connector,
@@ -196,7 +197,7 @@ pub fn heights_of(
     Ok(counted(design, Heights { facets }).merged())
 }
 
-/// The plan of a half: what its surfaces cover, seen from below, and how low they are there.
+/// The plan of a half: the region that its surfaces cover, seen from below, with their lowest heights.
 fn lower_surface(half: &Half, exec: &Exec) -> Result<Heights, InvertError> {
     // The half upside down, seen from above: facets that face up.
     let turned = half.mapped(|p| DVec3::new(p.x, -p.y, -p.z));
@@ -220,12 +221,14 @@ fn lower_surface(half: &Half, exec: &Exec) -> Result<Heights, InvertError> {
     Ok(Heights { facets: facets.map(flipped).collect() })
 }
 
-/// The moving half that a fixed half and wanted heights ask for, on the plan of the design's own moving half.
+/// The moving half for a fixed half and wanted heights, on the plan of the design's own moving half.
 ///
-/// `wanted` is asked at every offset without rotation, and the heights of the pair `turned` at the rotations of the settings.
+/// `wanted` applies at every offset without rotation, and the heights of the pair `turned` at the rotations
+/// of the settings.
 ///
 /// # Errors
-/// Where nothing is wanted, the rotations are none that can be asked for, contacts are too many, or the run was stopped.
+/// If no heights are wanted, the rotations are not permitted, there are too many contacts, or the computation
+/// is cancelled.
 pub fn invert(
     design: &Design,
     connector: &Connector,
@@ -276,7 +279,7 @@ pub fn invert(
     })
 }
 
-/// Whether the mated pose of the result is a rest, as `catchment check` asks; a doubt in words otherwise.
+/// Warnings about the mated pose of the result, as in `catchment check`, if it is not a rest.
 pub fn doubts(design: &Design, inverse: &Inverse) -> Vec<String> {
     let pair = Pair::new(&inverse.connector, &design.alignment);
     catchment::contact::mated::problems(&pair).iter().map(ToString::to_string).collect()

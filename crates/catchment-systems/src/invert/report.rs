@@ -171,7 +171,7 @@ impl InvertBody {
     }
 }
 
-/// A number of D, without what is rounding.
+/// A number in D, with rounding errors set to zero.
 fn near_zero(value: f64) -> f64 {
     if value.abs() < REACHED { 0.0 } else { value }
 }
@@ -182,7 +182,7 @@ fn degrees(angle: f64) -> String {
 
 /// Angles in degrees: all of a few, the ends and the number of many.
 fn listed(angles: &[f64]) -> String {
-    /// Most angles that are listed one by one.
+    /// Largest number of angles that are listed singly.
     const FEW: usize = 6;
     if angles.len() <= FEW {
         return angles.iter().map(|angle| degrees(*angle)).collect::<Vec<_>>().join(", ");

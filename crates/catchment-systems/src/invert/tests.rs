@@ -74,7 +74,8 @@ fn the_envelope_is_the_height_of_first_contact() {
     }
 }
 
-/// Wanted lower than the pair stops, over a small square of offsets: it cannot be, and the result says where it is instead.
+/// Heights lower than the pair's stops are wanted, over a small square of offsets: they are unattainable, and
+/// the result gives their place.
 #[test]
 fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
     for name in ["pyramid", "x-face-3d", "v-face"] {
@@ -117,7 +118,7 @@ fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
     }
 }
 
-/// Convex pieces of a polygon outside a convex one.
+/// Convex pieces of a polygon outside a convex polygon.
 fn outside(polygon: &[DVec2], region: &[DVec2]) -> Vec<Vec<DVec2>> {
     let far = 100.0;
     let mut pieces = Vec::new();
@@ -176,7 +177,8 @@ fn turns_that_the_half_keeps_ask_for_nothing_more() {
     assert_eq!(turned.shortfalls, []);
 }
 
-/// Higher heights are wanted, and at a turn the old ones: without the turn the half comes out too deep for it.
+/// Higher heights are wanted, and at a rotation the old heights: without the rotation the half comes out too
+/// deep for it.
 #[test]
 fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
     let problem = family("pyramid");

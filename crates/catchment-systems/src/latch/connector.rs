@@ -27,7 +27,7 @@ const FACETS: u32 = 12;
 /// Body below the lowest point, as a share of the width.
 const BODY: f64 = 0.1;
 
-/// Convex pieces of one layer, x from the middle and z, counter-clockwise.
+/// Convex pieces of a layer, x from the middle and z, counter-clockwise.
 fn cells(geometry: &Geometry, facets: u32) -> Vec<Vec<DVec2>> {
     let middle = 0.5 * geometry.width;
     let down = geometry.profile.height(middle);
@@ -114,7 +114,8 @@ mod tests {
         Draft::read(SourceText::new("face.toml", text)).unwrap().build().unwrap()
     }
 
-    /// Like every X-Face the halves correct a whole width either way by sliding alone, and they are one shape.
+    /// Like every X-Face the halves correct a whole width either way by sliding alone, and they have the same
+    /// shape.
     #[test]
     fn sliding_alone_corrects_a_width() {
         for facets in [2, 5, FACETS] {

@@ -21,8 +21,8 @@ pub const PART: &str = "PART";
 pub const CUT: &str = "CUT";
 /// Colours of the two, in `AutoCAD`'s palette: white or black, and red.
 const COLOURS: [u8; 2] = [7, 1];
-/// What stands before the entities of a drawing: `AutoCAD` 2000, in mm, one layer. In place of `{seed}`, `{layer}` and `{colour}` stand the next free handle in
-/// hexadecimal, the layer's name and its colour.
+/// The text before the entities of a drawing: `AutoCAD` 2000, in mm, a single layer. `{seed}`, `{layer}` and
+/// `{colour}` are replaced by the next free handle in hexadecimal, the layer's name and its colour.
 const HEAD: &str = include_str!("head.dxf");
 /// And after them.
 const FOOT: &str = "  0\nENDSEC\n  0\nSECTION\n  2\nOBJECTS\n  0\nENDSEC\n  0\nEOF\n";
@@ -70,16 +70,17 @@ impl Sheet {
         sheets
     }
 
-    /// Where the laser's middle runs.
+    /// Path of the laser's middle.
     ///
     /// # Errors
-    /// The kerf is wider than what it cuts around.
+    /// The kerf is wider than the feature around which it cuts.
     pub fn cut(&self, kerf: f64) -> Result<Self, KerfError> {
         let holes = self.holes.iter().map(|(middle, diameter)| (*middle, diameter - kerf)).collect();
         Ok(Self { name: self.name, outline: compensated(&self.outline, kerf)?, holes })
     }
 
-    /// The sheet as DXF (`AutoCAD` 2000), on one CAD layer. The same sheet gives the same bytes: no date, no random numbers.
+    /// The sheet as DXF (`AutoCAD` 2000), on a single CAD layer. The same sheet gives the same bytes: no
+    /// date, no random numbers.
     pub fn dxf(&self, layer: &str) -> String {
         let mut entities: Vec<Entity> = vec![Entity::polyline(&self.outline)];
         entities.extend(self.holes.iter().map(|(middle, diameter)| Entity::circle(*middle, 0.5 * diameter)));
@@ -129,7 +130,7 @@ impl Sheet {
 /// All files of a latch: name and bytes.
 ///
 /// # Errors
-/// The kerf is wider than what it cuts around.
+/// The kerf is wider than the feature around which it cuts.
 pub fn files(latch: &LatchDesign, geometry: &Geometry) -> Result<Vec<(String, Vec<u8>)>, DrawingError> {
     let mut files = Vec::new();
     for sheet in Sheet::all(latch, geometry) {
@@ -172,12 +173,12 @@ fn short(value: usize) -> String {
     format!("{value:>6}")
 }
 
-/// And one of four.
+/// The same for four bytes.
 fn long(value: usize) -> String {
     format!("{value:>9}")
 }
 
-/// A number to 12 places, without trailing zeros but for one after the point.
+/// A number to 12 places, without trailing zeros except for one after the point.
 fn real(value: f64) -> String {
     let text = format!("{value:.12}");
     let text = text.trim_end_matches('0');

@@ -32,7 +32,7 @@ pub enum ForceLaw {
 }
 
 impl ForceLaw {
-    /// All of them, the one that is used first.
+    /// All laws, the law in use first.
     pub const ALL: [Self; 4] = [Self::ConstantAndPrbm, Self::Power, Self::Prbm, Self::Square];
 
     /// As it is written.
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(predicted, ["6.2", "8.7", "13.3", "20.4", "18.1", "8.3", "13.4", "22.8", "37.3"]);
     }
 
-    /// No other parameters nearby leave less over: the judge is a plain search.
+    /// No other parameters nearby have smaller residuals: the reference is a plain search.
     #[test]
     fn fits_are_at_their_minimum() {
         let points = latching(&table().unwrap());
@@ -278,7 +278,8 @@ mod tests {
         assert_eq!(format!("{:.1}", line / (2.0 * 6.35)), "16.8");
     }
 
-    /// Pure PRBM scaling asks for an exponent of 3 in t; pairs at one overhang show 1.5 to 2.2 over the whole range.
+    /// Pure PRBM scaling implies an exponent of 3 in t; pairs at the same overhang show 1.5 to 2.2 over the
+    /// whole range.
     #[test]
     fn the_measured_exponent_of_the_neck_is_not_three() {
         let rows = table().unwrap();

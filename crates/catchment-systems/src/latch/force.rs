@@ -22,7 +22,7 @@ const TIP: (f64, f64) = (2.5, 0.05);
 const MEASURED: ([f64; 2], [f64; 2]) = ([2.5, 5.1], [2.3, 4.6]);
 /// Slack on them.
 const SLACK: f64 = 0.05;
-/// Every design with t ≤ o broke at the neck; every one with t ≥ 1.2·o at the tip.
+/// Every design with t ≤ o broke at the neck; every design with t ≥ 1.2·o at the tip.
 const NECK_BELOW: f64 = 1.0;
 /// See [`NECK_BELOW`].
 const TIP_FROM: f64 = 1.2;
@@ -32,7 +32,7 @@ const TIP_FROM: f64 = 1.2;
 pub struct Forces {
     /// Table 6.1.
     pub rows: Vec<Measured>,
-    /// All laws of the force to latch, the one in use first.
+    /// All laws of the force to latch, the law in use first.
     pub fits: Vec<ForceFit>,
     /// Force per thickness of neck of a design that breaks there, in N/mm, both layers.
     pub neck_line: f64,
@@ -74,7 +74,7 @@ impl Forces {
     /// Fits everything to the table.
     ///
     /// # Errors
-    /// None: the table is part of the program.
+    /// Never: the table is part of the program.
     pub fn new() -> Result<Self, csv::Error> {
         let rows = table()?;
         let points = latching(&rows);
@@ -126,13 +126,13 @@ impl Forces {
         }
     }
 
-    /// The prototype of a latch's overhang and neck, if one was measured.
+    /// The prototype with a latch's overhang and neck, if one was measured.
     pub fn prototype(&self, latch: &LatchDesign) -> Option<&Measured> {
         let near = |a: f64, b: f64| (a - b).abs() <= SLACK;
         self.rows.iter().find(|row| near(row.overhang_mm, latch.overhang) && near(row.neck_mm, latch.neck))
     }
 
-    /// What breaks first, by o and t alone.
+    /// The part that fails first, by o and t alone.
     pub fn mode(o: f64, t: f64) -> Mode {
         if t <= NECK_BELOW * o {
             Mode::Neck
@@ -157,7 +157,7 @@ impl Forces {
         }
     }
 
-    /// The force at which a tip gives way: between the measured ones at their overhang, nowhere else.
+    /// The force at which a tip yields: between the measured values at their overhang, unknown elsewhere.
     fn tip(&self, o: f64, t: f64) -> Option<f64> {
         let (overhang, near) = TIP;
         if (o - overhang).abs() > near {
@@ -203,7 +203,7 @@ impl Forces {
     }
 }
 
-/// Why o and t are outside what was measured.
+/// Reasons why o and t are outside the measured range.
 pub fn outside(o: f64, t: f64) -> Vec<String> {
     let ([o_least, o_most], [t_least, t_most]) = MEASURED;
     let mut doubts = Vec::new();
@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(format!("{:.1}", forces.neck_stress()), "16.8");
     }
 
-    /// Section 4 of the model: 3.6 N per layer with friction 0.3, where 16.36 and 9.61 N were measured.
+    /// Section 4 of the model: 3.6 N per layer with friction 0.3, while 16.36 and 9.61 N were measured.
     #[test]
     fn the_spring_alone_is_too_weak() {
         let latch = LatchDesign { overhang: 5.1, ..LatchDesign::default() };

@@ -25,7 +25,7 @@ pub enum KerfError {
 /// The cut line of a counter-clockwise outline.
 ///
 /// # Errors
-/// The kerf is wider than what it cuts around.
+/// The kerf is wider than the feature around which it cuts.
 pub fn compensated(outline: &[DVec2], kerf: f64) -> Result<Polygon, KerfError> {
     let distance = 0.5 * kerf;
     let n = outline.len();

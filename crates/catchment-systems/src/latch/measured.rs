@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The table as it is printed.
 const TABLE: &str = include_str!("../../data/table-6.1-latch-forces.csv");
 
-/// What a reading may be off by, in N.
+/// Error of a reading, in N.
 pub const READING: f64 = 1.0;
 
 /// The overhang that was made and given up, in mm: halves overlapped by less than a millimetre.
@@ -65,8 +65,9 @@ impl Measured {
         self.failure_force_n / self.latching_force_n
     }
 
-    /// How it broke, by the text: at the tip with o = 2.5 and t of 3.0 or more, else at the neck. (Another sentence has
-    /// "3.0 or 4.6"; the force at 3.8 is a fifth below the neck's, so that this one is right.)
+    /// Failure mode by the text: at the tip with o = 2.5 and t of 3.0 or more, else at the neck. (Another
+    /// sentence has "3.0 or 4.6"; the force at 3.8 is a fifth below the neck's, so that this sentence is
+    /// right.)
     pub fn mode(&self) -> Mode {
         if self.overhang_mm < 3.0 && self.neck_mm >= 3.0 { Mode::Tip } else { Mode::Neck }
     }
@@ -81,7 +82,7 @@ pub const THREE_SIDED_FAILURE: f64 = 584.0;
 /// The nine rows, in the order of the print.
 ///
 /// # Errors
-/// None: the table is part of the program, and a test reads it.
+/// Never: the table is part of the program, and a test reads it.
 pub fn table() -> Result<Vec<Measured>, csv::Error> {
     csv::Reader::from_reader(TABLE.as_bytes()).deserialize().collect()
 }
@@ -102,7 +103,7 @@ mod tests {
         assert_eq!(rows.iter().filter(|row| row.mode() == Mode::Tip).count(), 3);
     }
 
-    /// The dissertation's sentences about the table, where they hold and where they do not.
+    /// The dissertation's sentences about the table, whether they are true or not.
     #[test]
     fn what_the_text_says_about_the_table() {
         let rows = table().unwrap();

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// `MPa` in a `GPa`.
 const GIGA: f64 = 1000.0;
-/// Lower edge below the plane of the overhang where a file says nothing: room for dowels under the slit of a one-sided part.
+/// Default lower edge below the plane of the overhang: room for dowels under the slit of a one-sided part.
 const BASE_ONE_SIDED: f64 = 60.0;
 
 /// A latching X-Face: lengths in mm, angles in rad, the modulus in `MPa`.
@@ -31,7 +31,7 @@ pub struct LatchDesign {
     pub sheet: f64,
     /// Thickness of the sheet between the layers.
     pub separator: f64,
-    /// Layers with a profile: one, or two that mirror each other.
+    /// Number of layers with a profile: 1, or 2 that mirror each other.
     pub layers: u32,
     /// Young's modulus, in `MPa`.
     pub modulus: f64,
@@ -225,7 +225,7 @@ fn filled(form: &mut Form<'_>, root: &FormTable<'_>) -> LatchDesign {
     }
 }
 
-/// The outline, unless a rule that must hold is broken; then the rule is told where its number stands.
+/// The outline, unless a required rule is broken; the error is then reported at the place of its number.
 fn checked(form: &mut Form<'_>, root: &FormTable<'_>, latch: &LatchDesign) -> Option<Geometry> {
     let section = form.table(root, "latch");
     let press = form.table(root, "press");
@@ -287,7 +287,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Whatever lengths a file has: an outline that everything can be made of, or a list of what is wrong.
+        /// For any lengths in a file: a complete outline, or a list of errors.
         #[test]
         fn any_lengths_are_drawn_or_refused(
             width in 10.0f64..200.0, overhang in 0.1f64..20.0, neck in 0.2f64..12.0, hook in 0.2f64..20.0,

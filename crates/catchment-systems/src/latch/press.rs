@@ -63,7 +63,7 @@ impl LayerContact {
     }
 }
 
-/// One layer at one position.
+/// A layer at a given position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LayerForce {
@@ -75,7 +75,7 @@ pub struct LayerForce {
     pub force: f64,
 }
 
-/// Both layers at one position.
+/// Both layers at a given position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Position {
@@ -125,17 +125,17 @@ pub struct Record {
 pub struct Jammed {
     /// The coefficient.
     pub friction: f64,
-    /// Where.
+    /// Height above the seat.
     pub above: f64,
 }
 
-/// One layer of a pair that is off sideways.
+/// A layer of a pair with a lateral offset.
 struct Layer<'a> {
     geometry: &'a Geometry,
     /// Stiffness of a neck, in N·mm/rad.
     stiffness: f64,
     friction: f64,
-    /// How far the partner is off along x, in mm.
+    /// Offset of the partner along x, in mm.
     offset: f64,
 }
 
@@ -145,12 +145,12 @@ impl Layer<'_> {
         DVec2::new(0.5 * (self.geometry.width + self.offset), 0.5 * above)
     }
 
-    /// Where the profiles touch first.
+    /// Height of first contact of the profiles.
     fn first_contact(&self) -> f64 {
         2.0 * self.geometry.profile.height(self.middle(0.0).x)
     }
 
-    /// Where the hooks have passed: C comes out under the corner of a hook that is open.
+    /// Height at which the hooks have passed: C emerges under the corner of an open hook.
     fn snap(&self) -> f64 {
         let (pivot, x_end) = (self.geometry.pivot, self.geometry.profile.x_end);
         let corner = DVec2::new(x_end, 0.0) - pivot;
@@ -173,7 +173,7 @@ impl Layer<'_> {
         (-arm.x).atan2(arm.y) - wall
     }
 
-    /// How the layer holds; `passed` where it has latched already.
+    /// State of the layer; `passed` if it has latched already.
     fn hold(&self, above: f64, passed: bool) -> Result<LayerForce, Jammed> {
         let free = |contact| LayerForce { contact, swing: 0.0, force: 0.0 };
         if passed {
@@ -303,7 +303,7 @@ mod tests {
         LatchDesign { press: Press { friction, offset, tilt: 0.0 }, layers: 1, ..LatchDesign::default() }
     }
 
-    /// Without friction, work is what the springs hold: two arms, k·θ²/2 each, at every position.
+    /// Without friction, work equals the energy of the springs: two arms, k·θ²/2 each, at every position.
     #[test]
     fn work_is_stored_in_the_springs() {
         let latch = centred(0.0, 0.0);
@@ -358,7 +358,8 @@ mod tests {
         }
     }
 
-    /// Near the corner the record is what the lever formula says, up to the second order in the swing that it leaves out.
+    /// Near the corner the record agrees with the lever formula, up to the neglected second order in the
+    /// swing.
     #[test]
     fn the_lever_formula_is_near() {
         let latch = centred(0.3, 0.0);

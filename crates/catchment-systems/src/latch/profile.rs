@@ -25,7 +25,7 @@ const GAUSS: [(f64, f64); 5] = [
 /// The profile of an arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmProfile {
-    /// Where it ends, at the hook, in mm from the outer edge.
+    /// Its end, at the hook, in mm from the outer edge.
     pub x_end: f64,
     /// Its height there, in mm.
     pub hook: f64,
@@ -81,7 +81,7 @@ impl ArmProfile {
 mod tests {
     use super::*;
 
-    /// With no bend at all the integral has a closed form; with one, halved steps of a plain sum agree.
+    /// Without bend the integral has a closed form; with bend, halved steps of a plain sum agree.
     #[test]
     fn heights_are_integrals_of_slopes() {
         let straight = ArmProfile { x_end: 35.3, hook: 3.0, start: 0.7, end: 0.7, bend: 6.0 };

@@ -12,7 +12,7 @@ use catchment::report::{ReportBody, ReportEnvelope};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A latch and what is found of it, with its head.
+/// Results for a latch, with their head.
 pub type LatchReport = ReportEnvelope<LatchBody>;
 
 /// N·mm in a N·m.
@@ -331,7 +331,8 @@ mod tests {
         assert!((json["bonding_ratio"].as_f64().unwrap() - 640.88 / 13.353).abs() < 0.01);
     }
 
-    /// The record of a press comes from springs and friction alone, and stays below what was measured: the report says by how much.
+    /// The record of a press comes from springs and friction alone, and stays below the measured force: the
+    /// report gives the ratio.
     #[test]
     fn a_record_below_the_measured_force_says_so() {
         let usual = report(&LatchDesign::default());

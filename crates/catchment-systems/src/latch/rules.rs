@@ -42,9 +42,9 @@ pub struct LatchRule {
 const LEAST_OVERHANG: f64 = 2.5;
 /// The widest slit that was found to stop the arm soon enough, in mm.
 pub const WIDEST_SLIT: f64 = 0.36;
-/// How far the tangent may pass from P, as a share of the lever.
+/// Largest distance of the tangent from P, as a share of the lever.
 const TANGENT: f64 = 0.01;
-/// The angle at the outer edge that was chosen, in degrees, and how far another may be from it without a word.
+/// The chosen angle at the outer edge, in degrees, and the deviation beyond which a warning is given.
 const START_DEG: (f64, f64) = (35.0, 0.5);
 /// Distance and depth of the slit that were found to be sufficient, in mm.
 const SUFFICIENT: (f64, f64) = (15.0, 20.3);
@@ -217,7 +217,7 @@ fn of_the_slit(list: &mut List, latch: &LatchDesign, geometry: &Geometry) {
     );
 }
 
-/// How far tension turns the arm before the slit is closed, in rad.
+/// Rotation of the arm by tension until the slit is closed, in rad.
 pub fn play(latch: &LatchDesign, geometry: &Geometry) -> f64 {
     let above = -geometry.profile.height(latch.width - geometry.slit[0]) - geometry.pivot.y;
     (latch.slit_gap / above).atan()

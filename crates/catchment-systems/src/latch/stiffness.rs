@@ -10,7 +10,7 @@
 
 use super::LatchDesign;
 
-/// What the dissertation states for the three-sided part, in N·mm/rad.
+/// The dissertation's value for the three-sided part, in N·mm/rad.
 pub const STATED: f64 = 4990.0;
 
 /// Second moment of area of the neck, in mm⁴.
@@ -18,7 +18,7 @@ pub fn second_moment(latch: &LatchDesign) -> f64 {
     latch.sheet * latch.neck.powi(3) / 12.0
 }
 
-/// Torsional stiffness of one layer's neck, in N·mm/rad.
+/// Torsional stiffness of a layer's neck, in N·mm/rad.
 pub fn torsional(latch: &LatchDesign) -> f64 {
     latch.modulus * second_moment(latch) / latch.l_eq
 }

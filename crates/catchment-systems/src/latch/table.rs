@@ -57,7 +57,7 @@ impl ReportBody for TableBody {
     const KIND: &'static str = "latch-table";
 }
 
-/// What does not agree in the source.
+/// Contradictions in the source.
 const CONTRADICTIONS: [&str; 7] = [
     "the text says six designs were tested; the table has nine",
     "the text names the tip failures once as t = 3.0 or 4.6, once as 3.0 or greater; the force at 3.8 fits the second",

@@ -78,18 +78,18 @@ impl AcceptanceShape {
     }
 }
 
-/// What is known of a system beside its printed area.
+/// Facts about a system besides its printed area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fact {
     /// Its name in the catalogue.
     pub system: &'static str,
-    /// Its region, where the geometry is given, or where nothing but the number is and the region is a reading.
+    /// Its region, if the geometry is given, or if only the number is given and the region is a reading.
     pub shape: Option<(AcceptanceShape, Provenance)>,
-    /// What the shape rests on.
+    /// Basis of the shape.
     pub basis: &'static str,
     /// The ONAA that the dissertation states, in D.
     pub onaa: Option<f64>,
-    /// What contradicts it, or is open.
+    /// Contradictions, or open questions.
     pub doubt: Option<&'static str>,
 }
 
@@ -110,7 +110,7 @@ const fn read(
     Fact { system, shape, basis, onaa: None, doubt: None }
 }
 
-/// What is known of the systems with published areas.
+/// Facts about the systems with published areas.
 pub const GEOMETRY: [Fact; 13] = [
     Fact {
         doubt: Some("the text names its cone as the first dock that aligns itself in three dimensions"),
@@ -217,7 +217,7 @@ impl Fact {
     }
 }
 
-/// Every number that is known of a system's zero-rotation area, each with where it comes from.
+/// Every known number of a system's zero-rotation area, each with its provenance.
 pub fn numbers(system: &System) -> Vec<Number> {
     let mut found = Vec::new();
     let mut add = |name, value, unit, provenance, basis: &str| {

@@ -48,7 +48,7 @@ fn every_published_area_has_its_line() {
     );
 }
 
-/// What each area is as a circle and as a square, to the printed digits.
+/// Each area as a circle and as a square, to the printed digits.
 #[test]
 fn circles_and_squares_of_the_printed_areas() {
     for (name, radius, edge) in [
@@ -119,7 +119,7 @@ fn closed_forms_are_what_the_program_computes() {
     assert!((SQRT_2 * square.edge - 1.0).abs() < 0.002);
 }
 
-/// One pin with its hole: what a ring of them accepts without rotation, each pair for itself.
+/// A pin with its hole: the zero-rotation region of a ring of them, each pair by itself.
 #[test]
 fn a_pin_of_polybot_accepts_the_circle_of_its_radius() {
     let (clearance, chamfer) = (0.002, 0.019);

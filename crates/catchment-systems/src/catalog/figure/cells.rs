@@ -74,10 +74,10 @@ pub(super) fn corners(shape: AcceptanceShape) -> Vec<DVec2> {
     }
 }
 
-/// The mating surface of a half as it is seen along the approach: what faces the viewer, the lower parts first, and
-/// the edges that stand out.
+/// The mating surface of a half as seen along the approach: the facets that face the viewer, the lower parts
+/// first, and the visible edges.
 pub(super) fn face(svg: &mut Svg, view: &View, half: &Half, factor: f64) {
-    /// What is steeper than this is a wall, and seen as a line.
+    /// Facets steeper than this are walls, seen as lines.
     const FACING: f64 = 1e-6;
     /// Cosine of 20°: facets of a rounding meet at less.
     const BEND: f64 = 0.94;

@@ -55,10 +55,10 @@ const ROWS: usize = 5;
 const ROW: f64 = 136.0;
 const BLOCK: f64 = 560.0;
 
-/// Figure 2.1: connectors, cross-sections and zero-rotation areas of acceptance, on one scale.
+/// Figure 2.1: connectors, cross-sections and zero-rotation areas of acceptance, at a common scale.
 ///
 /// # Errors
-/// If a region cannot be computed, or it is cancelled.
+/// If a region cannot be computed, or the computation is cancelled.
 pub fn comparison(catalog: &Catalog, exec: &Exec) -> Result<Picture, DrawError> {
     let rows = rows::all(catalog, exec)?;
     let blocks = rows.len().div_ceil(ROWS);

@@ -23,9 +23,9 @@ pub(super) const CELL: f64 = 126.0;
 const GAP: f64 = 6.0;
 /// Offsets that a cell shows, in D.
 const REACH: f64 = 1.08;
-/// What a cross-section shows, in D: half of the widest.
+/// Half the width of a cross-section, in D.
 const SECTION: f64 = 0.76;
-/// How far apart the halves are drawn, in D.
+/// Distance at which the halves are drawn apart, in D.
 const APART: f64 = 0.9;
 /// Height of the strip that stands for an interval, in D.
 const STRIP: f64 = 0.16;
@@ -98,7 +98,7 @@ pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError>
     Ok(rows)
 }
 
-/// The words of a row: what it is, its area and edge.
+/// The words of a row: its name, its area and edge.
 fn told(words: &[&str], area: f64, edge: f64) -> Vec<String> {
     let mut lines = vec![format!("{} D²", trimmed(area, 6)), format!("ONAA {} D", trimmed(edge, 4))];
     lines.extend(words.iter().map(|&words| words.to_owned()));
@@ -118,7 +118,7 @@ fn of_family(
     words: &str,
     exec: &Exec,
 ) -> Result<Row, DrawError> {
-    /// Finer than the default, so that what is printed is the circle's to three digits.
+    /// Finer than the default, so that the printed number is the circle's to three digits.
     const CHORD_ERROR: f64 = 0.0004;
     let connector = ConnectorSpec::Family(FamilySpec::new(family).with_chord_error(CHORD_ERROR));
     let alignment = Alignment::default_for(Some(family));

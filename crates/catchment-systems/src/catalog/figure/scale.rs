@@ -12,7 +12,7 @@ const LINE: f64 = 19.0;
 /// Room above and below the lines.
 const HEAD: f64 = 30.0;
 const FOOT: f64 = 40.0;
-/// Width of the names, and of what is said behind the scale.
+/// Width of the names, and of the text after the scale.
 const NAME: f64 = 190.0;
 const SAID: f64 = 250.0;
 /// Ends of the scale, in D².
@@ -31,7 +31,7 @@ pub(super) fn height(catalog: &Catalog) -> f64 {
     HEAD + LINE * systems(catalog).len() as f64 + FOOT
 }
 
-/// What is known of the shape.
+/// The known facts about the shape.
 fn shape_of(system: &System) -> &'static str {
     match Fact::of(system).and_then(|fact| fact.shape) {
         Some((_, Provenance::Inferred)) => "shape unknown; a square agrees [I]",

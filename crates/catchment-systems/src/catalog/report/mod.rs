@@ -19,16 +19,16 @@ use std::collections::BTreeMap;
 pub type CatalogReport = ReportEnvelope<CatalogBody>;
 /// A design among the published systems, with its head.
 pub type ClassifyReport = ReportOf<ClassifyBody>;
-/// One system, with its head.
+/// A system, with its head.
 pub type SystemReport = ReportEnvelope<SystemBody>;
 
-/// What stands where nothing is known.
+/// Text for an unknown value.
 const NOTHING: &str = "–";
 
-/// What the star stands for.
+/// Meaning of the star.
 const ESTIMATED: &str = "* marked as an estimate in the source";
 
-/// The attributes that say most.
+/// The most informative attributes.
 const OVERVIEW: [CatalogAttribute; 4] = [
     CatalogAttribute::Introduced,
     CatalogAttribute::SelfAligningDegree,
@@ -137,7 +137,8 @@ impl SystemBody {
         self.attributes.as_ref()?.get(attribute.key())
     }
 
-    /// Why the printed value of an attribute has another normal form. What an appended design leaves open is no oddity of the source.
+    /// The oddity of a printed value that has another normal form. Open values of an appended design are not
+    /// oddities of the source.
     fn oddity(&self, attribute: CatalogAttribute) -> Option<&'static Oddity> {
         attribute.oddity(self.printed(attribute)).filter(|_| self.source != RowSource::Appended)
     }
@@ -146,7 +147,7 @@ impl SystemBody {
         self.value(attribute).map_or(NOTHING, |value| value.printed.as_str())
     }
 
-    /// The area as people read it, with a star where it is an estimate.
+    /// The area for people, with a star for an estimate.
     fn zraa(&self) -> String {
         let star = if self.estimated { "*" } else { "" };
         self.zraa_d2.map_or_else(|| NOTHING.to_owned(), |area| format!("{}{star}", shown(area)))
@@ -200,7 +201,7 @@ impl CatalogBody {
         ReportEnvelope::of(Self { systems }, Vec::new(), None)
     }
 
-    /// The attributes that say most, for people.
+    /// The most informative attributes, for people.
     fn overview(&self) -> Table {
         /// The longest name that is shown in full.
         const NAME: usize = 17;
@@ -268,7 +269,7 @@ impl CatalogBody {
     }
 }
 
-/// Where a row comes from, in a word.
+/// The source of a row, in a word.
 const fn source(source: &RowSource) -> &'static str {
     match source {
         RowSource::Connectors(None) => "table 1.1",

@@ -48,7 +48,7 @@ pub struct ChainErrors {
     pub side_force: f64,
 }
 
-/// A face that arrives where another waits.
+/// A face that arrives at a waiting face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Closing {
     body: ModuleDimensions,
@@ -78,7 +78,7 @@ impl Covariance {
         [0, 1, 2].map(|k| self.matrix[k][k].sqrt())
     }
 
-    /// Correlation of lateral offset and angle; 0 where one of them is always the same.
+    /// Correlation of lateral offset and angle; 0 if either is constant.
     pub fn correlation(&self) -> f64 {
         /// Rounding of a dozen terms that cancel.
         const NOTHING: f64 = 1e-12;
@@ -102,7 +102,7 @@ impl Covariance {
 }
 
 impl Closing {
-    /// The last face of a straight chain of `modules`, where its partner waits without error.
+    /// The last face of a straight chain of `modules`, with its partner at the nominal pose.
     pub fn straight(body: ModuleDimensions, modules: usize) -> Self {
         let angles = vec![0.0; modules];
         let tip = ModuleFace::Front.of(&body, &rotors(&body, &angles), &angles, modules);
@@ -146,8 +146,9 @@ impl Closing {
         self.joints.iter().map(|k| k + 1).collect()
     }
 
-    /// What a joint between the faces sees of the docking face: its distance from the line through the face along e, which is the
-    /// lever of a pressing force, and its distance from the face centre, both in mm.
+    /// Lever arms of each joint between the faces relative to the docking face: its distance from the line
+    /// through the face along e, which is the lever of a pressing force, and its distance from the face
+    /// centre, both in mm.
     pub fn levers(&self) -> Vec<(usize, f64, f64)> {
         let (rotors, at) = self.nominal();
         let normal = direction(self.waiting.heading);
@@ -172,7 +173,7 @@ impl Closing {
         [apart.dot(-left(normal)), apart.dot(normal), angle]
     }
 
-    /// How far each joint yields to the side force, in their order.
+    /// Deflection of each joint by the side force, in their order.
     fn bent(&self, errors: &ChainErrors) -> Vec<f64> {
         const METRE: f64 = 1e3;
         let (rotors, at) = self.nominal();
@@ -208,7 +209,7 @@ impl Closing {
         Covariance { mean, matrix: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))) }
     }
 
-    /// Lateral, normal and angle of one random chain, by exact kinematics.
+    /// Lateral, normal and angle of a random chain, by exact kinematics.
     pub fn drawn(&self, errors: &ChainErrors, draws: Draws) -> [f64; 3] {
         self.drawn_bent(errors, &self.bent(errors), draws)
     }
@@ -243,10 +244,10 @@ impl Closing {
         self.seen(self.side.of(&self.body, &rotors, &angles, self.module))
     }
 
-    /// Lateral, normal and angle of many random chains; chain k is the same however many there are.
+    /// Lateral, normal and angle of many random chains; chain k does not depend on their number.
     ///
     /// # Errors
-    /// It was asked to stop.
+    /// The computation was cancelled.
     pub fn cloud(
         &self,
         errors: &ChainErrors,

@@ -51,8 +51,9 @@ fn the_closed_form_is_the_first_order_of_a_straight_chain() {
     assert!((found.correlation() - 0.75f64.sqrt()).abs() < 1e-3);
 }
 
-/// Random chains, exactly, within 1 % of the formula for 2 to 20 modules at 1°. The standard error of a deviation from 60 000
-/// chains is 0.29 %; what is beyond first order takes 0.2 % of the lateral deviation at 20 modules.
+/// Random chains, exactly, within 1 % of the formula for 2 to 20 modules at 1°. The standard error of a
+/// deviation from 60 000 chains is 0.29 %; effects beyond first order take 0.2 % of the lateral deviation at
+/// 20 modules.
 #[test]
 fn random_chains_agree_with_the_formula_within_a_percent() {
     let (body, exec) = (ModuleDimensions::default(), Exec::new());
@@ -137,8 +138,9 @@ fn every_optional_term_has_its_closed_form() {
 }
 
 proptest! {
-    /// First order against random chains, for folded ones with all errors. 4 000 chains: 1.1 % standard error of a deviation, and
-    /// small errors, so that what is beyond first order is far less; 6 % is more than five standard errors.
+    /// First order compared with random chains, for folded chains with all errors. 4 000 chains: 1.1 %
+    /// standard error of a deviation, and small errors, so that effects beyond first order are far less; 6 %
+    /// is more than five standard errors.
     #[test]
     fn first_order_agrees_with_random_chains(
         first_corner in FIRST_CORNERS, seed in 0u64..1000, link in 0.1..1.0f64, step in 0.0..0.01f64,

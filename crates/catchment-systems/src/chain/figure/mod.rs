@@ -19,10 +19,10 @@ use catchment::report::figure::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE
 const WIDTH: f64 = 920.0;
 /// Room at its sides.
 const SIDE: f64 = 24.0;
-/// Where the drawing begins, below title and story.
+/// Top of the drawing, below title and story.
 const TOP: f64 = 66.0;
 
-/// The picture of a study: its table where it has one, else its folding, else the errors of its last face.
+/// The picture of a study: its table if it has one, else its folding, else the errors of its last face.
 pub fn draw(report: &ChainReport, study: &Study) -> Picture {
     if !report.lengths.is_empty() {
         return lengths::draw(report);

@@ -63,7 +63,7 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     Picture::of(svg)
 }
 
-/// What the marks mean, to the right of the title.
+/// The legend of the marks, to the right of the title.
 fn legend(svg: &mut Svg) {
     let y = 26.0;
     let mut x = 520.0;
@@ -155,7 +155,7 @@ fn diamond(svg: &mut Svg, [x, y]: [f64; 2], full: bool) {
     );
 }
 
-/// What is new in a step, in one line of text or two.
+/// The changes in a step, in one line of text or two.
 fn words(
     svg: &mut Svg,
     step: &FoldStepReport,

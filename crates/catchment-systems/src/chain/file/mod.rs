@@ -33,7 +33,7 @@ use std::path::PathBuf;
 /// A chain file, read.
 #[derive(Debug, Clone)]
 pub struct ChainFile {
-    /// What the person called it.
+    /// Name given by the user.
     pub name: String,
     /// Dimensions of a module.
     pub body: ModuleDimensions,
@@ -41,18 +41,18 @@ pub struct ChainFile {
     pub modules: usize,
     /// How large the errors are.
     pub errors: ChainErrors,
-    /// What a servo can do.
+    /// Properties of a servo.
     pub servo: Servo,
-    /// What a pair of latching faces does.
+    /// Properties of a pair of latching faces.
     pub hooks: Hooks,
-    /// What the chain folds into, if it folds.
+    /// Folding of the chain, if it folds.
     pub folding: Option<Folding>,
-    /// The connector at its faces, if one is named.
+    /// The connector at its faces, if named.
     pub connector: Option<ConnectorLine>,
     source: SourceText,
 }
 
-/// What a chain is told, and the lattice it ends on.
+/// The commands of a chain, and its final lattice.
 #[derive(Debug, Clone)]
 pub struct Folding {
     /// The named shape.
@@ -61,7 +61,7 @@ pub struct Folding {
     pub sequence: CommandSequence,
     /// Angles of the lattice that they end on.
     pub lattice: Vec<f64>,
-    /// Where each step stands in the file.
+    /// Place of each step in the file.
     places: Vec<Range<usize>>,
 }
 
@@ -75,7 +75,7 @@ pub struct ConnectorLine {
     place: Range<usize>,
 }
 
-/// Modules of a chain that nothing says more about: the dissertation's longest.
+/// Default number of modules: the dissertation's longest.
 const DEFAULT_MODULES: i64 = 12;
 /// Most modules: the work of a fold grows with their cube.
 pub const MOST_MODULES: i64 = 100;
@@ -114,14 +114,14 @@ impl ChainFile {
         })
     }
 
-    /// The file, refused for what a later room found about a step.
+    /// The file, rejected for an error of a step that a later module found.
     pub fn refuse_step(&self, step: usize, message: String) -> Diagnostics {
         let place = self.folding.as_ref().and_then(|folding| folding.places.get(step).cloned());
         let help = "change the order of the steps, or their angles".to_owned();
         self.refused(place, message, Some(help))
     }
 
-    /// The file, refused for what a later room found about its connector.
+    /// The file, rejected for an error of its connector that a later module found.
     pub fn refuse_connector(&self, message: String, help: Option<String>) -> Diagnostics {
         self.refused(self.connector.as_ref().map(|line| line.place.clone()), message, help)
     }
@@ -275,10 +275,10 @@ fn folding(
     Some(folding)
 }
 
-/// Where the commands of a file come from.
+/// Source of the commands of a file.
 const OWN: &str = "the chain file";
 
-/// `3-6, 1-6`, each of which must be two faces that look at each other on the lattice.
+/// `3-6, 1-6`, each of which must be two faces opposite each other on the lattice.
 fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[f64]) -> Vec<LatchingPair> {
     let possible = latches(lattice);
     let mut found = Vec::new();

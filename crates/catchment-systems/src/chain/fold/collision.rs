@@ -112,7 +112,7 @@ mod tests {
     }
 
     proptest! {
-        /// The judge: points of a lattice in one rectangle that lie in the other.
+        /// The reference: points of a lattice in one rectangle that lie in the other.
         #[test]
         fn overlap_agrees_with_points(x in -60.0..60.0f64, y in -60.0..60.0f64, turn in -3.0..3.0f64) {
             let block = |centre: DVec2, turn: f64| Block { centre, axes: [20.0 * direction(turn), 10.0 * left(direction(turn))] };

@@ -135,11 +135,11 @@ pub struct Event {
 pub struct FoldMoment {
     /// Time of the step.
     pub time_s: f64,
-    /// What every joint is told.
+    /// Commands to all joints.
     pub commands: Vec<Command>,
     /// Angle of every joint.
     pub angles: Vec<f64>,
-    /// What every joint does.
+    /// States of all joints.
     pub states: Vec<State>,
     /// Rotors.
     pub rotors: Vec<PlanarPose>,
@@ -147,12 +147,12 @@ pub struct FoldMoment {
     pub latched: Vec<usize>,
 }
 
-/// What became of a sequence.
+/// Result of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Folded {
     /// After every step.
     pub moments: Vec<FoldMoment>,
-    /// What latched, in order.
+    /// Latching events, in order.
     pub events: Vec<Event>,
     /// Time and joint angles at the start of every ramp and after every sub-step.
     pub track: Vec<(f64, Vec<f64>)>,
@@ -163,7 +163,7 @@ pub struct Folded {
 /// Why a sequence cannot be followed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FoldError {
-    /// The commands put two modules into one cell.
+    /// The commands put two modules into the same cell.
     #[error("at {time_s} s module {b} is sent into the cell of module {a}")]
     Cell {
         /// Number of the step, from 0.
@@ -187,7 +187,7 @@ pub enum FoldError {
         /// The other.
         b: usize,
     },
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -198,7 +198,7 @@ const RAMP_S: f64 = 1.0;
 /// Follows a sequence.
 ///
 /// # Errors
-/// Modules collide, or it was asked to stop.
+/// Modules collide, or the computation was cancelled.
 pub fn fold(
     body: &ModuleDimensions,
     modules: usize,
@@ -275,7 +275,7 @@ fn advance(chain: &mut Chain, commands: &[Command], from: &[f64], done: f64, sub
     }
 }
 
-/// Where a ramp starts: at the last command, or where a slack joint is.
+/// Start of a ramp: the last command, or the angle of a slack joint.
 const fn ramp_start(before: Command, now: f64) -> f64 {
     match before {
         Command::Angle(angle) => angle,
@@ -291,7 +291,8 @@ fn settle(chain: &mut Chain, time_s: f64, events: &mut Vec<Event>) {
     }
 }
 
-/// How far the rotors of a chain are from those of wanted angles: the largest distance in mm, the largest turn in radians.
+/// Deviation of the rotors of a chain from those for the wanted angles: the largest distance in mm, the
+/// largest rotation in radians.
 pub fn off_lattice(body: &ModuleDimensions, angles: &[f64], wanted: &[f64]) -> (f64, f64) {
     let (found, wanted) = (rotors(body, angles), rotors(body, wanted));
     found.iter().zip(&wanted).fold((0.0, 0.0), |(far, turn), (a, b)| {

@@ -32,7 +32,7 @@ pub(super) struct Pair {
     pub(super) most: f64,
 }
 
-/// What became of a pair.
+/// Change of a pair.
 pub(super) enum Change {
     /// It is as it was.
     Nothing,
@@ -42,14 +42,14 @@ pub(super) enum Change {
     Snapped(usize),
 }
 
-/// One spring: how far it is stretched, how that changes with every joint, and its stiffness.
+/// A spring: its elongation, the derivative by every joint, and its stiffness.
 pub(super) struct Spring {
     pub(super) stretch: f64,
     pub(super) slopes: Vec<f64>,
     pub(super) stiffness: f64,
 }
 
-/// Faces that look at each other by less than this touch, if at all.
+/// Faces closer than this may touch.
 const FACING: f64 = 1.0;
 /// Layers of a face.
 const LAYERS: f64 = 2.0;
@@ -67,7 +67,7 @@ impl Pair {
         }
     }
 
-    /// Lateral offset, gap and angle of the arriving face, and the axes of the waiting one.
+    /// Lateral offset, gap and angle of the arriving face, and the axes of the waiting face.
     fn seen([waiting, arriving]: [PlanarPose; 2]) -> ([f64; 3], glam::DVec2, glam::DVec2) {
         let normal = direction(waiting.heading);
         let across = -left(normal);
@@ -84,7 +84,7 @@ impl Pair {
         Self::seen(self.latch.faces(body, rotors, angles)).0
     }
 
-    /// What acts between the two faces now.
+    /// The springs between the two faces.
     pub(super) fn springs(
         &self,
         body: &ModuleDimensions,
@@ -149,7 +149,7 @@ impl Pair {
         }
     }
 
-    /// The pressing force that snaps the next layer, or both; none where a hook rides or both hold.
+    /// The pressing force that snaps the next layer, or both; `None` if a hook rides or both hold.
     pub(super) fn threshold(&self, lateral: f64) -> Option<f64> {
         let Hooks { force, overhang, .. } = self.hooks;
         match self.held {
@@ -161,7 +161,8 @@ impl Pair {
         }
     }
 
-    /// What a pressing force and an offset change, `driven` telling that no joint between the faces is slack.
+    /// The change caused by a pressing force and an offset; `driven` is true if no joint between the faces is
+    /// slack.
     pub(super) fn change(&mut self, press: f64, lateral: f64, driven: bool) -> Change {
         self.most = self.most.max(press);
         let overhang = self.hooks.overhang;

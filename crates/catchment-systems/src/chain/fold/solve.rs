@@ -21,7 +21,7 @@ pub(super) struct Chain {
     body: ModuleDimensions,
     settings: FoldSettings,
     pub(super) angles: Vec<f64>,
-    /// What every joint is told now; `None` is slack.
+    /// Commands to all joints; `None` is slack.
     pub(super) told: Vec<Option<f64>>,
     pub(super) pairs: Vec<Pair>,
 }
@@ -46,7 +46,7 @@ impl Chain {
         rotors(&self.body, &self.angles)
     }
 
-    /// What every joint does.
+    /// States of all joints.
     pub(super) fn states(&self) -> Vec<State> {
         let servo = self.settings.servo;
         self.told
@@ -60,7 +60,8 @@ impl Chain {
             .collect()
     }
 
-    /// Lets the first pair change that has reason to; whether one has, and what snapped is noted as of `time_s`.
+    /// Changes the first pair that has to change; returns whether there is one, and records latching events
+    /// with `time_s`.
     pub(super) fn snap(&mut self, time_s: f64, events: &mut Vec<Event>) -> bool {
         let rotors = self.rotors();
         for pair in &mut self.pairs {
@@ -80,7 +81,7 @@ impl Chain {
         false
     }
 
-    /// Whether a pair is pressed well beyond what snaps its next layer.
+    /// Whether a pair is pressed far beyond the snap force of its next layer.
     pub(super) fn is_overpressed(&self) -> bool {
         /// Share of a force to which events are found.
         const SHARP: f64 = 1.01;
@@ -126,7 +127,7 @@ impl Chain {
 
     /// Goes to the rest that is near.
     pub(super) fn rest(&mut self) {
-        /// Torque that no longer counts, in N·mm: a millionth of what a servo has.
+        /// Torque that no longer counts, in N·mm: a millionth of a servo's torque.
         const STILL: f64 = 1e-5;
         const MOST: usize = 2000;
         /// A step may turn a joint by this much, in radians: contact must be seen before it is passed.
@@ -162,7 +163,7 @@ impl Chain {
     }
 }
 
-/// Solves `(m + damping·1) x = b` by Cholesky's factors; `None` where rounding leaves no positive pivot.
+/// Solves `(m + damping·1) x = b` by Cholesky's factors; `None` if rounding leaves no positive pivot.
 fn solved(m: &[Vec<f64>], damping: f64, b: &[f64]) -> Option<Vec<f64>> {
     let n = b.len();
     let mut l = vec![vec![0.0; n]; n];

@@ -62,7 +62,8 @@ fn every_shape_latches_and_ends_on_its_lattice() {
     }
 }
 
-/// 0.8 N·m at a lever of 95 mm are 8.4 N, less than the 9.61 N of a layer: nothing latches, and the press says how hard it was.
+/// 0.8 N·m at a lever of 95 mm are 8.4 N, less than the 9.61 N of a layer: nothing latches, and the report
+/// states the pressing force.
 #[test]
 fn a_weak_servo_does_not_latch() {
     let servo = Servo { torque: 0.8, ..Servo::default() };
@@ -72,7 +73,7 @@ fn a_weak_servo_does_not_latch() {
     assert_eq!(open_latches(&found, &CommandSequence::of(ChainShape::P).unwrap().latches).len(), 1);
 }
 
-/// Faces that meet centred need both layers at once: twice the force, in one event.
+/// Faces that meet centred need both layers at once: twice the force, in a single event.
 #[test]
 fn centred_faces_latch_both_layers_at_once() {
     let mut sequence = CommandSequence::of(ChainShape::P).unwrap();

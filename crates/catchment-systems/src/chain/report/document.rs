@@ -9,7 +9,7 @@ use catchment::document::{Cell, Column, ColumnFormat, Document, Table, percent, 
 use catchment::report::document::Printed;
 use std::borrow::Cow;
 
-/// What stands where nothing is known.
+/// Text for an unknown value.
 const NOTHING: &str = "–";
 
 /// `1.00°`.
@@ -31,8 +31,8 @@ impl Printed for ChainBody {
         Cow::Borrowed(&self.name)
     }
 
-    /// Programs read the table over numbers of modules, if there is one; else where every module is after every step, if the chain folds;
-    /// else every random chain.
+    /// Programs read the table over numbers of modules, if there is one; else the positions of all modules
+    /// after every step, if the chain folds; else every random chain.
     fn document(&self) -> Document {
         let mut document = Document::default();
         self.describe_head(&mut document);
@@ -252,7 +252,7 @@ impl FoldingReport {
         }
     }
 
-    /// Joints that get another command in a step, and where they end.
+    /// Joints that get another command in a step, and their final angles.
     fn step_table(&self) -> Table {
         let mut table = Table::new([Column::new("t"), Column::new("joint: command → angle").left()]);
         let mut before: Vec<Option<f64>> = Vec::new();
@@ -293,7 +293,7 @@ impl FoldingReport {
         table
     }
 
-    /// Where every module is after every step, for programs.
+    /// The positions of all modules after every step, for programs.
     fn poses(&self) -> Table {
         let mut table = Table::data("t module x y heading command state");
         for step in &self.steps {

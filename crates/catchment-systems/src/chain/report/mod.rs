@@ -154,7 +154,7 @@ impl ReportBody for ChainBody {
     const KIND: &'static str = "chain";
 }
 
-/// What a reach is about, where nothing else is required.
+/// Default requirement of a reach.
 const USUAL: &str = "probability>=0.99";
 
 impl FoldingReport {
@@ -270,7 +270,7 @@ pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing
     ReportEnvelope::of(body, doubts, timing)
 }
 
-/// What a reader must know.
+/// The warnings.
 fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
     let mut told = Vec::new();
     if let Some(docking) = &study.docking {

@@ -16,10 +16,10 @@ struct Record {
     span: Range<usize>,
 }
 
-/// Columns that are looked at: there is no use for more than three.
+/// Number of columns examined: more than three have no use.
 const MOST_COLUMNS: usize = 100;
 
-/// The records of a text: the names of the columns and, if there are so many, one corner more than are taken.
+/// The records of a text: the column names and, if there are that many, one corner more than allowed.
 fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
     let mut reader = ::csv::ReaderBuilder::new()
         .has_headers(false)
@@ -51,7 +51,7 @@ fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
     Ok(records)
 }
 
-/// What a column of coordinates is called, without its unit, and the unit.
+/// Name of a column of coordinates, without its unit, and the unit.
 fn unit_of(name: &str) -> (String, Option<String>) {
     let bracketed = |open: char, close: char| {
         let (base, unit) = name.strip_suffix(close)?.split_once(open)?;

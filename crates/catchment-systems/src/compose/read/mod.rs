@@ -52,23 +52,23 @@ impl Measure {
 /// A region that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParsedRegion {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The region.
     pub region: Bracket,
-    /// What its lengths are measured in.
+    /// Unit of its lengths.
     pub measure: Measure,
-    /// What a person should know about it.
+    /// Notes about it.
     pub notes: Vec<String>,
 }
 
 /// Why a file gives no region.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// What is wrong with the text.
+    /// Errors of the text.
     #[error(transparent)]
     Diagnostics(#[from] Diagnostics),
-    /// What is wrong with the connector.
+    /// Errors of the connector.
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// The connector has no region.
@@ -79,16 +79,16 @@ pub enum ReadError {
     Sum(#[from] SumError),
 }
 
-/// What a TOML file turned out to be.
+/// Content of a TOML file.
 enum Toml {
     Connector,
     Swept(sweep::Swept),
 }
 
-/// Reads a region; the end of the file's name says what is in it.
+/// Reads a region; the file's extension determines its content.
 ///
 /// # Errors
-/// Everything that is wrong with the file.
+/// All errors of the file.
 pub fn read(source: SourceText, exec: &Exec) -> Result<ParsedRegion, ReadError> {
     let ending = source.path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let stem = source.path.file_stem().and_then(|s| s.to_str()).unwrap_or("region").to_owned();
@@ -117,7 +117,7 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<ParsedRegion, ReadError> 
     }
 }
 
-/// The offsets that a connector corrects without rotation, in mm where it has a unit.
+/// The offsets that a connector corrects without rotation, in mm if it has a unit.
 fn of_connector(draft: Draft, exec: &Exec) -> Result<ParsedRegion, ReadError> {
     let problem = draft.build()?;
     let design = problem.design();

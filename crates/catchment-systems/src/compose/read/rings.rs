@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Most corners of a file: every two sides are compared.
 pub(super) const MOST_CORNERS: usize = 10_000;
-/// The same as a limit of what is read.
+/// The same as a reading limit.
 pub(super) const CORNERS: Limit = Limit {
     most: MOST_CORNERS as u64,
     of: "corners of the outline",
@@ -64,7 +64,7 @@ fn shown(p: DVec2) -> String {
     format!("({}, {})", p.x, p.y)
 }
 
-/// What is said of a file with more corners than are taken.
+/// The error for a file with too many corners.
 pub(super) fn too_many() -> Diagnostic {
     let message = format!("the outline has more than {MOST_CORNERS} corners");
     Diagnostic::new(message, Some(CORNERS.remedy.to_owned()))
@@ -95,7 +95,7 @@ fn wrong(rings: &[Ring], measure: Measure) -> DiagnosticCollector {
     if found.is_empty() { crossings(rings) } else { found }
 }
 
-/// Sides of which one passes through another, or a side that runs back along the one before it.
+/// Pairs of sides that pass through each other, or a side that runs back along its predecessor.
 fn crossings(rings: &[Ring]) -> DiagnosticCollector {
     let mut found = DiagnosticCollector::default();
     let side = |ring: &Ring, k: usize| {

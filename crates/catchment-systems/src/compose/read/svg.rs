@@ -60,7 +60,7 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, Rea
     region(source, stem, measure, rings, found, notes)
 }
 
-/// What is said of a part of a picture.
+/// The error about a part of a picture.
 fn diagnostic(text: &str, refusal: UnsupportedSvg) -> Diagnostic {
     let UnsupportedSvg { at, message, help } = refusal;
     // A broken document has a place, but nothing there that is to be shown as a whole.
@@ -68,7 +68,7 @@ fn diagnostic(text: &str, refusal: UnsupportedSvg) -> Diagnostic {
     Diagnostic::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
 }
 
-/// Lengths of one user unit: a mm, unless the picture says its width.
+/// Lengths of a user unit: 1 mm, unless the picture states its width.
 fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut DiagnosticCollector) -> f64 {
     let (Some((width, at)), Some((view, _))) = (head.get("width"), head.get("viewBox")) else {
         return 1.0;
@@ -151,7 +151,7 @@ fn has_huge_numbers(data: &str) -> bool {
     long || data.split(['e', 'E']).skip(1).any(|rest| tens(rest) > MOST_TENS)
 }
 
-/// Whether everything that a path passes lies where regions may be: what does not would take any number of chords.
+/// Whether a path stays within the range of regions: outside of it any number of chords would be needed.
 fn within_reach(path: &BezPath, factor: f64) -> bool {
     let near = |p: &kurbo::Point| (p.x.abs().max(p.y.abs()) * factor) <= REACH;
     path.elements().iter().all(|element| match element {

@@ -16,7 +16,7 @@ const PLACES: RangeInclusive<f64> = -1e5..=1e5;
 const ANGLES: RangeInclusive<f64> = -TAU..=TAU;
 /// Factors of growth.
 const FACTORS: RangeInclusive<f64> = 0.0..=100.0;
-/// Chord error where none is given, in mm: finer than such parts are made.
+/// Default chord error, in mm: finer than the manufacturing of such parts.
 const CHORD_ERROR: f64 = 0.01;
 
 /// Most corners of a polygon in a form.
@@ -51,7 +51,7 @@ pub(super) struct Swept {
 }
 
 impl Swept {
-    /// The region that is swept: motions one after another.
+    /// The swept region: by motions in sequence.
     pub(super) fn read(self) -> Result<ParsedRegion, SumError> {
         let mut region: Bracket = self.shape.bracket(self.center, self.chord_error);
         for motion in &self.motions {

@@ -52,11 +52,11 @@ use catchment::study::sweep::SweepAxis;
 use glam::{DMat3, DVec2};
 use serde::Serialize;
 
-/// Most rotations: each asks for an envelope of its own, in seconds.
+/// Largest number of rotations: each needs its own envelope, in seconds.
 pub const MOST_TURNS: usize = 1000;
 /// Least cosine of a tilt: at more than 80° the halves stand side by side.
 const LEAST_UPRIGHT: f64 = 0.17;
-/// What walls reach below the deepest place of the new half, in D.
+/// Extent of walls below the deepest position of the new half, in D.
 const BELOW: f64 = 1.0;
 
 /// Excess height of the new half between the given rotations.
@@ -78,11 +78,11 @@ pub struct Between {
     pub at_d: [f64; 2],
 }
 
-/// Angles as a person lists them, in radians: `5 deg,10 deg`, or a range such as `-10..10 deg/21` (so many at equal distances). A bare number
-/// is what it is in a design file.
+/// Angles as a user lists them, in radians: `5 deg,10 deg`, or a range such as `-10..10 deg/21` (this number
+/// of equidistant angles). A bare number has the unit of a design file.
 ///
 /// # Errors
-/// In words, with what to write instead.
+/// A message with the correct form.
 pub fn list_of_angles(text: &str) -> Result<Vec<f64>, String> {
     // The ranges are those of a sweep, of any key that is an angle.
     let axis: SweepAxis = format!("errors.pitch={text}").parse().map_err(|_| {
@@ -108,10 +108,10 @@ impl InvertSettings {
         })
     }
 
-    /// Roll, pitch and yaw of every rotation asked for but none at all: all combinations.
+    /// Roll, pitch and yaw of every requested rotation except 0: all combinations.
     ///
     /// # Errors
-    /// Where they are too many, tilt too far, or leave the plane of a planar design.
+    /// If they are too many, tilt too far, or leave the plane of a planar design.
     pub fn turns(&self, design: &Design) -> Result<Vec<[f64; 3]>, InvertError> {
         let angles = self.angles();
         if is_planar(design) && !(self.roll.is_empty() && self.yaw.is_empty()) {
@@ -130,7 +130,7 @@ impl InvertSettings {
         }
     }
 
-    /// Rotations midway between neighbouring ones, and the largest angle to the nearest one.
+    /// Rotations midway between neighbours, and the largest angle to the nearest given rotation.
     fn midway(&self) -> (Vec<[f64; 3]>, f64) {
         let angles = self.angles();
         let half = |angles: &Vec<f64>| angles.windows(2).map(|w| (w[1] - w[0]) / 2.0).fold(0.0, f64::max);
@@ -152,8 +152,8 @@ fn combined([rolls, pitches, yaws]: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
     all
 }
 
-/// The halves, as the moving one sees them, whose height of first contact is what it must stay above at a rotation. `floor` is a
-/// height that lies below what is wanted of the new half.
+/// The halves, in the frame of the moving half, whose height of first contact is the lower limit for it at a
+/// rotation. `floor` is a height below all wanted heights of the new half.
 pub(super) fn asked(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> Option<(Half, Half)> {
     let back = turn.transpose();
     let fixed = fixed.mapped(|p| back * p);
@@ -168,7 +168,7 @@ pub(super) fn asked(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> 
     Some((fixed, wanted.above(highest + tall).mapped(|p| back * p)))
 }
 
-/// What holds between the rotations; none where there is nothing between.
+/// Bounds between the rotations; `None` if there is nothing between.
 pub(super) fn between(
     design: &Design,
     wanted: &Connector,
@@ -205,7 +205,7 @@ pub(super) fn between(
     Ok(Some(found))
 }
 
-/// The largest difference of two functions where both are, and its place.
+/// The largest difference of two functions in their common domain, and its position.
 pub(super) fn most_above(high: &Heights, low: &Heights) -> Option<(DVec2, f64)> {
     let mut most: Option<(DVec2, f64)> = None;
     for above in &high.facets {

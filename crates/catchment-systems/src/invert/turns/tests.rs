@@ -65,7 +65,8 @@ fn heights_at_rotations_give_back_the_moving_half() {
     }
 }
 
-/// A pyramid's socket with the centre of rotation off the face, heights wanted 0.2 D above its own, but its own where it is tilted.
+/// A pyramid's socket with the centre of rotation off the face, with heights wanted 0.2 D above its own, but
+/// its own heights when tilted.
 fn raised(settings: &InvertSettings) -> (Problem, Inverse) {
     let problem = problem(
         "[connector]\nfamily = \"pyramid\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 0.5\ncenter_of_rotation = 0.3\n",

@@ -16,7 +16,7 @@ const NECKS: [f64; 2] = [2.0, 5.0];
 const CELLS: [usize; 2] = [50, 30];
 /// Ratios between which colours run, on a logarithmic scale.
 const RATIOS: [f64; 2] = [15.0, 110.0];
-/// How much of a colour is left where the model guesses.
+/// Strength of a colour in the region in which the model extrapolates.
 const GUESS: f64 = 0.45;
 
 fn colour(ratio: f64) -> Rgb {

@@ -18,7 +18,7 @@ use super::{Geometry, LatchDesign};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
-/// Everything that is drawn of one latch.
+/// All data for the pictures of a latch.
 #[derive(Debug, Clone, Copy)]
 pub struct LatchDrawings<'a> {
     /// The latch.
@@ -27,7 +27,7 @@ pub struct LatchDrawings<'a> {
     pub geometry: &'a Geometry,
     /// A pair of them pressed together.
     pub record: &'a Record,
-    /// The measured designs and what was fitted to them.
+    /// The measured designs and the fits to them.
     pub forces: &'a Forces,
 }
 
@@ -46,7 +46,7 @@ impl LatchDrawings<'_> {
         ]
     }
 
-    /// All in one.
+    /// All pictures in one.
     pub fn overview(&self) -> Picture {
         let mut svg = Svg::new(1000.0, 1030.0);
         self.title(&mut svg);

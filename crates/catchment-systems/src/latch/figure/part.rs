@@ -10,7 +10,7 @@ use glam::DVec2;
 /// From mm to places in the picture.
 struct View {
     scale: f64,
-    /// Where the origin of the part is.
+    /// Position of the origin of the part.
     origin: [f64; 2],
 }
 
@@ -121,7 +121,7 @@ fn half(geometry: &Geometry, swing: f64) -> Vec<Polygon> {
     vec![geometry.body(), neck, geometry.arm().into_iter().map(swung).collect()]
 }
 
-/// Draws approach, contact, arms pushed outward and the latched pair, one layer of each.
+/// Draws approach, contact, arms pushed outward and the latched pair, a layer of each.
 pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>) {
     const GAP: f64 = 18.0;
     /// Above the first contact when halves approach, in mm.

@@ -23,14 +23,15 @@ use glam::DVec2;
 
 /// Steps of the profile.
 const STEPS: usize = 256;
-/// What a chord may be off from the curve, in mm: a fiftieth of a usual kerf. A test holds it at the defaults.
+/// Largest distance of a chord from the curve, in mm: a fiftieth of a usual kerf. A test checks it at the
+/// defaults.
 pub const CHORD: f64 = 0.004;
 /// Halvings of the search for the end angle: down to the last bit.
 const HALVINGS: usize = 200;
 /// The steepest end angle that is tried, in rad: beyond it the profile is a wall.
 const STEEPEST: f64 = 89.9 * std::f64::consts::PI / 180.0;
 
-/// Knots nearer than this are one, in mm.
+/// Knots closer than this are equal, in mm.
 const SAME: f64 = 1e-9;
 
 /// A closed curve, counter-clockwise, without its first point at the end.
@@ -44,9 +45,9 @@ pub enum GeometryError {
         "the neck must stand right of the hook: its middle is at x = {pivot:.2} mm, the hook ends at {hook:.2} mm"
     )]
     PivotLeft {
-        /// Where the middle of the neck is.
+        /// x of the middle of the neck.
         pivot: f64,
-        /// Where the hook ends.
+        /// x of the end of the hook.
         hook: f64,
     },
     /// The slit leaves the face.
@@ -76,7 +77,7 @@ impl GeometryError {
         }
     }
 
-    /// What helps.
+    /// Advice.
     pub const fn help(&self) -> &'static str {
         match self {
             Self::PivotLeft { .. } => "a larger slit_distance moves it; 15 mm was found to be sufficient",
@@ -162,7 +163,7 @@ impl Geometry {
         DVec2::new(self.pivot.x - self.profile.x_end, self.profile.hook - self.pivot.y)
     }
 
-    /// How far the tangent at the hook passes from P.
+    /// Distance at which the tangent at the hook passes P.
     pub fn tangent_miss(&self) -> f64 {
         let lever = self.lever();
         let (sin, cos) = self.profile.end.sin_cos();
@@ -239,7 +240,7 @@ impl Geometry {
         around
     }
 
-    /// The part of a layer that turns as one: above the cut-out, left of the slit.
+    /// The part of a layer that rotates as a rigid body: above the cut-out, left of the slit.
     pub fn arm(&self) -> Polygon {
         let near = self.slit[0];
         let mut around: Vec<DVec2> =
@@ -250,7 +251,7 @@ impl Geometry {
         around
     }
 
-    /// The rest of it, without the neck: what is fixed to the module.
+    /// The rest of it, without the neck: the part that is fixed to the module.
     pub fn body(&self) -> Polygon {
         let far = self.slit[1];
         let mut around: Vec<DVec2> =
@@ -263,9 +264,10 @@ impl Geometry {
         around
     }
 
-    /// The sheet between the layers: what both have in common, without hooks.
+    /// The sheet between the layers: the common part of both, without hooks.
     ///
-    /// Only there does it leave the partner's separator free; the union of both layers would stand 2·f high in its way.
+    /// Only this shape leaves the partner's separator free; the union of both layers would protrude 2·f into
+    /// it.
     pub fn separator(&self) -> Polygon {
         let middle = 0.5 * self.width;
         let left: Vec<DVec2> = self.arm_profile().into_iter().filter(|p| p.x < middle).collect();

@@ -93,7 +93,7 @@ fn outlines_are_closed_simple_and_made_of_their_parts() {
     assert!(!is_simple(&crossed));
 }
 
-/// What both layers have in common leaves the partner's separator free; the union of both would not.
+/// The common part of both layers leaves the partner's separator free; the union of both would not.
 #[test]
 fn separators_do_not_meet() {
     let geometry = Geometry::of(&LatchDesign::default()).unwrap();
@@ -132,7 +132,7 @@ fn what_has_no_outline_is_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Whatever the lengths, the profile falls, bends one way and ends towards P, and halves fill their box.
+    /// For any lengths, the profile falls, bends one way and ends towards P, and halves fill their box.
     #[test]
     fn every_outline_meets_its_definition(
         o in 1.0f64..8.0, t in 2.0f64..5.0, hook in 1.0f64..6.0, bend in 3.0f64..12.0, start in 20f64..45.0,
