@@ -106,7 +106,8 @@ pub fn convex_hull(points: &[DVec3]) -> Result<Surface, HullError> {
     if !spatial {
         return Err(HullError::Flat);
     }
-    // Several triples find the same facet; rounding may cost one of them a point, so the largest set wins.
+    // Several triples find the same facet. Rounding may drop a point from some of them, so the largest set
+    // wins.
     planes.sort_by_key(|(_, on)| (std::cmp::Reverse(on.count_ones()), *on));
     let mut facets: Vec<(DVec3, u64)> = Vec::new();
     for (normal, on) in planes {
@@ -149,7 +150,7 @@ fn corners(points: &[DVec3], normal: DVec3, on: u64, tolerance: f64) -> Vec<u32>
             let better = next.is_none_or(|best| {
                 let along = flat(best) - here;
                 let turn = along.perp_dot(to);
-                // On one line the farther point is the corner.
+                // If the candidates are collinear, the farther point is the corner.
                 if turn.abs() <= tolerance * along.length().max(to.length()) {
                     to.length_squared() > along.length_squared()
                 } else {

@@ -134,10 +134,10 @@ mod tests {
         // Corners counted from the end are others now.
         let text = CUBE.replace("f 5//1 6//1 7//1 8//1\n", top).replace("-8 -4 -1 -5", "1 5 8 4");
         let cube = read(&text).unwrap();
-        // And are one facet and one edge again.
+        // The divided facets and edges are merged again.
         assert_eq!((cube.vertices.len(), cube.facets.len(), cube.edges.len()), (8, 6, 12));
         assert!((cube.volume() - 0.125).abs() < 1e-15, "{}", cube.volume());
-        // A hole stays one, also beside a divided edge.
+        // A hole remains a hole, also beside a divided edge.
         let problems = read(&text.replace("f 2 3 7 6\n", "")).unwrap_err();
         assert!(problems.iter().all(|p| matches!(p, MeshProblem::Open { .. })), "{problems:?}");
         assert_eq!(problems.len(), 5);

@@ -51,7 +51,7 @@ impl Half {
 /// Whether a facet may belong to a body of revolution.
 fn faces_along_the_radius<I: Iterator<Item = DVec3>>(normal: DVec3, corners: impl Fn() -> I) -> bool {
     if normal.truncate().length() <= NEAR {
-        // Level: round if its outline is, which its neighbours tell.
+        // A level facet is round if its outline is; the neighbouring facets test the outline.
         return true;
     }
     let outer = || corners().map(DVec3::truncate).filter(|p| p.length() > NEAR);

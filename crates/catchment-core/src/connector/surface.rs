@@ -112,7 +112,8 @@ impl Surface {
             if a > b {
                 continue;
             }
-            // Convex where the two normals spread apart: their cross product runs along the edge of the left facet.
+            // Convex if the two normals spread apart: their cross product runs along the edge of the left
+            // facet.
             let (nl, nr) = (facets[left as usize].normal, facets[right as usize].normal);
             let along = (at(b) - at(a)).normalize_or_zero();
             let sine = nl.cross(nr).dot(along);
@@ -178,7 +179,7 @@ impl Surface {
                 };
                 let ear = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
                 let whole = area(&rest);
-                // Neither the ear nor what it leaves may be flat.
+                // Neither the ear nor the remainder may be flat.
                 let worth = |k: usize| {
                     let cut = area(&ear(k));
                     cut.min(whole - cut)

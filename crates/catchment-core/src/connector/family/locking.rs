@@ -94,7 +94,8 @@ fn stepped(spec: &XFace3dLocking) -> Result<Surface, SurfaceError> {
     let (foot, top) = (mid - lip / 2.0, mid + lip / 2.0 + h * back);
     let mut vertices = vec![DVec3::new(0.0, 0.0, foot)];
     let mut polygons: Vec<Vec<u32>> = Vec::new();
-    // Two opposite turns of the same: a raised quadrant and the lowered one after it.
+    // Each turn adds a raised quadrant and the lowered quadrant after it; the second turn is the opposite
+    // copy.
     for turn in 0..2u32 {
         let k = 4 * turn as usize;
         let (along, across, corner) = (border(k), border(k + 2), border(k + 1));

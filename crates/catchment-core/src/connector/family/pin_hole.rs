@@ -258,7 +258,8 @@ impl Mesh {
                 let (a, b) = (inner_at(taken), inner_at(taken + 1));
                 let (pa, pb) = (at(self, a), at(self, b));
                 let visible = (pb - pa).perp_dot(at(self, corner) - pa) < 0.0;
-                // The first corner comes round again for the edges before its nearest one.
+                // `taken` wraps past the first inner corner for the edges that precede the nearest inner
+                // corner.
                 if !visible {
                     break;
                 }

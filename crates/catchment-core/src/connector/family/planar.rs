@@ -15,7 +15,8 @@ impl Draw for VFace {
     /// Notch z = H·2|x| and tip z = H·(1 − 2|x|).
     fn halves(&self) -> Halves {
         let (h, b) = (self.aspect_ratio, self.base_thickness.unwrap_or(0.0));
-        // With b = 0 the two sides of the notch touch along a line only: two solids. Otherwise they are one.
+        // With b = 0 the two sides of the notch touch along a line only, so they are two solids. With b > 0
+        // they form a single solid.
         let left = cell(&[(-0.5, -b), (0.0, -b), (0.0, 0.0), (-0.5, h)]);
         let right = cell(&[(0.0, -b), (0.5, -b), (0.5, h), (0.0, 0.0)]);
         let notch = if b > 0.0 { vec![vec![left, right]] } else { vec![vec![left], vec![right]] };

@@ -38,7 +38,7 @@ pub(super) fn problems(mesh: &Indexed, sides: &Sides) -> Vec<MeshProblem> {
 /// The surface of a mesh with which nothing is wrong, in D.
 pub(super) fn surface(mesh: &Indexed, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
     let (vertices, polygons) = polygons::of(mesh, polygons::FLAT * mesh.tolerance);
-    // Everything that the surface refuses has been looked for before; what is left can only be rounding.
+    // The checks above cover every defect that `Surface` rejects; a remaining error can only be rounding.
     Surface::from_polygons(vertices.into_iter().map(|v| v * scale).collect(), &polygons)
         .map_err(|_| vec![MeshProblem::InsideOut { at: mesh.at(0).into() }])
 }

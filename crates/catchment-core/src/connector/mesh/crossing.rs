@@ -129,7 +129,7 @@ fn common(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
     let plane = |[p, q, r]: [DVec3; 3]| ((q - p).cross(r - p).normalize_or_zero(), p);
     let (of_a, of_b) = (plane(a), plane(b));
     let Some(along) = of_a.0.cross(of_b.0).try_normalize() else { return f64::INFINITY };
-    // What part of the common line of both planes lies in a triangle.
+    // The interval of the common line of both planes that lies in a triangle.
     let part = |t: [DVec3; 3], (normal, origin): (DVec3, DVec3)| {
         let height = t.map(|p| normal.dot(p - origin));
         let mut part = (f64::INFINITY, f64::NEG_INFINITY);

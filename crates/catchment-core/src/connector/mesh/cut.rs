@@ -121,7 +121,7 @@ impl Border {
         self.versions[corner] += 1;
         self.look(before);
         self.look(after);
-        // What it lay in may be free now.
+        // Ears that this corner blocked may be free now.
         let waiting = std::mem::take(&mut self.blocked[corner]);
         self.ears.extend(waiting);
     }

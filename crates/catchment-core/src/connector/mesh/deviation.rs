@@ -24,7 +24,7 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
     let mut seen = vec![false; from.vertices.len()];
     let mut largest: f64 = 0.0;
     let mut last = 0;
-    // What is far off is mostly so in many places: some are looked at first.
+    // A large deviation usually shows at many triangles, so a sparse sample is tested first.
     for k in (0..from.triangles.len()).step_by(SPARSE) {
         let [a, b, c] = from.corners(k);
         let distance;
@@ -37,7 +37,7 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
         let corners = from.corners(k);
         let [a, b, c] = corners;
         let middle = (a + b + c) / 3.0;
-        // Each edge is shared: the one that runs up is looked at.
+        // Two triangles share each edge; the test takes the copy with ascending corner numbers.
         let edges =
             (0..3).filter(|i| t[*i] < t[(i + 1) % 3]).map(|i| corners[i].midpoint(corners[(i + 1) % 3]));
         let new = t.iter().filter(|v| !std::mem::replace(&mut seen[**v as usize], true)).map(|v| from.at(*v));
@@ -50,7 +50,7 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
             }
         }
     }
-    // What measuring itself rounds, relative to what welding joins: 1e-12 of the size.
+    // Rounding of the measurement itself, relative to the welding tolerance: 1e-12 of the size.
     if largest < ROUNDING * to.tolerance { 0.0 } else { largest }
 }
 

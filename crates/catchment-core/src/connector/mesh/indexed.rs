@@ -44,7 +44,7 @@ impl Indexed {
         let width = found.num_prop as usize;
         let vertices: Vec<DVec3> =
             found.vert_properties.chunks_exact(width).map(|v| DVec3::new(v[0], v[1], v[2])).collect();
-        // Corners that are given twice, as where properties part.
+        // The library repeats corners, for example where vertex properties differ.
         let mut same: Vec<u32> = (0..vertices.len() as u32).collect();
         for (from, to) in found.merge_from_vert.iter().zip(&found.merge_to_vert) {
             same[*from as usize] = *to as u32;

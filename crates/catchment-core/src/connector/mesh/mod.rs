@@ -123,7 +123,8 @@ impl Triangles {
         corners: &[DVec3],
         place: impl Fn() -> String,
     ) -> Result<(), Vec<MeshProblem>> {
-        // A triangle is what it is; whether it has an area, and whether all are numbers, is asked of all of them together.
+        // A triangle needs no cutting. Zero areas and non-finite numbers are checked later, for all triangles
+        // together.
         let cut = if corners.len() == 3 || !corners.iter().all(|corner| corner.is_finite()) {
             Some(vec![[0, 1, 2]])
         } else {
@@ -252,7 +253,7 @@ fn solid(
     if let Some(most) = treatment.simplify {
         let simplified = simplify::simplified(&mesh, most / scale, scale)?;
         repairs.simplified = Some([mesh.triangles.len(), simplified.mesh.triangles.len()]);
-        // Both moved it, one after the other.
+        // Repair and simplification moved the mesh one after the other, so the bounds add.
         repairs.deviation += simplified.deviation;
         mesh = simplified.mesh;
     }

@@ -39,7 +39,7 @@ const SAME_WAY: f64 = 0.5;
 /// in the coordinates of the mesh.
 pub(super) fn of(mesh: &Indexed, flat: f64) -> (Vec<DVec3>, Vec<Vec<u32>>) {
     let mut rings = Rings::of(mesh, flat);
-    // What is not convex yet may become so beside what is joined later.
+    // A join that is not convex yet may become convex after a neighbouring join.
     let mut edges = rings.inner_edges();
     let mut before = usize::MAX;
     while edges.len() < before {
@@ -156,7 +156,7 @@ impl<'a> Rings<'a> {
         if own == other {
             return true;
         }
-        // All that they share in one run.
+        // The whole run of edges that the two polygons share.
         let (mut first, mut last) = (edge, edge);
         while self.twin(self.before(first)) == self.next(self.twin(first)) && self.before(first) != last {
             first = self.before(first);

@@ -94,7 +94,7 @@ pub(super) fn solid_angle(corners: [DVec3; 3], point: DVec3) -> f64 {
 }
 
 fn volume(mesh: &Indexed, triangles: &[u32]) -> f64 {
-    // Seen from one of its own corners: far from the origin the sum would lose its digits.
+    // Relative to a corner of the shell: far from the origin the sum would lose its digits.
     let origin = mesh.corners(triangles[0] as usize)[0];
     triangles
         .iter()

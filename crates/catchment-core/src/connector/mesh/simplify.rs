@@ -42,7 +42,7 @@ pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simpli
     let (low, high) = mesh.bounds();
     let size = (high - low).max_element();
     let power = |length: f64| length.log2().floor() as i32;
-    // Nothing is left of what may move by its own size.
+    // A part that may move by its own size would vanish, so the size limits the tolerance.
     let last = power(most.min(size));
     let first = power(FIRST * size).min(last + 1 - LEAST);
     let mut chain = Vec::new();

@@ -50,7 +50,7 @@ fn what_is_sound_stays_as_it_is() {
 #[test]
 fn a_triangle_without_area_goes_and_its_neighbour_is_divided() {
     let mut cube = block([0.0; 3], [1.0; 3]);
-    // The top's first triangle is cut short of its edge, and what is missing is a triangle on a line.
+    // The first triangle of the top ends at the midpoint of its edge; a triangle without area fills the gap.
     let [a, b, c] = cube[2];
     let middle = a.midpoint(b);
     cube[2] = [a, middle, c];
@@ -126,14 +126,14 @@ fn windings_are_made_one() {
     }
     let ready = repaired(&cube);
     assert!(ready.repairs.turned == 3 && (ready.surface.volume() - 1.0).abs() < 1e-15);
-    // Inside out as a whole, and a cavity that stays one.
+    // A cube that is inside out as a whole, and a cavity that stays a cavity.
     let hollow =
         [block([0.0; 3], [1.0; 3]), block([0.2; 3], [0.6; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect()];
     let sound = repaired(&hollow.concat());
     assert!(sound.repairs.is_none() && (sound.surface.volume() - 0.936).abs() < 1e-15);
     let turned: Soup = block([0.0; 3], [1.0; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect();
     assert_eq!(repaired(&turned).repairs.turned, 12);
-    // Beside a sound one, a solid that is inside out takes volume away; it is told apart from a cavity.
+    // Beside a sound solid, an inside-out solid subtracts volume; the check distinguishes it from a cavity.
     let beside: Soup = block([1.5, 0.0, 0.0], [2.0, 0.5, 0.5]).iter().map(|t| [t[0], t[2], t[1]]).collect();
     let both = [block([0.0; 3], [1.0; 3]), beside].concat();
     let problems = treated(&both, MeshPreparation::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
@@ -156,7 +156,7 @@ fn a_hole_is_not_closed() {
     let mut cube = block([0.0; 3], [1.0; 3]);
     cube.pop();
     assert!(refused(&cube).iter().all(|p| matches!(p, MeshProblem::Open { .. })));
-    // Neither is what crosses itself and has a hole.
+    // Nor is a mesh repaired that has a hole and crosses itself.
     let cross = [cube, block([0.3, 0.4, 0.5], [1.3, 1.4, 1.5])].concat();
     assert!(matches!(refused(&cross)[0], MeshProblem::Open { .. }));
 }
@@ -232,7 +232,7 @@ proptest! {
         let mut spoilt = soup(&hull);
         let Ok(sound) = treated(&spoilt, MeshPreparation::AS_IT_IS) else { return Ok(()) };
         for (k, side, part) in flat {
-            // A side is divided for one neighbour, and a triangle on a line fills the gap.
+            // Divide a side for one neighbour only, and fill the gap with a triangle without area.
             let count = spoilt.len();
             let [a, b, c] = [0, 1, 2].map(|i| spoilt[k % count][(side + i) % 3]);
             let on = a.lerp(b, part);
@@ -244,7 +244,8 @@ proptest! {
             let count = spoilt.len();
             spoilt[k % count].swap(0, 2);
         }
-        // Of the same winding: two of opposite ones are a sheet without thickness, which goes.
+        // Copies of the same winding: two of opposite winding form a sheet without thickness, which the
+        // repair removes.
         let count = spoilt.len();
         for k in doubled {
             spoilt.push(spoilt[k % count]);
@@ -253,7 +254,7 @@ proptest! {
             Ok(ready) => ready,
             Err(problems) => return Err(TestCaseError::fail(format!("{problems:?}"))),
         };
-        // Points on an edge are rounded to it, and what is left of a triangle on a line has slender neighbours.
+        // Points on an edge are rounded, and the remainder of a triangle without area has slender neighbours.
         prop_assert!((ready.surface.volume() - sound.surface.volume()).abs() < 1e-12);
         prop_assert!(ready.repairs.deviation < 1e-9, "{}", ready.repairs.deviation);
         for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE, DVec3::new(1.0, -2.0, 0.5)] {
@@ -328,7 +329,7 @@ fn counts(surface: &Surface) -> [usize; 3] {
 
 #[test]
 fn faces_are_polygons_again_however_they_were_cut() {
-    // One edge of a cube is divided, and its top a fan from there.
+    // A cube with one divided edge; its top is a fan from the dividing point.
     let mut cube = block([0.0; 3], [1.0; 3]);
     cube.retain(|t| !t.iter().all(|p| p.z == 1.0));
     let ring =

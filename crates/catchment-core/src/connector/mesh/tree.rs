@@ -113,7 +113,7 @@ impl Tree {
                 continue;
             }
             let mut pair = [k + 1, node.link as usize].map(|k| (away(point, self.nodes[k].bounds), k));
-            // The nearer one is looked at first: it is pushed last.
+            // The search visits the nearer child first, so it is pushed last.
             if pair[0].0 < pair[1].0 {
                 pair.swap(0, 1);
             }

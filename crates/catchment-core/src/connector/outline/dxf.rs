@@ -161,7 +161,7 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
         let read = Entity::of(&own)?;
         let is_hidden = read.is_hidden || layers.contains(&read.layer.to_uppercase());
         let done = match name {
-            // Whether it is drawn, the head of a polyline says.
+            // The head of a polyline decides whether it is drawn.
             "POLYLINE" => {
                 polyline = Some(Entity { is_hidden, ..read });
                 None

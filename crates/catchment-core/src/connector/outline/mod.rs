@@ -230,7 +230,7 @@ fn distinct(mut ring: Vec<DVec2>, near: f64) -> Vec<DVec2> {
 
 /// Signed area of a loop.
 fn area(ring: &[DVec2]) -> f64 {
-    // Seen from one of its corners: far from the origin the sum would lose its digits.
+    // Relative to a corner: far from the origin the sum would lose its digits.
     ring.windows(2).map(|w| (w[0] - ring[0]).perp_dot(w[1] - ring[0])).sum::<f64>() / 2.0
 }
 

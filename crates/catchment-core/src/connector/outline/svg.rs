@@ -112,7 +112,7 @@ fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Unsupp
         }
     };
     let or_zero = |name: &str| number(name).map(Option::unwrap_or_default);
-    // What a length is stretched by at most.
+    // Upper bound of the stretch of a length under the transform.
     let [a, b, c, d, ..] = frame.as_coeffs();
     let stretch = (a * a + b * b + c * c + d * d).sqrt().max(f64::MIN_POSITIVE);
     let tolerance = within.chord_error * OF_ARCS / stretch;
@@ -305,11 +305,11 @@ fn flattened(path: &BezPath, within: Within, line: usize) -> Result<Vec<Stroke>,
             PathEl::ClosePath => {
                 let first = corners.first().copied();
                 ended(&mut corners, true)?;
-                // What follows begins where this one began.
+                // The next subpath starts at the start of this subpath.
                 corners.extend(first);
             }
             _ => {
-                // One curve at a time, so that no more is held than is refused.
+                // Flatten curve by curve, so that memory stays within the limit on corners.
                 let chords = within.chord_error * (1.0 - OF_ARCS);
                 kurbo::flatten([PathEl::MoveTo(at), *element], chords, |chord| {
                     if let PathEl::LineTo(p) = chord

@@ -157,7 +157,7 @@ fn what_is_hidden_is_no_solid() {
         let text = svg("xmlns:i='i'", &post);
         assert_eq!(areas("a.svg", &text), [96.0], "{post}");
     }
-    // What overrules it, is seen.
+    // A shape that overrides the hiding is seen.
     for post in [
         format!("<g visibility='hidden'>{}</g>", rect("visibility='visible'")),
         format!("<style>.a {{ display: none }}</style>{}", rect("class='a' style='display:inline'")),
@@ -223,7 +223,7 @@ fn what_changes_a_picture_and_is_not_read_is_refused_with_its_line() {
         assert!(found.contains(what), "{post}: {found}");
         assert!(found.starts_with("line 3: "), "{post}: {found}");
     }
-    // What draws nothing needs no reader.
+    // Elements that draw nothing may use any feature.
     let fine = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:svg='http://www.w3.org/2000/svg'>                <svg:g clip-path='none'><svg:rect width='9' height='9'/></svg:g><linearGradient/><title>a</title></svg>";
     assert_eq!(areas("a.svg", fine), [81.0]);
 }
@@ -288,7 +288,7 @@ fn entities_that_are_not_shown_are_no_solid() {
     }
     for hidden in ["8\nOFF\n", "8\nFrozen\n", "60\n1\n", "67\n1\n"] {
         assert_eq!(of(&polyline(1.0, hidden)), [84.0], "{hidden:?}");
-        // What is not read need not be, where it is hidden.
+        // A hidden entity may be of a kind that the reader does not support.
         assert_eq!(of(&format!("0\nINSERT\n{hidden}2\nblock\n")), [84.0], "{hidden:?}");
         let old = format!(
             "0\nPOLYLINE\n{hidden}70\n1\n0\nVERTEX\n10\n0\n20\n0\n0\nVERTEX\n10\n1\n20\n1\n0\nSEQEND\n"

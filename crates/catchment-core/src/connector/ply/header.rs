@@ -78,7 +78,7 @@ impl Element {
     fn least_bytes(&self, dialect: Dialect) -> u64 {
         let of = |own: &Property| own.count.unwrap_or(own.kind).bytes() as u64;
         match dialect {
-            // A character and what parts it from the next.
+            // Each value needs at least one character and a separator.
             Dialect::Text => 2 * self.properties.len() as u64 - 1,
             _ => self.properties.iter().map(of).sum(),
         }
@@ -171,7 +171,8 @@ impl Header {
                     crate::design::shortened(name)
                 ));
             }
-            // A header that announces more than there is is not believed. The last line of a text needs no end.
+            // A header that announces more elements than the file has bytes for is wrong. The last line of a
+            // text needs no line end.
             let least = u128::from(*count) * u128::from(element.least_bytes(dialect));
             if least > (bytes.len() - at) as u128 + 1 {
                 return Err(format!(

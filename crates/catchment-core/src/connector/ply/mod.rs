@@ -117,7 +117,7 @@ fn read_faces(
             if property == list {
                 is_over = faces.corners.len() >= most;
                 if !is_over {
-                    // A number that is none is no vertex.
+                    // A fraction is not a vertex number.
                     faces.corners.push(if value.fract() == 0.0 { value as i64 } else { -1 });
                 }
             }
@@ -226,7 +226,7 @@ mod tests {
             announced("element face 5\nproperty uchar x\n")
                 .contains("line 3: its faces have no list vertex_indices")
         );
-        // A list that says it is longer than what is left.
+        // A list longer than the rest of the file.
         assert!(announced("element face 1\nproperty list uint uchar vertex_index\n").contains("byte "));
     }
 

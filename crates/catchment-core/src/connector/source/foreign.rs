@@ -84,7 +84,7 @@ mod tests {
         assert!(refused(b"\x89PNG\r\n\x1a\n").contains("picture"));
         let design = "schema = 1\nname = \"a design that someone has called part.stl, as happens to files\"\nwidth = 1.0\n";
         assert!(refused(design.as_bytes()).contains("text, and no STL"));
-        // What may be an STL, and a 3MF where one is read.
+        // Files that may be STL, and a 3MF archive in a place that accepts 3MF.
         let binary = [[b'a'; 80].as_slice(), &12u32.to_le_bytes(), &[0; 600]].concat();
         for fine in [
             binary.as_slice(),

@@ -67,7 +67,7 @@ fn triangles_in_memory_are_complained_about_by_number() {
         triangle.swap(0, 1);
     }
     assert!(matches!(defect(inside_out), MeshProblem::InsideOut { .. }));
-    // Triangles in memory are taken as they are: nothing unites what overlaps.
+    // Triangles in memory are used as they are: overlapping shells are not united.
     let shifted = good.iter().map(|t| t.map(|p| p + DVec3::new(0.3, 0.4, 0.5)));
     let crossing: Vec<_> = good.iter().copied().chain(shifted).collect();
     assert!(matches!(defect(crossing), MeshProblem::SelfIntersection { .. }));

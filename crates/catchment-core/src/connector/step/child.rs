@@ -74,7 +74,7 @@ impl Nowhere {
 
 impl Drop for Nowhere {
     fn drop(&mut self) {
-        // What the child may have left in it is no concern of ours.
+        // A failure to remove files of the child is harmless.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -109,7 +109,7 @@ pub(super) fn run(
     let failed =
         |error: io::Error| StepProblem::NoPython { program: name.clone(), message: error.to_string() };
     let nowhere = Nowhere::make().map_err(failed)?;
-    // A path is relative to the folder of the person, a bare name is looked up.
+    // A path is relative to the current folder; a bare name is looked up in the search path.
     let is_path = Path::new(&program).components().count() > 1;
     let program = if is_path { absolute(&program).map_err(failed)?.into_os_string() } else { program };
     let mut command = Command::new(&program);
@@ -121,12 +121,12 @@ pub(super) fn run(
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Started(command.spawn().map_err(failed)?);
     if let Some(mut stdin) = child.0.stdin.take() {
-        // Who does not read it to its end says why in the answer.
+        // If the child stops reading early, its reply contains the reason.
         thread::Builder::new().spawn(move || drop(stdin.write_all(&input))).map_err(failed)?;
     }
     let answer = listen(child.0.stdout.take(), most_reply).map_err(failed)?;
     let words = listen(child.0.stderr.take(), MOST_WORDS).map_err(failed)?;
-    // Whoever is ended may leave others that hold its pipes: nobody waits for these.
+    // A terminated child may leave processes that hold its pipes open; `wait` does not block on them.
     let wait = |from: &Receiver<Vec<u8>>| loop {
         match from.recv_timeout(LOOK) {
             Ok(bytes) => return Ok(bytes),
@@ -156,11 +156,11 @@ fn listen(from: Option<impl Read + Send + 'static>, most: u64) -> io::Result<Rec
     if let Some(mut from) = from {
         thread::Builder::new().spawn(move || {
             let mut bytes = Vec::new();
-            // What came before an error is what there is.
+            // After a read error, the bytes received so far are used.
             let _ = (&mut from).take(most).read_to_end(&mut bytes);
-            // Nobody may wait any more.
+            // The receiver may have given up already.
             let _ = to.send(bytes);
-            // Who writes more than that is not held up.
+            // Drain further output, so that the child does not block.
             let _ = io::copy(&mut from, &mut io::sink());
         })?;
     }

@@ -192,7 +192,8 @@ fn meshed(
 ) -> Result<FileContent, Vec<MeshProblem>> {
     let most_bytes = exec.memory_budget();
     let arguments = [
-        // Isolated: no variable and no folder at hand says what is imported. The script adds what the person has installed.
+        // Isolated mode: neither environment variables nor the current folder affect imports. The script adds
+        // the packages that the user has installed.
         "-I".to_owned(),
         "-c".to_owned(),
         SCRIPT.to_owned(),

@@ -23,7 +23,7 @@ fn an_answer_is_taken_whole_or_not_at_all() {
     assert_eq!(held.bodies[0][0].corners[2].to_array(), [0.0, 1.0, 0.5]);
     let curves = held.curves.unwrap();
     assert_eq!((curves.deflection, curves.reached, curves.by.as_str()), (0.01, 0.009, "OCP 8"));
-    // Cut off anywhere, with more than it announces, with a corner that is none, or without its numbers it is broken.
+    // Broken replies: truncated at any byte, trailing bytes, a corner index out of range, invalid numbers.
     let broken = |bytes: &[u8]| {
         let problems = read_answer(bytes).unwrap_err();
         assert_eq!(problems[0].to_string(), "`python3` did not mesh it: its answer is broken");

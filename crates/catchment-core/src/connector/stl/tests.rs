@@ -61,10 +61,11 @@ fn families_survive_both_dialects() {
             assert!((text.volume() - volume).abs() < 1e-14);
             // Single precision moves the boundary, of area below 5, by less than 6e-8.
             assert!((binary.volume() - volume).abs() < 3e-7);
-            // Flat edges between triangles are no edges: as many as the family has, or fewer where it divides them.
+            // Edges between coplanar triangles do not count: the file has as many edges as the family, or
+            // fewer if the family divides edges.
             let edges: usize = half.surfaces.iter().map(|s| s.edges.len()).sum();
             assert!(text.edges.len() <= edges && 2 * text.edges.len() > edges, "{name:?}");
-            // Rounding tilts slender triangles: a few flat edges may count, real ones may not get lost.
+            // Rounding tilts slender triangles: a few coplanar edges may count, but no real edge may be lost.
             assert!((text.edges.len()..edges + 10).contains(&binary.edges.len()), "{name:?}");
         }
     }
@@ -216,9 +217,9 @@ fn shells_of_one_file_are_one_surface_and_cavities_go_with_theirs() {
     let through = || post(0.6, 0.8, |z| 3.0 * z - 1.0);
     let cavity = || inward(post(0.1, 0.3, |z| 0.1 + 0.2 * z));
     let apart = || post(2.0, 2.5, |z| z);
-    // What crosses is refused where nothing may be repaired.
+    // Crossing shells are rejected if repair is off.
     assert!(matches!(volumes(&[cube(), through()]).unwrap_err()[0], MeshProblem::SelfIntersection { .. }));
-    // What does not cross is one surface; so is a body inside of another, which changes nothing.
+    // Shells that do not cross form a single surface; a body inside another body changes nothing.
     assert_eq!(volumes(&[cube(), apart(), cavity()]), Ok(vec![1.242]));
     assert_eq!(volumes(&[cube(), inward(cavity())]), Ok(vec![1.008]));
     assert!(matches!(volumes(&[cube(), inward(apart())]).unwrap_err()[..], [MeshProblem::InsideOut { .. }]));

@@ -132,7 +132,7 @@ impl Package<'_> {
         let located = |message: String| refused(format!("{name}: {message}"));
         let left = self.left;
         let part = self.archive.by_index(number).map_err(|error| located(error.to_string()))?;
-        // A byte more, so that what is too long is told from what was cut off.
+        // One byte more than the limit, to distinguish "too long" from "cut off".
         let mut part = part.take(left + 1);
         let model = Model::read(&mut part);
         let Some(left) = part.limit().checked_sub(1) else {
@@ -177,7 +177,7 @@ impl Build<'_> {
             Geometry::Components(components) => {
                 let count = components.len();
                 for k in 0..count {
-                    // One at a time: a copy of all would be held at every depth.
+                    // Clone components singly: a copy of the whole list would be held at every depth.
                     let Some(Geometry::Components(components)) = self.package.models[path].objects.get(&id)
                     else {
                         break;

@@ -51,7 +51,7 @@ fn items_and_components_are_bodies_where_they_are_moved() {
     let items = "<item objectid=\"2\"/><item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/><item objectid=\"3\"/>";
     let found = of_model(&model("unit=\"inch\"", &format!("{one}{two}{support}"), items)).unwrap();
     assert_eq!(found.metres, Some(0.0254));
-    // Moved, stretched, and mirrored: none of them is turned inside out.
+    // Moved, stretched and mirrored bodies; none of them is turned inside out.
     assert_eq!(volumes(&found), [1.0, 2.0, 1.0]);
     assert_eq!(found.bodies[1][1].corners[1], DVec3::new(7.0, 0.0, 0.0));
     assert_eq!(found.bodies[2][0].place.triangle, 8);
@@ -109,7 +109,7 @@ fn what_is_wrong_is_said_with_its_place() {
 #[test]
 fn bombs_do_not_go_off() {
     let refused = |text: &str| of_model(text).err().unwrap();
-    // Each object holds the one before twice.
+    // Each object contains the previous object twice.
     let twice = |k: u32| {
         let inner = format!("<component objectid=\"{k}\"/>").repeat(2);
         format!("<object id=\"{}\"><components>{inner}</components></object>", k + 1)
@@ -162,7 +162,7 @@ fn bodies_that_fall_together_are_one() {
     let items = "<item objectid=\"2\"/>".repeat(20);
     let found = of_model(&model("", &format!("{one}{group}"), &items)).unwrap();
     assert_eq!(volumes(&found), [1.0]);
-    // What is mirrored, or moved, is another.
+    // A mirrored or moved copy counts as another body.
     let moved = "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0.5\"/><item objectid=\"1\"/>";
     assert_eq!(of_model(&model("", &one, moved)).unwrap().bodies.len(), 2);
     let row = |count: usize| -> String {

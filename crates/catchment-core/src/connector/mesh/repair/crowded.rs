@@ -46,7 +46,7 @@ pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
             join(&mut fans, mesh, down, up);
         }
     }
-    // Corners of crowded edges that could not be parted stay one.
+    // Corners of crowded edges that could not be separated stay merged.
     for sides in crowded.iter().filter(|sides| wedges(mesh, sides).is_none()) {
         sides[0].edge.iter().for_each(|end| ends[*end as usize] = false);
     }

@@ -71,7 +71,8 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
             }
             continue;
         }
-        // One half in the place of the neighbour, the other in that of the flat one, with the neighbour's place in the file.
+        // The first half replaces the neighbour, the second half replaces the flat triangle. Both take the
+        // neighbour's place in the file.
         mesh.triangles[other as usize] = [b, m, c];
         mesh.triangles[flat] = [m, a, c];
         mesh.places[flat] = mesh.places[other as usize];

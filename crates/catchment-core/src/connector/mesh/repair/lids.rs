@@ -28,7 +28,8 @@ pub(super) fn drop(mesh: &mut Indexed, sides: &Sides) -> usize {
             patches.join(a.triangle, b.triangle);
         }
     }
-    // Of each patch on a border the patch that it lies on; `None` where there is no such, or more than one.
+    // For each patch on a border, the patch that it lies on; `None` if there is no such patch, or more than
+    // one.
     let mut bodies: BTreeMap<u32, Option<u32>> = BTreeMap::new();
     for sides in sides.edges().filter(|sides| sides.len() != 2) {
         let around: Vec<u32> = sides.iter().map(|side| patches.find(side.triangle)).collect();

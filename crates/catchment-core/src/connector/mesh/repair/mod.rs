@@ -66,17 +66,17 @@ pub(super) fn mended(before: &Indexed) -> Mended {
         let Some(mut united) = unite::united(&mesh) else { break };
         crowded::part(&mut united);
         short::collapse(&mut united);
-        // What tidies up after a union is a part of it.
+        // The clean-up after a union counts as part of the union.
         let left = tidied(&mut united, &mut Repairs::default());
         repairs.united += found.len().max(1);
         (mesh, problems) = (united, left);
     }
     if mesh.triangles.is_empty() {
-        // Nothing was left: what was wrong says more.
+        // Nothing is left, so the defects of the original mesh are more informative.
         problems = check::problems(before, &Sides::of(&before.triangles));
     }
     if problems.is_empty() && !repairs.is_none() {
-        // Walls inside of the solid went: how far they lay from the surface that is left says nothing.
+        // The union removed walls inside the solid; their distance from the remaining surface has no meaning.
         let is_less = repairs.united + repairs.doubled + repairs.lids > 0;
         repairs.deviation = one_sided(&mesh, before, f64::INFINITY);
         if !is_less {

@@ -79,7 +79,7 @@ fn may_go(mesh: &Indexed, around: &[Vec<u32>], stays: u32, goes: u32) -> bool {
         |t| {
             let before = normal(t.map(|corner| mesh.at(corner)));
             let after = normal(t.map(|corner| mesh.at(if corner == goes { stays } else { corner })));
-            // What is thinner than the tolerance has no direction to keep.
+            // A triangle thinner than the tolerance has no normal to preserve.
             let longest = (0..3).map(|k| mesh.at(t[k]).distance(mesh.at(t[(k + 1) % 3]))).fold(0.0, f64::max);
             let sliver = before.length() <= 2.0 * mesh.tolerance * longest;
             sliver || before.dot(after) > 0.0

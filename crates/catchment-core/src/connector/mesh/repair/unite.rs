@@ -39,7 +39,7 @@ pub(super) fn united(mesh: &Indexed) -> Option<Indexed> {
 }
 
 fn solid(mesh: &Indexed) -> Option<Indexed> {
-    // How often a surface winds around a point is a whole number only where it is closed.
+    // The winding number is an integer only for a closed surface.
     if Sides::of(&mesh.triangles)
         .edges()
         .any(|sides| 2 * sides.iter().filter(|s| s.is_up).count() != sides.len())
@@ -86,7 +86,8 @@ fn holds(before: &Indexed, after: &Indexed) -> bool {
         let off = (b - a).cross(c - a).normalize_or_zero() * (OFF * after.tolerance);
         [middle + off, middle - off]
     });
-    // A wall may be thinner than the distance of a point from it: one in twenty may disagree there, none elsewhere.
+    // A wall may be thinner than the distance of a test point from it: one in twenty of these points may
+    // disagree, but no random point.
     let beside: Vec<bool> = beside.map(agree).collect();
     let wrong = beside.iter().filter(|agrees| !**agrees).count();
     20 * wrong <= beside.len() && random.into_iter().all(agree)

@@ -140,7 +140,7 @@ impl Model {
             } else {
                 level.remove(0)
             };
-            // Faces that touch only by this one may be in its plane, too.
+            // Planes that touch only through this face may coincide, too.
             for other in level {
                 self.merge(other, plane);
             }

@@ -34,7 +34,7 @@ impl Cutter {
     /// Creates the points at which edges pass.
     pub(super) fn filled(&mut self, model: &mut Model, solid: u32, is_above: bool) -> Vec<Vec<u32>> {
         let heights = Heights::of(model, self.plane, solid, is_above);
-        // From the edge on which a facet goes down through the plane to the one on which it came up.
+        // Maps the edge at which a facet descends through the plane to the edge at which it rose.
         let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
         for k in model.of_solid[solid as usize].clone() {
             let corners = &model.facets[k as usize].corners;

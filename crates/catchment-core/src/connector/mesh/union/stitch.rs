@@ -145,7 +145,7 @@ fn straighten(faces: &mut BTreeMap<Key, Net>, points: &[DVec3], tolerance: f64) 
         replaced.insert((cluster, at), [a, b]);
     }
     for ((cluster, ..), net) in faces.iter_mut() {
-        // In the order in which they went, so that the neighbours of one may go after it.
+        // In order of removal: a removed point may be replaced by points that were removed later.
         let gone: Vec<(u32, [u32; 2])> = net
             .keys()
             .flatten()

@@ -39,7 +39,7 @@ pub(super) fn holds(mesh: &Indexed, solids: &[&Surface], w: f64) -> Result<(), U
         let normal = (b - a).cross(c - a).normalize_or_zero() * (off * w);
         [place - normal, place + normal]
     };
-    // Facets of the union have the solids on one side, and nothing on the other.
+    // A facet of the union has solid on one side and empty space on the other.
     let borders = |corners: [DVec3; 3]| {
         PLACES.iter().any(|place| sides(corners, *place).map(|p| solids.have(p)) == [true, false])
     };
@@ -49,7 +49,7 @@ pub(super) fn holds(mesh: &Indexed, solids: &[&Surface], w: f64) -> Result<(), U
     if let Some([a, b, c]) = wrong {
         return Err(UnionProblem::Differs { at: ((a + b + c) / 3.0).into() });
     }
-    // Given facets have on both sides what the union has there.
+    // On both sides of a given facet, the solids and the union must agree.
     let agrees = |corners: [DVec3; 3]| {
         PLACES.iter().any(|place| sides(corners, *place).iter().all(|p| solids.have(*p) == is_in_union(*p)))
     };
