@@ -181,7 +181,8 @@ impl Four {
         let (mid_x, mid_y) = ((low_x + high_x) * half, (low_y + high_y) * half);
         let (wide_x, wide_y) = ((high_x - low_x) * half, (high_y - low_y) * half);
         let (top, bottom) = (self.center[2] + self.half[2], moving.center[2] - moving.half[2]);
-        // Highest over what both boxes have in common: at its middle, and by how much it rises from there.
+        // Highest value of a part over the common rectangle of both boxes: its value at the middle plus its
+        // rise from there.
         let over = |part: &Self| {
             part.over + part.slope[0] * (mid_x - part.center[0]) + part.slope[1] * (mid_y - part.center[1])
         };
@@ -300,7 +301,8 @@ impl Placed {
         let center = turned(&self.rotation, &own.center);
         let placed = Four {
             center: [0, 1, 2].map(|k| center[k] + self.position[k]),
-            // Of a turned box no more than of the ball around what it holds.
+            // The enlarged half extents of a turned box do not exceed the radius of the ball around its
+            // content.
             half: turned(&self.grows, &own.half).map(|half| half.fast_min(own.radius)),
             normal: turned(&self.rotation, &own.normal),
             ..*own

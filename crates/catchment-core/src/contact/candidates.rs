@@ -335,8 +335,8 @@ impl EdgesAt<'_> {
         if !(up || down) {
             return None;
         }
-        // How far the worse of the facets is from supporting, in either sense: of edges that are nearly parallel both may do within
-        // the slack, and the better one counts.
+        // By how much the worse of the two facets fails to support the contact, for one sense of the normal.
+        // Two nearly parallel edges may pass in both senses within the slack; the better sense counts.
         let lacks = |sign: f64| {
             let below = (sign * below[0]).max(sign * below[1]);
             below.max(-sign * above[0]).max(-sign * above[1])

@@ -130,7 +130,8 @@ mod tests {
                 let axis = shape.normals_of(corner).iter().sum::<DVec3>().normalize_or_zero();
                 let most = of_corner(axis, &shape, corner, slack);
                 for (k, push) in pushes.iter().enumerate() {
-                    // About its facets, where the border of what it supports is, and anywhere.
+                    // Test directions near the facet normals, which bound the supported set, and anywhere
+                    // else.
                     let normals = shape.normals_of(corner);
                     let about = normals[k % normals.len()] * [0.0, 1.0, 3.0, 10.0][k % 4];
                     let normal = (about + DVec3::from_array(*push)).normalize_or_zero();

@@ -74,7 +74,7 @@ fn of_surface(surface: &Surface, number: usize, first: u32, creases: &mut Vec<Cr
             from.entry(*end).or_default().push(k);
         }
     }
-    // The stretch that goes on straight from the end of another one.
+    // The segment that continues a segment in a straight line beyond its end.
     let goes_on = |k: usize, end: u32| -> Option<usize> {
         let [i, j] = <[usize; 2]>::try_from(&from.get(&end)?[..]).ok()?;
         let other = if i == k { j } else { i };

@@ -42,7 +42,7 @@ pub fn found(connector: Connector, own: &OwnSpec) -> Connector {
     if !own.is_face_unknown() {
         return connector;
     }
-    // The height without any error does not depend on the alignment problem.
+    // The mated height does not depend on the alignment problem.
     let pair = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X));
     let lift = pair.mated_height();
     if !lift.is_finite() {

@@ -186,7 +186,7 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
         if deeper < DEEPER * cell as f32 || climb < CLIMBS || worst < -0.1 * MOST_RISE {
             return None;
         }
-        // Of what is left out, where the halves as they are come nearest.
+        // Among the cells that `without_narrow` lowered: the cell at which the original halves are closest.
         let narrow = |[i, j]: [i32; 2]| {
             let at = [i + moved[0], j + moved[1]];
             let (a, b) = (top.at(at), bottom.at([i, j]));

@@ -270,7 +270,7 @@ pub fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
         problems.push(MatedProblem::Gap { gap: -above });
     }
     problems.extend(deepest(pair, height, DofSet::ALL, &exec.part([0.0, DEEPEST], STAGE)));
-    // What a seat leaves free shows only where there is one.
+    // The play of the seat is only defined if there is a seat.
     if problems.is_empty() {
         if let Some(half) = round_half(pair) {
             problems.push(MatedProblem::Round { half });

@@ -61,7 +61,7 @@ type Corner = [i64; 3];
 /// The half as its sorted creases: equal for equal solids, whatever they were written as.
 fn creases(half: &[Crease], place: impl Fn(DVec3) -> DVec3) -> Vec<[Corner; 2]> {
     let corner = |p: DVec3| -> Corner {
-        // `as` saturates: what lies further than 10⁹ D away differs anyway.
+        // `as` saturates: points farther than 10⁹ D away differ anyway.
         place(p).to_array().map(|v| (v / GRAIN).round() as i64)
     };
     let ends = |crease: &Crease| {

@@ -131,7 +131,7 @@ fn reach(nearby: &mut Nearby, level: f64, way: &[f64; 5], farthest: f64) -> f64 
     let (mut held, mut look) = (0.0, FIRST);
     while held < farthest {
         if !is_level(look) {
-            // Between the last that was level and this one.
+            // Bisect between the last level offset and this offset.
             while look - held > FOUND {
                 let middle = 0.5 * (held + look);
                 if is_level(middle) { held = middle } else { look = middle }

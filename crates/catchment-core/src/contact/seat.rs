@@ -156,7 +156,7 @@ impl<'a> Seat<'a> {
 
     /// Whether the seat holds from a mated pose on by this yaw alone.
     fn spins(&mut self, mated: &PoseError, off: &PoseError) -> bool {
-        // Poses equivalent to the mated one are as the design says, not as its solids are.
+        // The design states the equivalent mated poses; the solids need not have this symmetry.
         if mated.yaw != 0.0 {
             return self.is_level(&[*mated, PoseError { yaw: mated.yaw + off.yaw, ..*mated }]);
         }
@@ -168,7 +168,7 @@ impl<'a> Seat<'a> {
             step * (1..=most).take_while(holds).count() as f64
         };
         let [minus, plus] = pair.spins(|| [reaches(-1.0), reaches(1.0)]);
-        // As along any path, not looked at in its end.
+        // As along any path, the end itself is not tested.
         (-minus - step..=plus + step).contains(&off.yaw)
     }
 
@@ -180,7 +180,7 @@ impl<'a> Seat<'a> {
 
     /// Whether the seat holds all along a path, straight in the pose error from point to point. Its first point is known to be in the seat.
     fn is_level(&mut self, path: &[PoseError]) -> bool {
-        // From its end, where walls are more likely than about the mated pose.
+        // From the end: walls are more likely there than near the mated pose.
         path.windows(2).enumerate().rev().all(|(number, ends)| {
             let (from, to) = (ends[0].to_array(), ends[1].to_array());
             let mut way = [0.0; Dof::ALL.len()];
@@ -190,7 +190,7 @@ impl<'a> Seat<'a> {
             }
             let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
             let looks = (length / PATH_STEP).ceil().clamp(1.0, MOST_LOOKS) as usize;
-            // Nor is its end looked at: a half there touches walls, and rounding may put it on their rim.
+            // The end itself is not tested: there a half touches walls, and rounding may put it on their rim.
             let first = usize::from(number == 0);
             coarse_first(looks).filter(|k| *k >= first).all(|k| {
                 let share = k as f64 / looks as f64;

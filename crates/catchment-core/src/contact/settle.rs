@@ -90,7 +90,8 @@ pub fn settled(connector: Connector, alignment: &Alignment) -> Option<Connector>
     let cor = alignment.center_of_rotation;
     let pose = CorPose::from_error(&error, cor, alignment.free);
     let height = pair.height(&pose)?;
-    // What lies in the world at rest is the moving half from now on; the face centres are together without any error.
+    // The moving half as it lies in the world at rest becomes the new moving half; without pose error the
+    // face centres coincide.
     let from_cor = DAffine3::from_translation(DVec3::new(0.0, 0.0, cor));
     let at_rest = DAffine3 { matrix3: pose.rotation, translation: pose.lateral.extend(height) };
     Some(connector.settled(at_rest * from_cor, error))

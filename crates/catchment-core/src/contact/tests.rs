@@ -104,13 +104,13 @@ proptest! {
         let pose = CorPose { lateral: DVec2::new(x, y), rotation: DMat3::IDENTITY };
         let slow = brute::height(&pair, &pose).unwrap();
         let off = PoseError { x, y, ..PoseError::default() };
-        // As a motion asks, which looks at what a step may turn into.
+        // Features are selected as for a motion step, including those that the step may turn into contact.
         let mut near = pair.nearby(0.04, 0.1);
         near.turn(&pose.rotation, pose.lateral, 0.04, 0.02);
         let met = near.height_below(pose.lateral, f64::INFINITY).0;
         for fast in [pair.height(&pose), pair.about(0.01).height(&off), met] {
             let fast = fast.unwrap();
-            // What is parallel to 1e-6 counts as one plane.
+            // Features that are parallel within 1e-6 count as coplanar.
             prop_assert!((fast - slow).abs() < 1e-6, "{sides} {digits}: {fast} against {slow}");
         }
     }
@@ -178,7 +178,8 @@ proptest! {
             // Edges that cross at less than 1e-3 leave nine digits.
             prop_assert!((again.gap - contact.gap).abs() < 1e-9 && (again.normal - contact.normal).length() < 1e-9);
             prop_assert!((again.point - contact.point).length() < 1e-6, "{again:?} {contact:?}");
-            // What is listed holds: its foot is on both features, and they support it within the slack that was asked for.
+            // Each listed contact is valid: its foot lies on both features, and they support it within the
+            // given slack.
             let hold = pair.hold(&contact, &meeting, &pose.rotation, position);
             prop_assert!(hold.foot > -1e-6 && hold.support > -0.01 - 1e-6, "{hold:?} {contact:?}");
         }

@@ -230,7 +230,7 @@ fn bounds(features: &[Built], shapes: &[Shape]) -> One {
             level = level.max(normal.dot(p));
             radius = radius.max(center.distance(p));
         });
-        // Where a mean is none, this is no number.
+        // Not a number if the mean normal is undefined.
         let off = feature.axis.angle_between(normal);
         angles =
             std::array::from_fn(|k| if off.is_nan() { PI } else { angles[k].max(off + feature.angles[k]) });
@@ -340,7 +340,7 @@ impl Part {
     /// the COR above its current position.
     #[inline]
     pub(super) fn heights(&self, moving: &Self) -> Option<[f64; 2]> {
-        // What both boxes have in common in plan view.
+        // The common rectangle of both boxes in plan view.
         let reach = self.half.truncate() + MARGIN;
         let low = (self.center.truncate() - reach).max(moving.center.truncate() - moving.half.truncate());
         let high = (self.center.truncate() + reach).min(moving.center.truncate() + moving.half.truncate());

@@ -192,7 +192,7 @@ impl<'a> Turned<'a> {
             self.look_near(trees, position, gaps.widened(2.0 * seam));
         }
         let Self { pair, rotation, counts, .. } = &*self;
-        // What was found for a wider slack is asked again.
+        // Elements found for a wider slack are filtered again.
         let near = self.trees.zip(self.near.last()).into_iter().flat_map(|(trees, near)| {
             let is_more = near.counts.slack > counts.slack;
             let does_count =
@@ -225,14 +225,15 @@ impl<'a> Turned<'a> {
             near[k..].rotate_left(1);
             return;
         }
-        // Where halves touch all over, motions end time and again, and to look takes longest there.
+        // Keep the mated pose: if halves are in contact everywhere, many motions end there, and the search
+        // there takes longest.
         let mated = |near: &Near| near.rotation == DMat3::IDENTITY && near.position.truncate() == DVec2::ZERO;
         let mut elements = if near.len() < KEPT {
             Vec::new()
         } else {
             near.remove(near.iter().position(|near| !mated(near)).unwrap_or(0)).elements
         };
-        // What a motion tries is where it may go on.
+        // A pose that a motion tries is often the start of the next step.
         let least = MET + 2.0 * SEAM;
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
         trees.near(pair, (rotation, position), *counts, gaps, touching, &mut elements);

@@ -31,7 +31,8 @@ impl Design {
                 hash.text("family");
                 hash.text(spec.family().name());
                 for (key, value) in spec.parameters() {
-                    // Parameters that came later count where they are written: all digests before them stay.
+                    // Parameters added later enter the digest only if they are set, so that all older digests
+                    // stay valid.
                     if value.is_none() && key.name != keys::BASE_THICKNESS.name {
                         continue;
                     }
@@ -134,7 +135,8 @@ impl Hash {
 
     fn file(&mut self, file: &FileSpec) -> Option<()> {
         let content = file.content.as_ref()?;
-        // What a repair does follows from the bytes; where none was needed the digest is that of the mesh as it is.
+        // The effect of a repair follows from the bytes; without a repair the digest is that of the original
+        // mesh.
         if !content.repairs.is_none() {
             self.text("repaired");
         }
@@ -151,7 +153,7 @@ impl Hash {
             self.text("simplified");
             self.number(tolerance);
         }
-        // A unit that the design states is in the scale; where the file says it, its bytes do.
+        // A unit stated in the design is part of the scale; a unit in the file is part of its bytes.
         self.text(if file.unit == FileUnit::InFile { "mesh in its own unit" } else { "mesh" });
         self.number(file.scale);
         self.text(&content.sha256);
@@ -182,7 +184,7 @@ impl Hash {
             }
             ShapeSpec::Profile { outline: OutlineSpec::File(file), height, chord_error } => {
                 self.text("drawing");
-                // How a drawing is read depends on what it is named after.
+                // The extension of the file name selects the reader of the drawing.
                 self.text(&file.ending());
                 self.numbers(&[*height, *chord_error]);
                 return self.file(file);

@@ -38,7 +38,7 @@ pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
     let before = &text.as_bytes()[..byte.min(text.len())];
     let line_start = before.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
     let line = before.split(|b| *b == b'\n').count();
-    // Characters are counted by their first bytes, so a byte in the middle of one is no trouble.
+    // Count characters by their first bytes, so that a position inside a multi-byte character is valid, too.
     let column = 1 + before[line_start..].iter().filter(|b| **b & 0xC0 != 0x80).count();
     (line, column)
 }

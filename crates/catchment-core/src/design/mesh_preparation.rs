@@ -185,7 +185,7 @@ fn meshing(file: &FileSpec, design: &Design) -> Option<String> {
     let Meshed { deflection, reached, by, .. } = content.meshed.as_deref()?;
     let stated = if file.treatment.deflection.is_some() { "as written" } else { "0.0002 of its size" };
     let count = content.triangles;
-    // The larger one holds, should it not have been kept to.
+    // If the mesher missed the requested deflection, the reached deflection counts.
     let most = deflection.max(*reached);
     let most = match design.unit {
         Some(unit) => format!("{} {}", rounded_up(most * design.width), unit.symbol()),
@@ -206,7 +206,7 @@ fn rounded_up(value: f64) -> f64 {
     let places = DIGITS - 1 - value.log10().floor() as i32;
     let shift = 10f64.powi(places.abs());
     let up = |scaled: f64| (scaled * (1.0 - ROUNDING)).ceil();
-    // A power of ten that is whole keeps the last digit what it is.
+    // Multiply or divide by an integer power of ten, which keeps the last digit exact.
     if places >= 0 { up(value * shift) / shift } else { up(value / shift) * shift }
 }
 

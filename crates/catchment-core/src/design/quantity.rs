@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn lengths_become_d() {
         for (text, d) in [("5 mm", 0.1), ("5mm", 0.1), ("0.5 cm", 0.1), ("2 in", 1.016), ("-0.3", -0.3)] {
-            // One multiplication and one division: a few units in the last place.
+            // A multiplication and a division: a few units in the last place.
             let got = quantity(text).length_d(&MM50).unwrap();
             assert!((got - d).abs() < 4.0 * f64::EPSILON, "{text}: {got}");
         }

@@ -61,7 +61,7 @@ pub(crate) fn read_as(
     let design = walk.design(&Section::root(&document));
     let is_measured = walk.reader.measures_width;
     let mut sources = walk.reader.finish()?;
-    // Whatever is missing was complained about, so this is the one way out without a design.
+    // Every missing key has been reported already, so this is the only exit without a design.
     let Some(design) = design else {
         let defect = DesignDefect::Missing { key: "connector".to_owned(), advice: NO_CONNECTOR };
         return Err(LocatedDefects::new(vec![(defect, 0..0)], 0, text));
@@ -199,7 +199,7 @@ impl<'t> Walk<'t> {
         owner: Owner,
         scale: Option<&LengthScale>,
     ) -> Option<ConnectorSpec> {
-        // Parameters of an unknown family are checked against any one's ranges.
+        // The parameters of an unknown family are checked against the ranges of the pyramid.
         let spec = self.family_spec(section, owner.family().unwrap_or(Family::Pyramid), scale);
         match owner {
             Owner::Family(_) => Some(ConnectorSpec::Family(spec)),
@@ -340,7 +340,7 @@ impl<'t> Walk<'t> {
                 }
             }
             alignment.free = set(&list);
-            // A default gives way to what is written.
+            // A listed error overrides the default.
             for (dof, _) in &list {
                 alignment.dont_care = alignment.dont_care.without(*dof);
             }

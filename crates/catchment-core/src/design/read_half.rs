@@ -149,7 +149,7 @@ impl<'t> Walk<'t> {
             self.reader.report(defect, value.span());
             return None;
         }
-        // Every part is looked at, also behind a wrong one.
+        // Read every part, also after an error, to report all errors.
         let parts: Vec<_> = elements
             .iter()
             .enumerate()
@@ -371,7 +371,7 @@ impl<'t> Walk<'t> {
                     self.reader.report(defect, element.span());
                     return None;
                 }
-                // Every point is looked at, also behind a wrong one.
+                // Read every point, also after an error, to report all errors.
                 let points: Vec<_> = points.iter().map(|point| self.point(&place, point, scale)).collect();
                 points.into_iter().collect::<Option<Vec<_>>>()
             });

@@ -150,7 +150,7 @@ impl<'t> Reader<'t> {
 
     fn value(&mut self, section: &Section<'t>, key: &Key) -> Option<&'t Spanned<DeValue<'t>>> {
         let (name, value) = section.entry(key.name)?;
-        // What follows a key with a syntax error may be an empty span: point at the key then.
+        // After a syntax error the span of the value may be empty; the key's span is used instead.
         let span = if value.span().is_empty() { name.span() } else { value.span() };
         self.sources.insert(section.place(key.name), span);
         Some(value)

@@ -145,7 +145,7 @@ mod tests {
     /// thickness and the limits of [docked], which have no default value.
     #[test]
     fn commented_out_defaults_are_the_defaults() {
-        // These say something by being there.
+        // For these keys, being set has a meaning of its own.
         const OTHERS: [&str; 4] = ["unit", "base_thickness", "layer_thickness", "layer_gap"];
         for family in Family::ALL {
             let text = template(family);

@@ -330,7 +330,7 @@ impl Lookup {
     }
 
     fn name_edges(&mut self, surface: &Surface, number: usize, features: &mut Vec<Feature>) {
-        // Between the same two faces, those that share an end are one.
+        // Edges between the same two faces that share an end are merged.
         let mut between: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         for (k, edge) in surface.edges.iter().enumerate() {
             let mut faces = edge.facets.map(|facet| self.faces[facet as usize]);

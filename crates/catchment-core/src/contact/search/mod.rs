@@ -84,7 +84,7 @@ pub(super) struct Trees {
 impl Trees {
     pub(super) fn over(fixed: &[Shape], moving: &[Shape]) -> Self {
         let vertices = moving.iter().flat_map(|shape| &shape.vertices);
-        // Of a half that is a point at the COR any turn is none.
+        // A half that is a single point at the COR does not change with rotation; the radius stays positive.
         let radius = vertices.map(|v| v.length()).fold(f64::MIN_POSITIVE, f64::max);
         Self { fixed: Tree::over(fixed, true), moving: Tree::over(moving, false), radius }
     }
@@ -195,7 +195,7 @@ impl<'a> Turned<'a> {
         mut look: impl FnMut(&Side<'_>, &Side<'_>, [f32; 2]),
     ) {
         self.divided.set(self.divided.get() + 1);
-        // Apart from each other, so that of what is repeated four times only what is looked at is.
+        // Two separate branches, so that only the node that is read gets repeated four times.
         if Self::divides_fixed(fixed, moving) {
             let node = self.trees.fixed.node(fixed.child);
             let four = &node.parts;
@@ -364,7 +364,7 @@ impl Lowered<'_> {
         }
         let turned = self.turned;
         let rounding = turned.rounding;
-        // Without a ceiling, what is lower than the best so far does not count.
+        // Without a ceiling, parts lower than the best height so far do not count.
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY).max(self.floor);
         let low = if self.asked.ceiling == f64::INFINITY { best as f32 } else { f32::NEG_INFINITY };
         let test = |f: &Four, m: &Four| {

@@ -69,7 +69,7 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     let Some(z) = whole.0 else { return Ok(()) };
     let ceiling = z - below;
     let expected = listed.height_below(pose.lateral, ceiling);
-    // The second time what carried before is tried first.
+    // The second call tries the previous active contacts first.
     prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
     prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
     for level in [z - 1e-3, z, z + 1e-3] {
@@ -81,7 +81,7 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
     let position = pose.lateral.extend(z - below.min(reach));
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
-    // What overlaps alone, and whether anything does.
+    // The overlaps only, and whether there is any overlap.
     let lower = position - DVec3::Z * (0.5 * reach);
     let overlaps = |turned: &mut Turned<'_>| {
         let mut out = Vec::new();
@@ -95,7 +95,7 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
         prop_assert_eq!(pair.overlaps(&pose.rotation, at), by_plan);
     }
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
-    // What was found is asked for again, and less of it.
+    // Elements found for a wider slack are filtered for a smaller slack.
     let fewer = Counts { slack: 0.5 * counts.slack, ..counts };
     let mut listed = both(pair, &pose.rotation, fewer)[0].clone();
     searched.turn_trees(&pose.rotation, pair.trees.as_ref().unwrap(), fewer);
@@ -148,7 +148,7 @@ proptest! {
 #[test]
 fn trees_of_a_funnel_find_what_the_list_holds() {
     let pair = funnel(1000);
-    // Far from the mated pose, near it, and in it, where everything touches.
+    // Far from the mated pose, near it, and at it, with contact everywhere.
     for (size, reach) in [(1.0, 0.02), (0.3, 0.02), (1e-2, 1e-2), (1e-3, 1e-4), (1e-6, 1e-4), (0.0, 1e-5)] {
         for k in 0..6 {
             let a = f64::from(k);
