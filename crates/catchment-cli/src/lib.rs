@@ -20,6 +20,8 @@ mod setting;
 mod signals;
 mod source;
 mod usage;
+#[cfg(test)]
+mod wording;
 
 pub use exit::ExitStatus;
 

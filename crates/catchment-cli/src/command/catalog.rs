@@ -18,34 +18,40 @@ use std::path::PathBuf;
 
 /// List published connectors and their areas of acceptance
 ///
-/// 27 systems with eleven attributes each, eleven published areas, and the 3-D X-Face. What the source prints is shown as
-/// printed; a value that it does not define has its normal form beside it. --csv, --json and --markdown have every
-/// attribute.
+/// 27 systems with eleven attributes each, eleven published zero-rotation areas, and the 3-D X-Face. Values are shown as printed in the
+/// source; a value that the source does not define also has its normal form. --csv, --json and --markdown have every attribute.
 #[derive(Debug, Args)]
 #[command(
     args_conflicts_with_subcommands = true,
     group = ArgGroup::new("form").args(["json", "csv", "markdown", "as_printed"]),
-    after_long_help = "Examples:\n  \
-    catchment catalog\n  \
-    catchment catalog --where gendering=Ungendered --where degree=High\n  \
-    catchment catalog --sort zraa --append mine.toml   a design of yours among them\n  \
-    catchment catalog --as-printed 1.1                 the source's table, byte for byte\n  \
-    catchment catalog show DRAGON                      every number, and where it comes from\n  \
-    catchment catalog design polybot -o polybot.toml   a design file to run\n  \
-    catchment catalog -o figure.svg                    the published figure of areas, drawn again\n\n\
-    A value of --where is one that is printed, or a normal form; several conditions hold together, and values of one \
-    attribute are alternatives."
+    after_long_help = "\
+Examples:
+  catchment catalog
+  catchment catalog --where gendering=Ungendered --where degree=High
+  catchment catalog --sort zraa --append mine.toml
+      your design among them
+  catchment catalog --as-printed 1.1
+      the table of the source, byte for byte
+  catchment catalog show DRAGON
+      every number with its source
+  catchment catalog design polybot -o polybot.toml
+      a design file to run
+  catchment catalog -o figure.svg
+      the published figure of areas, drawn again
+
+--where takes a printed value or a normal form. Conditions on different
+attributes must all hold; values of the same attribute are alternatives."
 )]
 pub(crate) struct CatalogArgs {
     #[command(subcommand)]
     command: Option<CatalogCommand>,
-    /// Only systems with this value of an attribute, such as gendering=Ungendered; may be repeated
+    /// List only systems with this value of an attribute, such as gendering=Ungendered; may be repeated
     #[arg(long = "where", value_name = "ATTRIBUTE=VALUE")]
     conditions: Vec<String>,
-    /// Order of the rows: by date, or by area, the largest first
+    /// Sort by date, or by area with the largest first
     #[arg(long, value_name = "BY", value_enum)]
     sort: Option<Sort>,
-    /// Add a design of yours as a row, classified by its own geometry; may be repeated
+    /// Add your design as a row, classified by its geometry; may be repeated
     #[arg(long, value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
     append: Vec<PathBuf>,
     /// Print JSON
@@ -71,7 +77,7 @@ pub(crate) struct CatalogArgs {
 
 #[derive(Debug, Subcommand)]
 enum CatalogCommand {
-    /// One system: every attribute, every number with its provenance
+    /// Print a system: every attribute, every number with its source
     Show(ShowArgs),
     /// Write the design file of a published geometry
     Design(CatalogDesignArgs),
@@ -79,7 +85,7 @@ enum CatalogCommand {
 
 #[derive(Debug, Args)]
 struct ShowArgs {
-    /// Its name in either table
+    /// Name of the system in either table
     #[arg(value_name = "NAME")]
     name: String,
     #[command(flatten)]
@@ -88,7 +94,7 @@ struct ShowArgs {
 
 #[derive(Debug, Args)]
 struct CatalogDesignArgs {
-    /// Which geometry
+    /// Name of the geometry
     #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(
         DESIGNS.map(|design| PossibleValue::new(design.name).help(design.summary))
     ))]
@@ -113,7 +119,7 @@ enum Printed {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Figure {
-    /// Geometry, cross-section and area of each, one scale
+    /// Geometry, cross-section and area of each, on the same scale
     #[value(name = "2.1")]
     Comparison,
     /// The cone, around and inside the unit square, over the 3-D X-Face

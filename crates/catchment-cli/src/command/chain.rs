@@ -19,32 +19,36 @@ use std::path::PathBuf;
 
 /// Compute where a chain of modules ends and whether it docks
 ///
-/// The file names the modules, their joint errors, the connector at their faces and what the joints are told. Errors are added up
-/// to first order and by random chains, which are followed exactly until they dock or jam. A sequence is folded step by step with
-/// servos as springs: it says when each layer of a latch snaps, and refuses modules that collide.
+/// The file names the modules, their joint errors, the connector at their faces and the joint commands. Errors are added up to first order and
+/// by sampled chains, followed exactly until they dock or jam. A sequence is folded step by step with servos as springs: the command prints
+/// when each layer of a latch snaps, and refuses modules that collide.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment chain chain.toml\n  \
-    catchment chain p-sequence.toml -o steps.svg     the chain after every step\n  \
-    catchment chain chain.toml --modules 2..20 --joint-sigma 0.5deg,1deg,2deg\n                                                   \
-    how many modules still dock\n  \
-    catchment chain chain.toml --require 'probability>=0.99'\n  \
-    catchment chain p-sequence.toml --json | jq .folding.events\n\n\
-    `probability` is that of the file's own chain: of every docking of its sequence, or of its last face where it stays straight.")]
+#[command(after_long_help = "\
+Examples:
+  catchment chain chain.toml
+  catchment chain p-sequence.toml -o steps.svg
+      the chain after every step
+  catchment chain chain.toml --modules 2..20 --joint-sigma 0.5deg,1deg,2deg
+      the number of modules that still dock
+  catchment chain chain.toml --require 'probability>=0.99'
+  catchment chain p-sequence.toml --json | jq .folding.events
+
+`probability` is for the chain of the file: for every docking of its sequence,
+or for its last face if it stays straight.")]
 pub(crate) struct ChainArgs {
-    /// The chain file
+    /// Chain file (TOML)
     #[arg(value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     path: PathBuf,
-    /// Also straight chains of these numbers of modules, such as 2..20 or 4,8,12
+    /// Also compute straight chains of so many modules, such as 2..20 or 4,8,12
     #[arg(long, value_name = "NUMBERS", value_parser = modules)]
     modules: Option<Modules>,
-    /// And of these joint errors (standard deviations), such as 0.5deg,1deg
+    /// Standard deviations of the joints of these chains, such as 0.5deg,1deg
     #[arg(long, value_name = "ANGLES", value_parser = angles)]
     joint_sigma: Option<Angles>,
-    /// Random chains
+    /// Number of sampled chains
     #[arg(long, alias = "chains", value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     samples: u64,
-    /// Seed of the random chains
+    /// Seed of the sampled chains
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]

@@ -12,13 +12,15 @@ use clap::Args;
 
 /// Classify a design among published connectors
 ///
-/// Its self-aligning degree by the published rule, from its own zero-rotation area of acceptance; whether its halves
-/// are alike; its area and the largest square inside beside those that were published.
+/// Prints the self-aligning degree by the published rule, from the zero-rotation area of acceptance of the design; its gendering; and its
+/// area and largest inscribed square beside the published values.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment classify design.toml\n  \
-    catchment classify design.toml --json | jq .degree\n  \
-    catchment catalog --append design.toml   as a row of the catalogue")]
+#[command(after_long_help = "\
+Examples:
+  catchment classify design.toml
+  catchment classify design.toml --json | jq .degree
+  catchment catalog --append design.toml
+      as a row of the catalogue")]
 pub(crate) struct ClassifyArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,

@@ -25,25 +25,28 @@ use std::path::PathBuf;
 
 /// Compare two methods, two designs or two results
 ///
-/// Overlap (Jaccard), Sum and ONAA side by side, which outcomes are confused, and how far from the border of the
-/// first the two differ. Both are over the same error box and the same cells, or one is finer by an odd factor.
+/// Prints the overlap (Jaccard index), Sum and ONAA side by side, the confusion of outcomes, and the distance of the differences from the
+/// border of A. Both need the same error box and the same cells, or cells that are finer by an odd factor.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment compare design.toml --methods descent,flood\n  \
-    catchment compare old.toml new.toml -o out          two designs, with a picture\n  \
-    catchment compare out design.toml --methods descent a stored result against a fresh one\n  \
-    catchment compare a.zarr b.zarr --json | jq .comparison.jaccard")]
+#[command(after_long_help = "\
+Examples:
+  catchment compare design.toml --methods descent,flood
+  catchment compare old.toml new.toml -o out
+      two designs, with a picture
+  catchment compare out design.toml --methods descent
+      a stored result against a fresh one
+  catchment compare a.zarr b.zarr --json | jq .comparison.jaccard")]
 pub(crate) struct CompareArgs {
-    /// A design, a folder written by `run -o`, or its NAME.zarr
+    /// Design, folder written by `run -o`, or its NAME.zarr
     #[arg(value_name = "A", value_hint = clap::ValueHint::AnyPath)]
     first: PathBuf,
-    /// The other; without it, A is decided by two methods
+    /// The second; without it, --methods names two methods for A
     #[arg(value_name = "B", value_hint = clap::ValueHint::AnyPath)]
     second: Option<PathBuf>,
-    /// The method of every design among A and B, in their order; one counts for both [default: confluence]
+    /// Method of each design, in order; a single method applies to both [default: confluence]
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = method_parser())]
     methods: Vec<Method>,
-    /// Cells per axis, such as 30 or x=40,yaw=24 [default: those of a stored result, else by number of axes]
+    /// Cells per axis, such as 30 or x=40,yaw=24 [default: those of the stored result, or by number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
     #[command(flatten)]

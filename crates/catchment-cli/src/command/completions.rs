@@ -9,11 +9,11 @@ use clap_complete::Shell;
 
 /// Write a shell completion script
 #[derive(Debug, Args)]
-#[command(
-    after_long_help = "Example:\n  catchment completions bash > ~/.local/share/bash-completion/completions/catchment"
-)]
+#[command(after_long_help = "\
+Example:
+  catchment completions fish > ~/.config/fish/completions/catchment.fish")]
 pub(crate) struct CompletionsArgs {
-    /// The shell
+    /// Shell
     shell: Shell,
 }
 

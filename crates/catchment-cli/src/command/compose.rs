@@ -20,39 +20,45 @@ use std::path::{Path, PathBuf};
 
 /// Combine the reach of two halves that both move
 ///
-/// A and B are the regions that the two halves reach by their own motion, in the plane in which the robots move (lateral
-/// offset and gap). The answer is every place of B's robot, seen from A's, from which the two regions meet.
+/// A and B are the regions that the two halves reach by their own motion, in the plane in which the robots move (lateral offset and gap). The
+/// result is their Minkowski sum: every position of B's robot relative to A's from which the two regions meet.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment compose hook.toml loop.toml\n  \
-    catchment compose hook.toml loop.toml --keep-out bow.csv,stern.csv -o where.png\n  \
-    catchment compose hook.toml loop.toml --heading \"-20..20 deg\" --json | jq .volume\n  \
-    catchment compose diamond.toml square.toml    two connector designs: their ZRAA regions\n  \
-    catchment compose a.csv b.svg --outline -o sum.svg\n                                          the outline alone, to be read again\n\n\
-    A region is a table of corners (.csv: x,y or x,y,ring, in mm), the paths of a picture (.svg), a shape and how it \
-    moves (.toml with [sweep]: annular-sector, half-ellipse, disc, box, polygon; scale, slide, turn), or a connector \
-    design (.toml with [connector]). Its table for programs (.csv, --csv) is the outline.")]
+#[command(after_long_help = "\
+Examples:
+  catchment compose hook.toml loop.toml
+  catchment compose hook.toml loop.toml --keep-out a.csv,b.csv -o sum.png
+  catchment compose hook.toml loop.toml --heading \"-20..20 deg\" --json \\
+      | jq .volume
+  catchment compose diamond.toml square.toml
+      two connector designs: their zero-rotation areas
+  catchment compose a.csv b.svg --outline -o sum.svg
+      the outline only, to be read again
+
+A region is a table of corners (.csv: x,y or x,y,ring, in mm), the paths of a
+picture (.svg), a shape and its motion (.toml with [sweep]: annular-sector,
+half-ellipse, disc, box, polygon; scale, slide, turn), or a connector design
+(.toml with [connector]). CSV has the outline.")]
 pub(crate) struct ComposeArgs {
-    /// What the first half sweeps: .csv, .svg, .toml
+    /// Region of the first half: .csv, .svg, .toml
     #[arg(value_name = "A", value_hint = clap::ValueHint::FilePath)]
     first: PathBuf,
-    /// What the second half sweeps
+    /// Region of the second half
     #[arg(value_name = "B", value_hint = clap::ValueHint::FilePath)]
     second: PathBuf,
-    /// own: each is drawn in its robot's frame, facing +y, and the second is mounted by a half turn. world: the second is
-    /// drawn as it stands before the first
+    /// own: each region is in the frame of its robot, facing +y, and the second is turned by 180°. world: both are in the
+    /// frame of the first
     #[arg(long, value_name = "FRAMES", default_value = "own", value_parser = ["own", "world"])]
     frames: String,
     /// Heading of the second robot relative to facing the first, such as "5 deg", or a range "-20..20 deg"
     #[arg(long, value_name = "ANGLE", default_value = "0", value_parser = headings, allow_hyphen_values = true)]
     heading: [f64; 2],
-    /// Headings of a range
+    /// Number of headings in a range
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u16).range(2..=721))]
     headings: u16,
-    /// The bodies of the two robots, which may not overlap, in the frames of A and B
+    /// Bodies of the two robots, which must not overlap, in the frames of A and B
     #[arg(long, value_name = "A,B", value_delimiter = ',', value_hint = clap::ValueHint::FilePath)]
     keep_out: Vec<PathBuf>,
-    /// Write the outline rather than the picture: .svg or .csv
+    /// Write the outline instead of the picture: .svg or .csv
     #[arg(long, requires = "output")]
     outline: bool,
     #[command(flatten)]

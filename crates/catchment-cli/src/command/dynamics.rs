@@ -22,58 +22,69 @@ use std::path::PathBuf;
 
 /// Compute the docking probability with speed, mass and bounce
 ///
-/// Trials in a rigid-body engine, each with circumstances of its own, drawn from declared laws. Prints how likely single poses dock, or the errors that
-/// are expected (the whole error box, where nothing is said), the same with all speeds multiplied, and beside it what exact quasi-static motions say: the
-/// limit of no speed.
+/// Simulates trials in a rigid-body engine, each with its own speed, drift, spin, mass, friction, restitution and height, sampled from the
+/// distributions that you declare. Prints the probability for single poses, or for the expected errors (the whole error box if you name no
+/// errors), the same with all speeds multiplied, and beside it the quasi-static limit from exact motions.
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("trials", |arg| arg.help("Trials of each pose, and of each cell of a map [default: 100]")),
-    mut_arg("trial_seed", |arg| arg.help("Seed of all draws [default: 1]")),
-    mut_arg("damping", |arg| arg.help("Friction with the surroundings, 1/s: the force -mass·damping·v [default: 10]")),
-    mut_arg("push", |arg| arg.help("Force along the approach, in kg·D/s² [default: what damping balances at the approach speed]")),
-    after_long_help = "Examples:\n  \
-    catchment dynamics design.toml --draw 'speed=50 ± 10 mm/s' --draw 'drift_x=0 ± 20 mm/s'\n  \
-    catchment dynamics design.toml --dynamics dynamics.toml --error-sigma 'x=1 mm,yaw=2 deg'\n  \
-    catchment dynamics design.toml --dynamics dynamics.toml --pose x=0.4 --pose 'x=0.4,pitch=5 deg' --trials 1000\n  \
-    catchment dynamics design.toml --dynamics dynamics.toml --map x,pitch -o map.png\n  \
-    catchment dynamics design.toml --draw speed=1 --times 0.01,0.1,1,10 -o speeds.svg\n                                                  \
-    against speed, down to quasi-static\n  \
-    catchment dynamics design.toml --dynamics dynamics.toml --require 'overall.probability>=0.95'\n  \
-    catchment dynamics design.toml --preset gazebo-2014 --pose x=0.3 --trials 999\n\n\
-    A file of laws:\n\n  \
-    [dynamics]\n  \
-    speed = { mean = \"50 mm/s\", sigma = \"10 mm/s\" }    # or \"50 ± 10 mm/s\"\n  \
-    friction = { from = 0.1, to = 0.3 }                # or \"0.1..0.3\"\n  \
-    mass = { median = 2, factor = 1.1 }                # or \"2 */ 1.1\", kg\n  \
-    restitution = { measured = [0.1, 0.15, 0.3] }\n\n\
-    and drift_x, drift_y, spin_roll, spin_pitch, spin_yaw, height. Lengths are in D, angles in radians, times in s unless \
-    they have a unit; in JSON always."
+    mut_arg("trials", |arg| arg.help("Trials per pose, and per cell of a map [default: 100]")),
+    mut_arg("trial_seed", |arg| arg.help("Seed of all samples [default: 1]")),
+    mut_arg("error_sigma", |arg| arg.help("Normal errors with these standard deviations, such as \"x=1 mm,yaw=2 deg\"")),
+    mut_arg("error_uniform", |arg| arg.help("Uniform errors within ± these bounds, such as \"x=1 mm,yaw=2 deg\"")),
+    mut_arg("damping", |arg| arg.help("Viscous damping rate in 1/s: force -mass·damping·v [default: 10]")),
+    mut_arg("push", |arg| arg.help("Force along the approach, in kg·D/s² [default: the damping force at the approach speed]")),
+    after_long_help = "\
+Examples:
+  catchment dynamics design.toml --draw 'speed=50 ± 10 mm/s' \\
+      --draw 'drift_x=0 ± 20 mm/s'
+  catchment dynamics design.toml --dynamics laws.toml \\
+      --error-sigma 'x=1 mm,yaw=2 deg'
+  catchment dynamics design.toml --dynamics laws.toml \\
+      --pose x=0.4 --pose 'x=0.4,pitch=5 deg' --trials 1000
+  catchment dynamics design.toml --dynamics laws.toml --map x,pitch -o map.png
+  catchment dynamics design.toml --draw speed=1 --times 0.01,0.1,1,10 \\
+      -o speeds.svg
+      against speed, down to quasi-static
+  catchment dynamics design.toml --dynamics laws.toml \\
+      --require 'overall.probability>=0.95'
+  catchment dynamics design.toml --preset gazebo-2014 --pose x=0.3 --trials 999
+
+A file of distributions:
+
+  [dynamics]
+  speed = { mean = \"50 mm/s\", sigma = \"10 mm/s\" }    # or \"50 ± 10 mm/s\"
+  friction = { from = 0.1, to = 0.3 }                # or \"0.1..0.3\"
+  mass = { median = 2, factor = 1.1 }                # or \"2 */ 1.1\", kg
+  restitution = { measured = [0.1, 0.15, 0.3] }
+
+and drift_x, drift_y, spin_roll, spin_pitch, spin_yaw, height. Lengths are in D,
+angles in radians, times in s unless they have a unit; in JSON always."
 )]
 pub(crate) struct DynamicsArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// A file of laws (TOML), under [dynamics]
+    /// File of distributions (TOML), under [dynamics]
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = DRAWN)]
     dynamics: Option<PathBuf>,
-    /// A law of one circumstance, such as "friction=0.1..0.3" or "speed=50 ± 10 mm/s", before that of the file; may be repeated
-    #[arg(long, value_name = "WHAT=LAW", allow_hyphen_values = true, help_heading = DRAWN)]
+    /// Distribution of a quantity, such as "friction=0.1..0.3" or "speed=50 ± 10 mm/s"; overrides the file; may be repeated
+    #[arg(long, value_name = "NAME=LAW", allow_hyphen_values = true, help_heading = DRAWN)]
     draw: Vec<String>,
-    /// A pose error to try, such as "x=0.2,pitch=10 deg"; may be repeated
+    /// Pose error to simulate, such as "x=0.2,pitch=10 deg"; may be repeated
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true, help_heading = ASKED)]
     pose: Vec<String>,
-    /// A table of pose errors to try (CSV); - reads stdin
+    /// Table of pose errors to simulate (CSV); - reads stdin
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = ASKED)]
     poses: Option<PathBuf>,
-    /// Cells over two errors, all others 0, as far as the error box reaches
+    /// Map over two errors across the error box, all others 0
     #[arg(long, value_name = "AXIS,AXIS", value_parser = two, help_heading = ASKED)]
     map: Option<[Dof; 2]>,
     /// Cells along each axis of the map
     #[arg(long, alias = "cells", value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(2..=500), help_heading = ASKED)]
     resolution: u16,
-    /// The probability with every velocity multiplied by each of these, such as "0.01,0.1,1,10"
+    /// Compute the probability with all velocities multiplied by each of these factors, such as "0.01,0.1,1,10"
     #[arg(long, value_name = "FACTOR,…", value_parser = number, value_delimiter = ',', help_heading = ASKED)]
     times: Vec<f64>,
-    /// Trials of the probability under expected errors, and of each speed
+    /// Sampled poses of the probability under expected errors, and of each speed
     #[arg(long, alias = "overall", value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]
     samples: u32,
     #[command(flatten)]
@@ -86,8 +97,8 @@ pub(crate) struct DynamicsArgs {
     exec: ExecArgs,
 }
 
-const DRAWN: &str = "What is drawn for every trial";
-const ASKED: &str = "What is asked";
+const DRAWN: &str = "Random variables of every trial";
+const ASKED: &str = "Poses and speeds";
 
 pub(crate) fn run(args: &DynamicsArgs) -> Result<ExitStatus, Failure> {
     if args.drop.changes().iter().any(|change| change.option == "--slope-threshold") {

@@ -12,27 +12,28 @@ use clap::Args;
 
 /// Compute the share that docks at every friction coefficient
 ///
-/// Follows the same random poses of the error box by exact motion with Coulomb friction at every coefficient of a ladder, and finds by
-/// bisection where each is lost. Prints the share that docks, what is lost and gained against none, how many might have stuck on the way by
-/// Coulomb's law, up to which friction most of what docks without it docks still, and the features on which the first poses stick.
+/// Follows the same sampled poses by exact motion with Coulomb friction at increasing coefficients, and finds the coefficient at which each
+/// pose fails by bisection. Prints the share that docks, the losses and gains against no friction, the poses that may stick by Coulomb's law,
+/// the friction up to which most poses still dock, and the features on which the first poses stick.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment friction design.toml\n  \
-    catchment friction design.toml --frictions 0.15,0.3 --samples 5000\n  \
-    catchment friction design.toml -o friction.png\n  \
-    catchment friction design.toml --require 'kept.p95.friction>=0.2'\n  \
-    catchment friction design.toml --json | jq '.curve[] | {friction, lost}'")]
+#[command(after_long_help = "\
+Examples:
+  catchment friction design.toml
+  catchment friction design.toml --frictions 0.15,0.3 --samples 5000
+  catchment friction design.toml -o friction.png
+  catchment friction design.toml --require 'kept.p95.friction>=0.2'
+  catchment friction design.toml --json | jq '.curve[] | {friction, lost}'")]
 pub(crate) struct FrictionArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Coefficients of friction, beside none [default: 0.05,0.1,0.15,0.2,0.25,0.3,0.4,0.5]
+    /// Coefficients of friction; 0 is always included [default: 0.05,0.1,0.15,0.2,0.25,0.3,0.4,0.5]
     #[arg(long, value_name = "MU,…", value_parser = number, value_delimiter = ',')]
     frictions: Vec<f64>,
     /// Sampled poses of the error box [default: 1000, fewer for round halves]
     #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     samples: Option<u32>,
-    /// Their seed
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    /// Seed of the sampled poses
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
     result: ResultArgs,

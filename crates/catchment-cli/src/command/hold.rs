@@ -15,39 +15,43 @@ use clap::Args;
 
 /// Compute the force and torque that a docked half withstands
 ///
-/// Pressed on by a preload along -z through the centre of rotation, the half rests in its mated pose. Finds the smallest force sideways, in
-/// every direction, and the smallest torque about every free axis that no forces of the contacts withstand: as shares of the preload, or in N. Each where
-/// the half is guided (it moves as it is pushed and up, nothing else) and where it is free to tilt.
+/// A preload along -z through the centre of rotation presses the half into its mated pose. The command finds the smallest lateral force, in
+/// every direction, and the smallest torque about every free axis that the contacts cannot balance: as shares of the preload, or in N. It
+/// gives both for a guided half (which moves with the push and along z only) and for a half that may tilt.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment hold design.toml\n  \
-    catchment hold design.toml --friction 0.2 --preload 40 -o hold.png\n  \
-    catchment hold design.toml --lever '30 mm'      pushed 30 mm above the face centre\n  \
-    catchment hold design.toml --pose 'x=0.1,pitch=100 deg'\n                                                  where that pose comes to rest\n  \
-    catchment hold design.toml --require 'least_force>=0.3'\n  \
-    catchment hold design.toml --json | jq '.weakest.smooth_free'\n\n\
-    Forces are shares of the preload, torques of the preload times D, and angles \
-    in radians in CSV and JSON.")]
+#[command(after_long_help = "\
+Examples:
+  catchment hold design.toml
+  catchment hold design.toml --friction 0.2 --preload 40 -o hold.png
+  catchment hold design.toml --lever '30 mm'
+      pushed 30 mm above the face centre
+  catchment hold design.toml --pose 'x=0.1,pitch=100 deg'
+      at the rest that this pose reaches
+  catchment hold design.toml --require 'least_force>=0.3'
+  catchment hold design.toml --json | jq '.weakest.smooth_free'
+
+Forces are shares of the preload, torques of the preload times D, and angles
+are in radians in CSV and JSON.")]
 pub(crate) struct HoldArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
-    /// What presses the half on, in newtons: forces are told in N instead of shares of it
+    /// Preload in newtons; prints forces in N instead of shares of the preload
     #[arg(long, value_name = "NEWTONS", value_parser = newtons, allow_hyphen_values = true)]
     preload: Option<f64>,
-    /// How far above the face centre of the moving half it is pushed: in D, or with a unit, such as "30 mm"
+    /// Height of the push above the face centre of the moving half, in D or with a unit, such as "30 mm"
     #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true, default_value = "0")]
     lever: Quantity,
-    /// The pose error that is let go of; held where it comes to rest [default: the mated pose]
+    /// Pose error to release; the half is held at the rest that it reaches [default: the mated pose]
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: Option<String>,
-    /// What is no farther apart counts as touching: play that is taken for used [default: 1e-4 D]
-    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true)]
+    /// Largest gap that counts as contact: play that is taken up [default: 1e-4 D]
+    #[arg(long, hide_short_help = true, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true)]
     play: Option<Quantity>,
-    /// Directions sideways that are tried
-    #[arg(long, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(4..=3600))]
+    /// Number of lateral directions
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(4..=3600))]
     directions: u32,
     #[command(flatten)]
     result: ResultArgs,

@@ -23,39 +23,43 @@ use std::path::{Path, PathBuf};
 
 /// Derive the moving half from wanted contact heights
 ///
-/// The Minkowski sum undone. Keeps the fixed half of DESIGN. Wanted are heights of first contact over lateral offsets: those of DESIGN itself, of
-/// another design, or a table. The result is the lowest moving half that nowhere stops higher than wanted; where it
-/// stops lower, that height cannot be had with this fixed half, and the program says where.
+/// Inverts the Minkowski sum and keeps the fixed half of DESIGN. The wanted heights of first contact over lateral offsets are those of DESIGN
+/// itself, of another design, or of a table. The result is the lowest moving half that never stops higher than wanted. The command lists the
+/// places at which it stops lower, because no half reaches the wanted height on this fixed half.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment invert design.toml                       the design's own moving half again\n  \
-    catchment invert design.toml --heights other.toml -o new.toml\n  \
-    catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
-    catchment invert design.toml --pitch \"-10..10 deg/21\" --yaw 0,\"20 deg\"\n  \
-    catchment run new.toml                             what the result accepts\n\n\
-    -o FILE.toml writes the pair as a design file, its halves as convex pieces.")]
+#[command(after_long_help = "\
+Examples:
+  catchment invert design.toml
+      the moving half of the design itself
+  catchment invert design.toml --heights other.toml -o new.toml
+  catchment invert design.toml --heights wanted.csv
+      a grid: x,y,height, in D
+  catchment invert design.toml --pitch \"-10..10 deg/21\" --yaw 0,\"20 deg\"
+  catchment run new.toml
+
+-o FILE.toml writes the pair as a design file, its halves as convex pieces.")]
 pub(crate) struct InvertArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Wanted heights: a design (.toml) or a table x,y,height in D (.csv) [default: the design's own]
+    /// Wanted heights: a design (.toml) or a table x,y,height in D (.csv) [default: those of DESIGN]
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     heights: Option<PathBuf>,
-    /// Rolls at which the heights are wanted, too, such as -10..10 deg/21 or 5 deg,10 deg; every one with every pitch and yaw
+    /// Roll angles with wanted heights, such as -10..10 deg/21 or 5 deg,10 deg; combined with every pitch and yaw
     #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
     roll: Vec<Angles>,
-    /// Pitches, likewise; with --heights FILE.toml the heights of that design, otherwise those of DESIGN
+    /// Pitch angles with wanted heights: those of --heights FILE.toml, or of DESIGN
     #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
     pitch: Vec<Angles>,
-    /// Yaws, likewise; may be given several times, as the others
+    /// Yaw angles with wanted heights; all three may be repeated
     #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
     yaw: Vec<Angles>,
     /// Material behind the deepest point of the new half, in D
     #[arg(long, value_name = "D", value_parser = number, default_value_t = 0.25)]
     backing: f64,
-    /// Least width of a facet that can be made; a bare number is in D
+    /// Smallest width of a facet that can be made, in D or with a unit
     #[arg(long, value_name = "LENGTH", default_value = "0.01", value_parser = quantity)]
     min_feature: Quantity,
-    /// Least angle between the surface and the direction of pull
+    /// Smallest draft angle between the surface and the direction of pull
     #[arg(long, value_name = "ANGLE", default_value = "3 deg", value_parser = angle)]
     min_draft: f64,
     #[command(flatten)]

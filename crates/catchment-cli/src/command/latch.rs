@@ -17,22 +17,29 @@ use std::path::{Path, PathBuf};
 
 /// Design a latching X-Face: forces and laser-cutter drawings
 ///
-/// Two halves of one shape align, press their arms aside and hook into each other. The outline follows from the
-/// dissertation's design principles (chapter 6); every rule is checked and printed with its reason. Forces are fits to nine
-/// measured prototypes, with the error of a tenth.
+/// Two equal halves align, press their arms aside and hook into each other. The outline follows the design principles of the dissertation
+/// (chapter 6); the command checks every rule and prints it with its reason. Forces are fits to nine measured prototypes, with an error of
+/// 10 %.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment latch design.toml            its rules, stiffness, forces and bonding ratio\n  \
-    catchment latch design.toml -o out     DXF and SVG of every sheet, pictures, the record of a press\n  \
-    catchment latch --table                the nine measured prototypes beside the model\n  \
-    catchment latch --table --csv          the same for programs\n\n\
-    The design file has a table [latch] with any of width, overhang, neck, hook, kerf, sheet, separator, layers, E (GPa),\n\
-    poisson, slit_distance, slit_depth, slit_gap, wide_slit, cutout_depth, l_eq, spline_start, spline_end, bend, sides (1 or\n\
-    3), base, dowel, module_width, rotor_distance, and a table [press] with friction, offset, tilt. What is absent is the\n\
-    dissertation's. -o DIR: NAME.dxf is the part, NAME-cut.dxf and NAME-cut.svg the laser's path; connector.toml is the\n\
-    aligning part of the face for `catchment run`.")]
+#[command(after_long_help = "\
+Examples:
+  catchment latch design.toml
+      rules, stiffness, forces and bonding ratio
+  catchment latch design.toml -o out
+      DXF and SVG of every sheet, pictures, the record of a press
+  catchment latch --table
+      the nine measured prototypes beside the model
+  catchment latch --table --csv
+
+The design file has a table [latch] with any of width, overhang, neck, hook,
+kerf, sheet, separator, layers, E (GPa), poisson, slit_distance, slit_depth,
+slit_gap, wide_slit, cutout_depth, l_eq, spline_start, spline_end, bend, sides
+(1 or 3), base, dowel, module_width, rotor_distance, and a table [press] with
+friction, offset, tilt. Missing keys have the values of the dissertation. -o DIR
+writes NAME.dxf (the part), NAME-cut.dxf and NAME-cut.svg (the path of the
+laser) and connector.toml (the aligning part of the face, for `catchment run`).")]
 pub(crate) struct LatchArgs {
-    /// The design file, or - for stdin
+    /// Design file; - reads stdin
     #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath, required_unless_present = "table")]
     design: Option<PathBuf>,
     /// Print table 6.1 beside the model instead

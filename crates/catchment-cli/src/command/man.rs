@@ -8,11 +8,12 @@ use clap::Args;
 
 /// Write a manual page
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment man > catchment.1\n  \
-    catchment man check | man -l -")]
+#[command(after_long_help = "\
+Examples:
+  catchment man > catchment.1
+  catchment man check | man -l -")]
 pub(crate) struct ManArgs {
-    /// Of this subcommand instead of the whole program
+    /// Subcommand [default: the whole program]
     subcommand: Option<String>,
 }
 

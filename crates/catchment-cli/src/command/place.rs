@@ -19,43 +19,49 @@ use std::path::{Component, Path, PathBuf};
 
 /// Propose how two CAD parts dock, and write the design file
 ///
-/// Reads two parts (STL, OBJ, PLY, 3MF, STEP) wherever and however they are drawn, each in a file of its own or both docked as an assembly has them.
-/// Tries all directions along their axes, and proposes the one in which a half that is off has to climb most: approach, seat, width D, what is
-/// free. Says on stderr what it chose and what came next. The design is checked as `catchment check` does.
+/// Reads two parts (STL, OBJ, PLY, 3MF, STEP) in any position and orientation: each in its own file, or both docked in an assembly. Tries
+/// every direction along their axes and proposes the steepest seat: approach, width D and free errors. Prints the choice and the runners-up
+/// on stderr. The design passes `catchment check`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment place socket.stl plug.stl --unit mm -o design.toml --figure pair.png\n  \
-    catchment place both.stl --unit mm -o design.toml            both halves in one file\n  \
-    catchment place base.obj tool.obj --unit m --drawn assembled --approach=-z -o design.toml\n  \
-    catchment place plate.3mf plate.3mf --facing-fixed +y        the same part twice; the design on stdout\n  \
-    catchment place block.stl plate.stl --unit mm --with-moving 'sphere = { radius = 6 }, at = [21, 0, 8]'\n  \
-    catchment check design.toml                                 what was understood\n  \
-    catchment run design.toml -o out                            and what it forgives")]
+#[command(after_long_help = "\
+Examples:
+  catchment place socket.stl plug.stl --unit mm -o design.toml --figure pair.png
+  catchment place both.stl --unit mm -o design.toml
+      both halves in one file
+  catchment place base.obj tool.obj --unit m --drawn assembled --approach=-z \\
+      -o design.toml
+  catchment place plate.3mf plate.3mf --facing-fixed +y
+      the same part twice; the design goes to stdout
+  catchment place block.stl plate.stl --unit mm \\
+      --with-moving 'sphere = { radius = 6 }, at = [21, 0, 8]'
+  catchment check design.toml
+  catchment run design.toml -o out")]
 pub(crate) struct PlaceArgs {
-    /// The fixed half: a file of meshes, or a STEP file, which Python meshes (docs/parts.md)
+    /// Fixed half: a mesh file or a STEP file, which Python meshes (docs/parts.md)
     #[arg(value_name = "FIXED", value_hint = clap::ValueHint::FilePath)]
     fixed: PathBuf,
-    /// The moving half: a mesh file. Without it the first file holds both halves as separate bodies, of which the larger is fixed
+    /// Moving half; without it the first file holds both halves as separate bodies, and the larger is fixed
     #[arg(value_name = "MOVING", value_hint = clap::ValueHint::FilePath)]
     moving: Option<PathBuf>,
-    /// Unit of files that do not say it: um, mm, cm, m or in
+    /// Unit of files that do not state theirs: um, mm, cm, m or in
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
-    /// What belongs to the fixed half beside its file: another file, or a bought part as the design has it, such as
-    /// 'sphere = { radius = 6 }, at = [21, 0, 8]' (docs/parts.md), in the coordinates of its file; may be repeated
-    #[arg(long, value_name = "PART")]
+    /// Add another part to the fixed half: a file, or a bought part as in a design; may be repeated
+    ///
+    /// A bought part is written as 'sphere = { radius = 6 }, at = [21, 0, 8]' (docs/parts.md), in the coordinates of the half's file.
+    #[arg(long, hide_short_help = true, value_name = "PART")]
     with_fixed: Vec<String>,
-    /// The same of the moving half
-    #[arg(long, value_name = "PART")]
+    /// Add another part to the moving half
+    #[arg(long, hide_short_help = true, value_name = "PART")]
     with_moving: Vec<String>,
-    /// Describe files of many triangles with fewer: how far their surfaces may move, such as '0.01 mm'; for 200 000 triangles and more
-    #[arg(long, value_name = "LENGTH", conflicts_with_all = ["with_fixed", "with_moving"])]
+    /// Simplify meshes: largest distance by which a surface may move, such as '0.01 mm'; for 200 000 triangles and more
+    #[arg(long, hide_short_help = true, value_name = "LENGTH", conflicts_with_all = ["with_fixed", "with_moving"])]
     simplify: Option<String>,
-    /// In which frames the parts are drawn
-    #[arg(long, value_enum, default_value_t = Drawn::Auto, help_heading = "Instead of what is found")]
+    /// Frames in which the parts are drawn
+    #[arg(long, hide_short_help = true, value_enum, default_value_t = Drawn::Auto, help_heading = FOUND)]
     drawn: Drawn,
-    /// The direction in which the moving half comes, of parts drawn docked: +x, -x, +y, -y, +z or -z, or half way between two, such as +y+z
-    #[arg(long, value_name = "WAY", allow_hyphen_values = true, help_heading = "Instead of what is found")]
+    /// Approach direction of the moving half, for parts drawn docked: +x, -x, +y, -y, +z, -z, or half way between two, such as +y+z
+    #[arg(long, value_name = "WAY", allow_hyphen_values = true, help_heading = FOUND)]
     approach: Option<AxisDirection>,
     /// Where the fixed half faces in its file
     #[arg(
@@ -63,23 +69,25 @@ pub(crate) struct PlaceArgs {
         value_name = "WAY",
         allow_hyphen_values = true,
         conflicts_with = "approach",
-        help_heading = "Instead of what is found"
+        hide_short_help = true,
+        help_heading = FOUND
     )]
     facing_fixed: Option<AxisDirection>,
-    /// Where the moving half faces in its file
+    /// Direction in which the moving half faces in its file
     #[arg(
         long,
         value_name = "WAY",
         allow_hyphen_values = true,
         conflicts_with = "approach",
-        help_heading = "Instead of what is found"
+        hide_short_help = true,
+        help_heading = FOUND
     )]
     facing_moving: Option<AxisDirection>,
-    /// Degrees of freedom that are free, such as x,y,yaw; those that the seat holds without it
-    #[arg(long, value_name = "DOFS", value_parser = dofs, help_heading = "Instead of what is found")]
+    /// Free pose errors, such as x,y,yaw [default: those that the seat constrains]
+    #[arg(long, value_name = "ERRORS", value_parser = dofs, help_heading = FOUND)]
     free: Option<DofSet>,
     /// Name of the design
-    #[arg(long, help_heading = "Instead of what is found")]
+    #[arg(long, hide_short_help = true, help_heading = FOUND)]
     name: Option<String>,
     /// Write the design to this file instead of stdout; paths in it are relative to its folder
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
@@ -94,10 +102,13 @@ pub(crate) struct PlaceArgs {
     exec: ExecArgs,
 }
 
+/// Heading of the options that replace what the program finds.
+const FOUND: &str = "Overrides";
+
 /// In which frames parts are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Drawn {
-    /// As an assembly where the parts meet as drawn and hold, each in its own frame otherwise
+    /// As an assembly if the parts meet as drawn and hold, else each in its own frame
     Auto,
     /// Both in one frame, docked
     Assembled,

@@ -21,20 +21,32 @@ use std::time::Instant;
 
 /// Choose the poses of a robot trial
 ///
-/// Follows every pose of a pattern by exact motion and looks for the border about it. Poses nearer to the border than the robot's accuracy are
-/// marked `either`: they may go either way, and never count against the prediction. Writes a table with an empty column `outcome`; fill it with
-/// aligned, jammed, missed or aligned-elsewhere, and hand it to `catchment validate`.
+/// Follows every pose of a pattern by exact motion and finds the border of the accepted set near it. Poses nearer to the border than the
+/// repeatability of the robot are marked `either`: they may dock or not, and never count against the prediction. Writes a table with an empty
+/// column `outcome`; fill it with aligned, jammed, missed or aligned-elsewhere and give it to `catchment validate`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment plan design.toml --pattern bracket --trials 60 --repeatability 'x=1 mm,y=1 mm,yaw=1 deg' -o plan.csv\n                                                  both sides of the border, along lines from zero\n  \
-    catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric --repeatability 'x=0.1 mm,y=0.1 mm'\n  \
-    catchment plan design.toml --pattern lattice --step '5 mm' --along-border --symmetric --repeatability 'x=1 mm,y=1 mm' --figure plan.png\n  \
-    catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --repeatability 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
-    catchment plan design.toml --pattern bracket --trials 40 --repeatability x=0.01 --require 'plan.deciding>=30'\n  \
-    catchment plan out --pattern bracket --trials 60 --repeatability x=0.01\n                                                  of a result of `run -o`, with its friction\n\n\
-    --csv prints the table for the robot, and -o writes it into a .csv file. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
+#[command(after_long_help = "\
+Examples:
+  catchment plan design.toml --pattern bracket --trials 60 \\
+      --repeatability 'x=1 mm,y=1 mm,yaw=1 deg' -o plan.csv
+      both sides of the border, along lines from zero
+  catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 \\
+      --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric \\
+      --repeatability 'x=0.1 mm,y=0.1 mm'
+  catchment plan design.toml --pattern lattice --step '5 mm' --along-border \\
+      --symmetric --repeatability 'x=1 mm,y=1 mm' --figure plan.png
+  catchment plan design.toml --pattern arc --lever '72.9 mm' \\
+      --pitch '0..45:2.25 deg' --yaw '0,20 deg' --repeatability 'x=1.2 mm'
+      a joint of the robot turns the face: x and pitch together
+  catchment plan design.toml --pattern bracket --trials 40 \\
+      --repeatability x=0.01 --require 'plan.deciding>=30'
+  catchment plan out --pattern bracket --trials 60 --repeatability x=0.01
+      of a result of `run -o`, with its friction
+
+--csv prints the table for the robot, and -o writes it into a .csv file. Lengths
+are in D and angles in radians unless they have a unit; in JSON always.",
     mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
-        .help("The design file, or a folder written by `run -o`")
+        .help("Design file, or folder written by `run -o`")
         .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
@@ -44,25 +56,25 @@ pub(crate) struct PlanArgs {
     /// Repeatability of the robot: standard deviation of each error, such as "x=0.1 mm,yaw=0.2 deg"; errors that are not named are exact
     #[arg(long, alias = "accuracy", value_name = "AXIS=SIZE,…")]
     repeatability: String,
-    /// How often each pose is tried
+    /// Trials per pose
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeats: u32,
-    /// Parts of the test, as one operator or one day each
+    /// Number of blocks, such as operators or days
     #[arg(long, value_name = "N", default_value_t = 1)]
     blocks: u32,
-    /// Leave the trials in the order of the pattern, instead of a random one
+    /// Keep the trials in the order of the pattern; the default is a random order
     #[arg(long)]
     in_order: bool,
-    /// End every line with its first predicted failure
+    /// End every line at its first predicted failure
     #[arg(long)]
     stop_at_first_failure: bool,
-    /// The point of the moving half where the table gives x and y
+    /// Point of the moving half at which the table gives x and y
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction between the halves [default: 0, or that of the result]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
-    /// Seed of the order, of random lines and of the search for the border
+    /// Seed of the order, the lines and the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
@@ -74,40 +86,40 @@ pub(crate) struct PlanArgs {
 /// Which poses.
 #[derive(Debug, Args)]
 struct PatternArgs {
-    /// How the poses lie
+    /// Pattern of the poses
     #[arg(long, value_enum, help_heading = "Poses")]
     pattern: Kind,
-    /// grid: points along each error, such as x=5,y=5,yaw=6
+    /// grid: number of points along each error, such as x=5,y=5,yaw=6
     #[arg(long, value_name = "AXIS=N,…", help_heading = "Poses")]
     steps: Option<String>,
-    /// lattice: the step of every offset, such as "5 mm", or of each error, such as "x=5 mm,yaw=6 deg"
+    /// lattice: step of all offsets, such as "5 mm", or of each error, such as "x=5 mm,yaw=6 deg"
     #[arg(long, value_name = "LENGTH|AXIS=SIZE,…", help_heading = "Poses")]
     step: Option<String>,
-    /// grid, lattice: the largest errors [default: the error box]
+    /// grid, lattice: largest errors [default: the error box]
     #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Poses")]
     max: Option<String>,
     /// lattice: only poses within one step of the predicted border
     #[arg(long, help_heading = "Poses")]
     along_border: bool,
-    /// arc: from the joint of the robot to the face centre; it is never guessed
+    /// arc: distance from the joint of the robot to the face centre
     #[arg(long, value_name = "LENGTH", help_heading = "Poses")]
     lever: Option<String>,
     /// arc: angles of the joint, such as "0..45:2.25 deg"
     #[arg(long, value_name = "ANGLES", allow_hyphen_values = true, help_heading = "Poses")]
     pitch: Option<String>,
-    /// arc: yaws at which that is done, such as "0,20 deg" [default: 0]
+    /// arc: yaw angles of the arcs, such as "0,20 deg" [default: 0]
     #[arg(long, value_name = "ANGLES", allow_hyphen_values = true, help_heading = "Poses")]
     yaw: Option<String>,
-    /// bracket: trials in all
+    /// bracket: total number of trials
     #[arg(long, value_name = "N", help_heading = "Poses")]
     trials: Option<u32>,
-    /// bracket: lines from zero [default: as many as there can be]
+    /// bracket: number of lines from zero [default: as many as possible]
     #[arg(long, value_name = "N", help_heading = "Poses")]
     lines: Option<u32>,
-    /// bracket: no nearer to the border than this, such as "x=2 mm,y=2 mm" [default: twice the repeatability]
+    /// bracket: smallest distance from the border, such as "x=2 mm,y=2 mm" [default: twice the repeatability]
     #[arg(long, alias = "resolution", value_name = "AXIS=SIZE,…", help_heading = "Poses")]
     margin: Option<String>,
-    /// grid, lattice, bracket: positive errors alone, of symmetric halves
+    /// grid, lattice, bracket: positive errors only, for symmetric halves
     #[arg(long, help_heading = "Poses")]
     symmetric: bool,
 }
@@ -115,7 +127,7 @@ struct PatternArgs {
 /// How the poses lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
-    /// So many points along each error
+    /// Points along each error
     Grid,
     /// Multiples of a step
     Lattice,

@@ -21,20 +21,26 @@ use serde_json::Value;
 
 /// Write a result as one interactive HTML page
 ///
-/// In it: the two halves in space, with a section and a slider for every error; the accepted set in linked slices and as a surface; jams, window,
-/// figures of merit. A pose that is clicked is followed by exact motion in the page itself.
+/// The page works offline and needs no program. It shows the two halves in space, with a section and a slider for every error; the accepted
+/// set as linked slices and as a surface; jams, tolerance window and figures of merit. Click a pose to follow its exact motion.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment report design.toml -o page.html           computes what it shows\n  \
-    catchment report out -o page.html                   of a result of `run -o`, with what it holds\n  \
-    catchment run design.toml --window --jams -o out    a result that holds jams and window\n  \
-    catchment report design.toml -o page.html --leave-out window,jams\n  \
-    catchment report design.toml --free x,y,yaw --resolution 24 -o page.html\n  \
-    catchment report design.toml --friction 0.2 -o page.html\n\n\
-    Of a design, slices, jams and window are computed beside the result; of a stored result jams and window are those it holds. A result whose mesh files are gone or \
-    changed becomes a page without halves and motions, which says so. `catchment view` serves the same page and computes again on demand.",
+#[command(after_long_help = "\
+Examples:
+  catchment report design.toml -o page.html
+  catchment report out -o page.html
+      from a result of `run -o`, with everything that it holds
+  catchment run design.toml --window --jams -o out
+      a result that holds jams and tolerance window
+  catchment report design.toml -o page.html --leave-out window,jams
+  catchment report design.toml --free x,y,yaw --resolution 24 -o page.html
+  catchment report design.toml --friction 0.2 -o page.html
+
+For a design, the command computes slices, jams and tolerance window too. A
+stored result shows the jams and the window that it holds. If its mesh files
+are missing or changed, the page has no halves and no motions, and states that.
+`catchment view` serves the same page and recomputes on demand.",
     mut_arg("path", |path| path.value_name("RESULT_OR_DESIGN")
-        .help("A design, a folder written by `run -o`, or its NAME.zarr")
+        .help("Design, folder written by `run -o`, or its NAME.zarr")
         .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct ReportArgs {
     #[command(flatten)]
@@ -50,28 +56,28 @@ pub(crate) struct ReportArgs {
 /// How the result of a page is made.
 #[derive(Debug, Clone, Args)]
 pub(super) struct MadeArgs {
-    /// How the outcomes of a design are decided [default: confluence]
+    /// Method that decides the outcomes of a design [default: confluence]
     #[arg(long, value_name = "METHOD", value_parser = method_parser())]
     method: Option<Method>,
-    /// Cells per axis of a design's error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
+    /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
-    /// Coefficient of friction between the halves, of a design
+    /// Coefficient of friction between the halves [default: 0]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
-    /// What is not computed beside the result
-    #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
+    /// Leave these parts out of the page
+    #[arg(long, value_name = "PARTS", value_enum, value_delimiter = ',')]
     leave_out: Vec<Study>,
 }
 
 /// What is computed beside a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Study {
-    /// Outcomes over every two errors, the others exactly 0, by exact motions: slices at zero show cells of the grid instead
+    /// Outcomes over every pair of errors with the others exactly 0, by exact motions; slices at 0 then show cells of the grid
     Slices,
-    /// Where it jams
+    /// The most frequent jams
     Jams,
-    /// The largest box of errors that all dock
+    /// The tolerance window
     Window,
 }
 

@@ -19,28 +19,34 @@ use std::time::Instant;
 
 /// Recompute published tables beside the printed values
 ///
-/// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.11) are computed with conventions
-/// that were fitted to these very tables: that they agree shows that the conventions are understood, not that
-/// the numbers are right as physics. --exact puts what frictionless motion gives beside both.
+/// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.11) use conventions that were fitted to these very tables:
+/// agreement shows that the conventions are right, not that the numbers hold as physics. --exact adds the values of frictionless motion.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment reproduce                     every table, and how well each agrees\n  \
-    catchment reproduce 5.7                 one of them\n  \
-    catchment reproduce 3.3 3.4 --csv > kinematic.csv\n  \
-    catchment reproduce 5.2 5.4 --exact     with the exact value of every entry\n  \
-    catchment reproduce 3.2 3.3 3.4 -o out  with pictures in colours, CSV and JSON\n  \
-    catchment reproduce 5.13 -o out         the convergence figure, drawn with our methods\n  \
-    catchment reproduce --markdown > docs/reproduction.md   the page of the documentation (minutes)\n  \
-    catchment reproduce coverage            how often the 95 % intervals of `run` hold (minutes)\n  \
-    catchment reproduce accuracy            how far every method is off, on eleven designs (minutes)")]
+#[command(after_long_help = "\
+Examples:
+  catchment reproduce
+      every table, and its agreement
+  catchment reproduce 5.7
+  catchment reproduce 3.3 3.4 --csv > kinematic.csv
+  catchment reproduce 5.2 5.4 --exact
+      with the exact value of every entry
+  catchment reproduce 3.2 3.3 3.4 -o out
+      with coloured pictures, CSV and JSON
+  catchment reproduce 5.13 -o out
+      the convergence figure, with our methods
+  catchment reproduce --markdown > docs/reproduction.md
+      the page of the documentation (minutes)
+  catchment reproduce coverage
+      coverage of the 95 % intervals of `run` (minutes)
+  catchment reproduce accuracy
+      the error of every method on eleven designs (minutes)")]
 pub(crate) struct ReproduceArgs {
-    /// Numbers of the tables in the dissertation, all of them when none is named; `5.13`, a figure; or `coverage`; or
-    /// `accuracy` alone
+    /// Numbers of tables in the dissertation; `5.13`, a figure; `coverage`; or `accuracy` alone [default: all tables]
     #[arg(value_name = "TABLE", value_parser = tables())]
     tables: Vec<String>,
     #[command(flatten)]
     form: FormArgs,
-    /// Also the exact value of every entry, by descent (seconds to a minute per table)
+    /// Add the exact value of every entry, by descent (seconds to a minute per table)
     #[arg(long)]
     exact: bool,
     /// Write pictures, tables.csv and report.json into this folder
@@ -56,10 +62,10 @@ struct FormArgs {
     /// Print JSON
     #[arg(long, conflicts_with = "csv")]
     json: bool,
-    /// Print CSV, one line per entry
+    /// Print CSV, a line per entry
     #[arg(long)]
     csv: bool,
-    /// Print the page of the documentation: of the tables, with exact values and the figure (minutes), or of accuracy
+    /// Print the page of the documentation: tables with exact values and the figure (minutes), or accuracy
     #[arg(long, conflicts_with_all = ["json", "csv"])]
     markdown: bool,
 }

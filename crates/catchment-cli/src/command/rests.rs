@@ -26,22 +26,26 @@ use clap::Args;
 /// their share. The position of every contact is given on both halves as drawn.
 #[derive(Debug, Args)]
 #[command(
-    after_long_help = "Examples:\n  \
-    catchment rests design.toml\n  \
-    catchment rests design.toml -o rests.png        each rest cut through its contacts, and in space\n  \
-    catchment rests design.toml --require 'rests.0.depth_at_most_d>=0.1'\n  \
-    catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'\n  \
-    catchment rests design.toml --jams\n  \
-    catchment rests design.toml --jams -o jams.png  each jam cut through its contacts, and in space\n  \
-    catchment rests design.toml --jams --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  also the shares under the errors of a robot\n  \
-    catchment rests design.toml --jams --error-measured errors.csv\n  \
-    catchment rests design.toml --jams --require 'outcomes.jammed.share<=0.01'\n  \
-    catchment rests design.toml --jams --json | jq '.features[0]'\n\n\
-    CSV has a line per rest; with --jams a line per contact of every jam. For another direction of the load, change the approach of the \
-    design.",
-    mut_arg("friction", |arg| arg.requires("jams")),
-    mut_arg("error_sigma", |arg| arg.requires("jams")),
-    mut_arg("error_uniform", |arg| arg.requires("jams")),
+    after_long_help = "\
+Examples:
+  catchment rests design.toml
+  catchment rests design.toml -o rests.png
+      every rest in section through its contacts, and in space
+  catchment rests design.toml --require 'rests.0.depth_at_most_d>=0.1'
+  catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'
+  catchment rests design.toml --jams
+  catchment rests design.toml --jams -o jams.png
+  catchment rests design.toml --jams --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'
+      also the shares under the errors of a robot
+  catchment rests design.toml --jams --error-measured errors.csv
+  catchment rests design.toml --jams --require 'outcomes.jammed.share<=0.01'
+  catchment rests design.toml --jams --json | jq '.features[0]'
+
+CSV has a line per rest; with --jams, a line per contact of every jam. For
+another direction of the load, change the approach of the design.",
+    mut_arg("friction", |arg| arg.requires("jams").help("With --jams: coefficient of friction between the halves")),
+    mut_arg("error_sigma", |arg| arg.requires("jams").help("With --jams: also compute the shares under normal errors with these standard deviations")),
+    mut_arg("error_uniform", |arg| arg.requires("jams").help("With --jams: also compute the shares under uniform errors within ± these bounds")),
     mut_arg("error_measured", |arg| arg.requires("jams")),
     mut_arg("robots", |arg| arg.requires("jams")),
 )]
@@ -64,16 +68,16 @@ pub(super) struct SearchArgs {
     #[arg(long, alias = "motions", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     samples: Option<u32>,
     /// Seed of the sampled poses and of all searches
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1)]
     pub(super) seed: u64,
     /// Number of rests whose stability and escape path are computed
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
     examine: u32,
-    /// Also compute depths from a grid over the error box with so many cells per axis, such as 200 or x=100,pitch=50
-    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    /// Also compute depths on a grid with these cells per axis, such as 200 or x=100,pitch=50
+    #[arg(long, hide_short_help = true, value_name = "CELLS", value_parser = resolution)]
     pub(super) resolution: Option<Resolution>,
-    /// Also compute a certain lower bound on the escape height: simple halves with one or two free errors, in seconds
-    #[arg(long)]
+    /// Also compute a guaranteed lower bound on the escape height: simple halves, at most two free errors
+    #[arg(long, hide_short_help = true)]
     pub(super) certified: bool,
     #[command(flatten)]
     pub(super) result: ResultArgs,

@@ -8,10 +8,12 @@ use clap::Args;
 
 /// Write the JSON schema of design files
 ///
-/// Editors with taplo (such as VS Code with "Even Better TOML") use the file that the first line of a design
-/// names: `#:schema schema.json`.
+/// Editors use it for completion and checks. With taplo (such as VS Code with "Even Better TOML") they read the file in the first line of a
+/// design: `#:schema schema.json`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Example:\n  catchment schema -o schema.json")]
+#[command(after_long_help = "\
+Example:
+  catchment schema -o schema.json")]
 pub(crate) struct SchemaArgs {
     #[command(flatten)]
     output: OutputArgs,

@@ -20,15 +20,20 @@ use std::time::Instant;
 
 /// Compute fine sections through the area, two errors at a time
 ///
-/// Every cell of a plane through zero is followed exactly, or dropped in a rigid-body engine. The errors that do not vary begin at zero and are as free
-/// to move as the design says; `run --free` locks them instead, which is another question.
+/// Follows every cell of a plane through zero by exact motion, or simulates it in a rigid-body engine. The other errors start at zero and
+/// stay free to move as in the design; `run --free` locks them instead, which gives another area.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment slices design.toml -o out                 all pairs of free errors, in one picture\n  \
-    catchment slices design.toml --axes x,pitch --axes x,yaw --resolution 201\n  \
-    catchment slices design.toml --json | jq '.slices[].onaa.edge'\n  \
-    catchment slices designs/x-face-3d.toml --axes x,y --axes x,roll --axes x,pitch --axes x,yaw --method drop\n                                                        the slices that the dissertation published\n\n\
-    A folder also gets a Zarr group such as x-pitch.zarr for each slice.")]
+#[command(after_long_help = "\
+Examples:
+  catchment slices design.toml -o out
+      all pairs of free errors, in a single picture
+  catchment slices design.toml --axes x,pitch --axes x,yaw --resolution 201
+  catchment slices design.toml --json | jq '.slices[].onaa.edge'
+  catchment slices designs/x-face-3d.toml --axes x,y --axes x,roll \\
+      --axes x,pitch --axes x,yaw --method drop
+      the slices that the dissertation published
+
+A folder also gets a Zarr group such as x-pitch.zarr for each slice.")]
 pub(crate) struct SlicesArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,

@@ -12,29 +12,34 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, Value
 
 /// Write the solids of the contact space for ParaView
 ///
-/// The halves as unions of convex pieces (P-collections), what the moving half sweeps over its angle (C-full), and the places at
-/// which the halves overlap (the surface collision shape, or configuration space obstacle): its upper side is the height of first
-/// contact. Up to three dimensions: x,y or one of them, or one length and one angle, must be all that is free.
+/// The halves as unions of convex pieces (P-collections), the solid that the moving half sweeps over its angle (C-full), and the offsets at
+/// which the halves overlap (the configuration space obstacle), whose upper side is the height of first contact. At most three dimensions: x
+/// and y, a single offset, or a single offset and a single angle may be free.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment solids design.toml --shape halves -o halves.vtp\n  \
-    catchment solids design.toml --free x -o shape.svg          a planar design that does not turn: polygons\n  \
-    catchment solids design.toml --free x,y -o shape.obj        a spatial design that does not turn\n  \
-    catchment solids design.toml --free x,pitch --slices 15 -o shape.vtp\n  \
-    catchment solids design.toml --shape swept --cor \"-0.1\" -o swept.png\n  \
-    catchment solids design.toml --free x,y --json | jq .bodies\n\n\
-    -o also writes .vtp (VTK PolyData: numbers per face say which pieces and which slice) and .obj (a group per body).\n\
-    Lengths are in D and angles in radians; z is the approach, and an angle takes the axis that no free length has.")]
+#[command(after_long_help = "\
+Examples:
+  catchment solids design.toml --shape halves -o halves.vtp
+  catchment solids design.toml --free x -o shape.svg
+      a planar design without rotation: polygons
+  catchment solids design.toml --free x,y -o shape.obj
+      a spatial design without rotation
+  catchment solids design.toml --free x,pitch --slices 15 -o shape.vtp
+  catchment solids design.toml --shape swept --cor \"-0.1\" -o swept.png
+  catchment solids design.toml --free x,y --json | jq .bodies
+
+-o also writes .vtp (VTK PolyData with the piece and the slice of every face)
+and .obj (a group per body). Lengths are in D and angles in radians; z is the
+approach, and an angle is drawn along the axis that no free offset uses.")]
 pub(crate) struct SolidsArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Which shape
+    /// Solid to write
     #[arg(long, value_name = "SHAPE", default_value = "collision", value_parser = shape_parser())]
     shape: SolidShape,
-    /// Slices across the error box of the angle
+    /// Rotation slices across the error box of the angle
     #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.slices)]
     slices: usize,
-    /// Strips per D into which the moving half is cut before its slices are joined; 1 is the dissertation's method
+    /// Strips per D of the moving half before its slices are joined; 1 is the method of the dissertation
     #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.strips)]
     strips: usize,
     #[command(flatten)]
@@ -50,7 +55,7 @@ fn shape_parser() -> ValueParser {
     let shapes = [
         ("halves", "both halves as convex pieces, docked", SolidShape::Halves),
         ("swept", "the moving half, reflected and turned through its slices", SolidShape::Swept),
-        ("collision", "places of the centre of rotation at which the halves overlap", SolidShape::Collision),
+        ("collision", "positions of the centre of rotation at which the halves overlap", SolidShape::Collision),
     ];
     PossibleValuesParser::new(shapes.map(|(name, help, _)| PossibleValue::new(name).help(help)))
         .map(move |name| {

@@ -22,7 +22,7 @@ use std::path::PathBuf;
 /// with its confidence interval, the failures and the error that dominates them, the gain from halving each standard deviation, and the
 /// largest standard deviations that reach --target.
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
+#[command(override_usage = USAGE, after_long_help = "\
 Examples:
   catchment success design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'
   catchment success design.toml --error-measured errors.csv --target 0.999
@@ -69,7 +69,11 @@ pub(crate) struct SuccessArgs {
     exec: ExecArgs,
 }
 
-/// Which errors to expect: one of these.
+/// A single source of errors is required.
+const USAGE: &str = "catchment success [OPTIONS] --error-sigma <AXIS=SIZE,…> <DESIGN>
+       catchment success [OPTIONS] --robots <FILE> <DESIGN>";
+
+/// Which errors to expect: a single source of them.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct ExpectedArgs {

@@ -26,22 +26,29 @@ use std::time::Instant;
 
 /// Compute every combination of design parameters
 ///
-/// Each --over names a key of the design file and its values; every combination is a design of its own, computed as `run`
-/// computes one. A combination whose halves do not build or do not meet is told with its reason and stops nothing.
+/// Each --over names a key of the design file and its values. Every combination is a design of its own, computed as `run` computes it. A
+/// combination whose halves do not build or do not meet is reported and skipped.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment sweep design.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 -o out\n  \
-    catchment sweep design.toml --over 'errors.yaw=10..30 deg/5' --free x,y,yaw\n  \
-    catchment sweep design.toml --over family=v-face,s-face,x-face --samples 20000\n  \
-    catchment sweep design.toml --over connector.moving.mesh=a.stl,b.stl --json | jq '.designs[].figures.sum'\n\n\
-    A key is written as its path (errors.x), or as its last word where no other key has it; cor and rho are short for\n\
-    center_of_rotation and rotation_length. -1..1/5 is five values from -1 to 1.\n\
-    A folder also gets outlines.png (also .svg) and sweep.zarr. Until the result is complete, finished designs are kept in PATH.parts\n\
-    beside it: the same command goes on from there after Ctrl-C, and writes what it would have written.")]
+#[command(after_long_help = "\
+Examples:
+  catchment sweep design.toml --over aspect_ratio=0.25,0.5,1,2,4 \\
+      --over cor=-1..1/5 -o out
+  catchment sweep design.toml --over 'errors.yaw=10..30 deg/5' --free x,y,yaw
+  catchment sweep design.toml --over family=v-face,s-face,x-face --samples 20000
+  catchment sweep design.toml --over connector.moving.mesh=a.stl,b.stl --json \\
+      | jq '.designs[].figures.sum'
+
+Write a key as its path (errors.x), or as its last word if that is unique; cor
+and rho are short for center_of_rotation and rotation_length. -1..1/5 is five
+values from -1 to 1.
+
+A folder also gets outlines.png (and .svg) and sweep.zarr. Until the result is
+complete, PATH.parts beside it keeps the finished designs: after Ctrl-C, the
+same command continues from there and gives the same result.")]
 pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// A key of the design file and its values, such as cor=-1..1/5 or errors.x=1,2; may be repeated
+    /// Key of the design file and its values, such as cor=-1..1/5 or errors.x=1,2; may be repeated
     #[arg(long, value_name = "KEY=VALUE,…", required = true, allow_hyphen_values = true, value_parser = axis)]
     over: Vec<SweepAxis>,
     #[command(flatten)]

@@ -20,41 +20,50 @@ use std::path::{Path, PathBuf};
 
 /// Follow one pose error, or every pose of a table, to its outcome
 ///
-/// --pose follows one pose error from first contact to its end and prints waypoints along the path. The motion is exact and quasi-static:
-/// no inertia, permanent contact, Coulomb friction if given. --method drop simulates one trial in a rigid-body engine instead, with speed,
-/// mass and bounce. --method kinematic prints the first contact only: rotation points, lever arms and angles of the planar analysis.
+/// --pose follows a single pose error from first contact to its end and prints waypoints along the path. The motion is exact and quasi-static:
+/// no inertia, permanent contact, Coulomb friction if given. --method drop simulates a trial in a rigid-body engine instead, with speed, mass
+/// and bounce. --method kinematic prints the first contact only: rotation points, lever arms and angles of the planar analysis.
 ///
 /// --poses reads a table (CSV) and prints it again with the outcome of every pose (aligned, jammed, missed, undecided) and its final pose
-/// error, row by row. An interrupted run prints the rows that it finished, or writes them into FILE.partial.
+/// error, row by row. An interrupted run prints the finished rows, or writes them into FILE.partial.
 #[derive(Debug, Args)]
 #[command(
     group = ArgGroup::new("start").args(["pose", "poses"]).required(true),
-    after_long_help = "Examples:\n  \
-    catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"\n  \
-    catchment trace design.toml --pose \"x=5 mm\" -o trace.png\n  \
-    catchment trace design.toml --pose \"x=5 mm\" -o trace.glb       an animation, for browsers, Blender and slides\n  \
-    catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n  \
-    catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n  \
-    catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" --method drop --damping 10 --speed 2\n  \
-    catchment trace design.toml --poses poses.csv -o outcomes.csv\n  \
-    printf 'x_mm,pitch_deg\\n5,10\\n20,-30\\n' | catchment trace design.toml --poses -\n  \
-    catchment trace design.toml --poses poses.csv --json | jq .counts\n\n\
-    Lengths are in D and angles in radians unless they have a unit. CSV of one pose has a line per contact point. -o also writes .vtp \
-    (path, contacts and halves for ParaView) and .glb (glTF animation, in metres).\n\n\
-    Columns of a table: x, y, roll, pitch, yaw in any order; missing ones are 0. The name states the unit: x_mm, y_in, x_D, pitch_deg, \
-    yaw [rad], x (mm). Other columns are copied. A name that resembles an error (dx, X_mm) is refused. Final errors have the units of their \
-    columns. A table has at most 64 MiB and 1000000 poses.")]
+    after_long_help = "\
+Examples:
+  catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"
+  catchment trace design.toml --pose \"x=5 mm\" -o trace.png
+  catchment trace design.toml --pose \"x=5 mm\" -o trace.glb
+      an animation for browsers, Blender and slides
+  catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome
+  catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" \\
+      --method kinematic -o levers.svg
+  catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" \\
+      --method drop --damping 10 --speed 2
+  catchment trace design.toml --poses poses.csv -o outcomes.csv
+  printf 'x_mm,pitch_deg\\n5,10\\n' | catchment trace design.toml --poses -
+  catchment trace design.toml --poses poses.csv --json | jq .counts
+
+Lengths are in D and angles in radians unless they have a unit. For one pose,
+CSV has a line per contact point, and -o also writes .vtp (path, contacts and
+halves for ParaView) and .glb (glTF animation, in metres).
+
+Columns of a table: x, y, roll, pitch, yaw in any order; missing columns are 0.
+The name states the unit: x_mm, y_in, x_D, pitch_deg, yaw [rad], x (mm). Other
+columns are copied, and listed on stderr; a name that resembles an error (dx,
+X_mm) is refused. Final errors have the units of their columns. A table has at
+most 64 MiB and 1 000 000 poses.")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
     /// Pose error to start from, such as "x=0.2,pitch=10 deg"; errors that are not named are 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: Option<String>,
-    /// Table of pose errors to start from (CSV); - reads stdin. The outcomes go to stdout, or into the file of -o
+    /// Table of pose errors (CSV); - reads stdin. The outcomes go to stdout, or into the file of -o
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     pub(super) poses: Option<PathBuf>,
     /// Table: point of the moving half at which x and y are measured [default: face]
-    #[arg(long, value_enum, requires = "poses", conflicts_with = "pose")]
+    #[arg(long, hide_short_help = true, value_enum, requires = "poses", conflicts_with = "pose")]
     offsets_at: Option<Point>,
     /// Method that follows the pose
     #[arg(long, value_enum, default_value_t = By::Descent)]
@@ -74,7 +83,7 @@ enum By {
     Descent,
     /// The first contact of a planar face: rotation points, lever arms, angles
     Kinematic,
-    /// One dynamic drop test in a rigid-body engine, from where the half is let go
+    /// A drop simulation in a rigid-body engine
     Drop,
 }
 

@@ -24,24 +24,35 @@ use std::time::Instant;
 
 /// Compare a prediction with the outcomes of robot trials
 ///
-/// Reads the table of `catchment plan` with its column `outcome` filled in (aligned, jammed, missed, aligned-elsewhere, or nothing where a trial was
-/// not made), follows every pose again, and counts. Disagreements nearer to the border than a few accuracies do not count against the
-/// prediction, nor more of them than the robot's own errors explain.
+/// Reads the table of `catchment plan` with its column `outcome` filled in (aligned, jammed, missed, aligned-elsewhere; empty for a trial
+/// that was not made), follows every pose again, and prints a verdict: consistent, inconsistent or undecided. Disagreements within a few
+/// standard deviations of the border do not count against the prediction, nor do as many as the errors of the robot explain.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment validate plan.csv design.toml --repeatability 'x=1 mm,y=1 mm,yaw=1 deg'\n  \
-    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --figure trials.png\n                                                  what was seen over what was predicted\n  \
-    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --estimate-friction\n                                                  which friction explains the failures\n  \
-    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'\n  \
-    catchment validate plan.csv design.toml --repeatability 'x=1 mm' --json | jq '.disagreements[0]'\n  \
-    catchment validate plan.csv out --repeatability 'x=1 mm'           a result of `run -o`, with its friction\n\n\
-    Columns: every error that the design leaves free, as x_mm or yaw_deg, and outcome; trial and line as the plan has them, each trial once. Others are \
-    left alone. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
+#[command(after_long_help = "\
+Examples:
+  catchment validate plan.csv design.toml \\
+      --repeatability 'x=1 mm,y=1 mm,yaw=1 deg'
+  catchment validate plan.csv design.toml --repeatability 'x=1 mm' \\
+      --figure trials.png
+      observed outcomes over the predicted area
+  catchment validate plan.csv design.toml --repeatability 'x=1 mm' \\
+      --estimate-friction
+      the friction that explains the failures
+  catchment validate plan.csv design.toml --repeatability 'x=1 mm' \\
+      --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'
+  catchment validate plan.csv design.toml --repeatability 'x=1 mm' --json \\
+      | jq '.disagreements[0]'
+  catchment validate plan.csv out --repeatability 'x=1 mm'
+      against a result of `run -o`, with its friction
+
+Columns: every free error of the design, as x_mm or yaw_deg, and outcome; trial
+and line as in the plan, each trial once. Other columns are ignored. Lengths are
+in D and angles in radians unless they have a unit; in JSON always.",
     mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
-        .help("The design file, or a folder written by `run -o`")
+        .help("Design file, or folder written by `run -o`")
         .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct ValidateArgs {
-    /// The table of trials (CSV); - reads stdin
+    /// Table of trials (CSV); - reads stdin
     #[arg(value_name = "PLAN", value_hint = clap::ValueHint::FilePath)]
     plan: PathBuf,
     #[command(flatten)]
@@ -52,13 +63,13 @@ pub(crate) struct ValidateArgs {
     /// k: ignore disagreements nearer to the border than k times the repeatability
     #[arg(long, value_name = "K", value_parser = number, default_value_t = catchment::study::validate::LIMIT)]
     limit: f64,
-    /// The point of the moving half where the table gives x and y
+    /// Point of the moving half at which the table gives x and y
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction of the prediction [default: 0, or that of the result]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
-    /// Look for the friction that explains the trials
+    /// Estimate the friction that explains the trials
     #[arg(long)]
     estimate_friction: bool,
     /// Seed of the search for the border

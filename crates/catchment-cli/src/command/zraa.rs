@@ -26,40 +26,45 @@ use std::time::Instant;
 
 /// Compute the offsets corrected without rotation, exactly
 ///
-/// Rotations are locked whatever the design says; of x and y those that are free count. Both: the accepted
-/// offsets are an area. One: they are an interval, which for the planar families has a closed form
-/// (s-face D/3, v-face D/2, x-face D to either side). Where the halves meet along one profile, Nilsson's bound
-/// for such profiles stands beside it, and the extrema that limit this one. Beside an area stands the ONAA in D: the
-/// edge of the largest axis-parallel square inside, wherever it lies. 600 exact motions judge every area: where one of them ends
-/// otherwise, there is no answer.
+/// The zero-rotation area of acceptance: all rotations are locked, whatever the design frees. With x and y free the accepted offsets are an
+/// area, with a single free offset an interval. The planar families have closed forms (s-face D/3, v-face D/2, x-face D to either side). For
+/// halves with a common profile the command also prints Nilsson's bound and the extrema that limit the interval; for an area, the edge of the
+/// largest axis-parallel square inside (ONAA), in D. 600 exact motions check every area; if any of them disagrees, the command refuses.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment zraa design.toml\n  \
-    catchment zraa design.toml --free x             along one axis only\n  \
-    catchment zraa design.toml -o region.svg\n  \
-    catchment zraa s-face.toml v-face.toml x-face.toml -o faces.svg\n                                                  side by side, at their largest offsets\n  \
-    catchment zraa design.toml --json | jq .area_d2\n  \
-    catchment zraa design.toml --beside drop --resolution 11,21,41 -o beside.svg\n                                                    drop trials beside it, and where they disagree\n  \
-    catchment zraa design.toml --beside drop --resolution 21 --halvings 2\n                                                    again with half the time step, and a quarter\n\n\
-    --beside locks all rotations and drops one half at a random place of every cell; the share of the error box on the wrong side of the \
-    exact border has its 95 % interval. The table for programs has the trials of the last round.")]
+#[command(after_long_help = "\
+Examples:
+  catchment zraa design.toml
+  catchment zraa design.toml --free x
+      along a single axis
+  catchment zraa design.toml -o region.svg
+  catchment zraa s-face.toml v-face.toml x-face.toml -o faces.svg
+      side by side, at their largest offsets
+  catchment zraa design.toml --json | jq .area_d2
+  catchment zraa design.toml --beside drop --resolution 11,21,41 -o beside.svg
+      drop simulations beside it, and their disagreements
+  catchment zraa design.toml --beside drop --resolution 21 --halvings 2
+      again with half the time step, and a quarter
+
+--beside locks all rotations and drops a half at a random place of every cell.
+The share of the error box on the wrong side of the exact border has its 95 %
+interval. CSV lists the trials of the last round.")]
 pub(crate) struct ZraaArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// More designs, to stand beside the first; x must be their only free offset
+    /// More designs to compare with the first; x must be their only free offset
     #[arg(value_name = "MORE", value_hint = clap::ValueHint::FilePath)]
     more: Vec<PathBuf>,
-    /// Beside the exact region, trials by this method
+    /// Compare with trials by this method
     #[arg(long, value_name = "METHOD", value_parser = pose_method_parser(), conflicts_with = "more", help_heading = BESIDE)]
     beside: Option<Method>,
-    /// Trials along every free offset; several are done one after the other
+    /// Trials along every free offset; several values run in turn
     #[arg(long, value_name = "N[,N…]", value_delimiter = ',', default_value = "21", requires = "beside",
           help_heading = BESIDE)]
     resolution: Vec<usize>,
-    /// How often the time step of drop trials is halved, at the finest resolution
+    /// Number of times that the time step of drop simulations is halved, at the finest resolution
     #[arg(long, value_name = "TIMES", default_value_t = 0, requires = "beside", help_heading = BESIDE)]
     halvings: u32,
-    /// Seed of the places in the cells
+    /// Seed of the positions inside the cells
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "beside", help_heading = BESIDE)]
     seed: u64,
     #[command(flatten)]
@@ -70,7 +75,7 @@ pub(crate) struct ZraaArgs {
     exec: ExecArgs,
 }
 
-const BESIDE: &str = "Trials beside the exact region";
+const BESIDE: &str = "Comparison with trials";
 
 pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let count = args.more.len() + 1;

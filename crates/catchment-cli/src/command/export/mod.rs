@@ -25,39 +25,46 @@ use std::path::PathBuf;
 
 /// Write files for ParaView, pandas, MuJoCo and Gazebo
 ///
-/// Of a result of `run -o`: the accepted set over up to three of its axes as VTK image data or as its border, or all cells as a table.
-/// Of a design: a drop test, with the same solids, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method
-/// drop`, so that whoever doubts it can run it again. Pieces stay as the design lists them. A comment in each file says the units and what was set.
+/// Of a result of `run -o`: the accepted set over up to three of its axes, as VTK image data or as its border surface, or all cells as a
+/// table. Of a design: a drop simulation with the solids, mass, inertia, damping, friction, force, start and locked errors of --method drop,
+/// so that you can repeat it in another engine. Pieces stay as in the design. A comment in each file states units and settings.
 #[derive(Debug, Args)]
 #[command(
-    after_long_help = "Examples:\n  \
-    catchment export out -o set.vti                       every cell: outcome, share, height\n  \
-    catchment export out -o set.vtp --axes x,y,yaw --at \"pitch=5 deg\"\n                                                        the border of the accepted set\n  \
-    catchment export out -o set.csv                       a line per cell, for pandas\n  \
-    catchment export design.toml --pose \"x=0.2,pitch=10 deg\" -o trial\n  \
-    catchment export design.toml --pose x=0.1 --friction 0.3 -o trial\n  \
-    python -m mujoco.viewer --mjcf=trial/trial.xml      then load key 0\n  \
-    gz sim trial/trial.sdf\n\n\
-    Of a result, -o writes .vti, .vtp or .csv, lengths in D and angles in radians.\n\
-    Of a design, -o DIR: trial.xml (MJCF, all inside), trial.sdf and the meshes that it names. Pieces are convex; a mesh with undercuts is\n\
-    refused, because other engines would replace it by its convex hull.",
+    after_long_help = "\
+Examples:
+  catchment export out -o set.vti
+      every cell: outcome, share, height
+  catchment export out -o set.vtp --axes x,y,yaw --at \"pitch=5 deg\"
+      the border of the accepted set
+  catchment export out -o set.csv
+      a line per cell, for pandas
+  catchment export design.toml --pose \"x=0.2,pitch=10 deg\" -o trial
+  catchment export design.toml --pose x=0.1 --friction 0.3 -o trial
+  python -m mujoco.viewer --mjcf=trial/trial.xml
+      then load key 0
+  gz sim trial/trial.sdf
+
+Of a result, -o writes .vti, .vtp or .csv, lengths in D and angles in radians.
+Of a design, -o DIR writes trial.xml (MJCF with all meshes), trial.sdf and its
+meshes. Pieces are convex; a mesh with undercuts is refused, because other
+engines replace it by its convex hull.",
     mut_arg("path", |path| path.value_name("DESIGN|RESULT")
-        .help("The design file, a folder written by `run -o`, or its NAME.zarr")
+        .help("Design, folder written by `run -o`, or its NAME.zarr")
         .value_hint(clap::ValueHint::AnyPath))
 )]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
-    /// Of a design: the pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
+    /// Of a design: pose error to start from, such as "x=0.2,pitch=10 deg"; errors that are not named are 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: Option<String>,
-    /// Of a result: up to three axes to show, such as x,y,yaw [default: the first three]
+    /// Of a result: up to three axes, such as x,y,yaw [default: the first three]
     #[arg(long, value_name = "AXES", value_parser = dofs)]
     axes: Option<DofSet>,
-    /// Of a result: where along the axes that are not shown, such as "pitch=5 deg"; what is not named is 0
+    /// Of a result: position along the other axes, such as "pitch=5 deg"; axes that are not named are at 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     at: Option<String>,
-    /// Write into this folder, or of a result into this file
+    /// Write into this folder; of a result, into this file
     #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::AnyPath)]
     output: PathBuf,
     /// Of a result: replace the file if it exists

@@ -74,7 +74,7 @@ pub(crate) struct RunArgs {
     /// Also find the tolerance window, as `catchment window` does
     #[arg(long)]
     window: bool,
-    /// Also list the most frequent jams; `catchment rests --jams` lists all
+    /// Also list the most frequent jams, as `catchment rests --jams` does
     #[arg(long)]
     jams: bool,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use std::time::Duration;
 /// When the sampling stops, and what it starts from.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArgs {
-    /// Number of sampled poses, which correct the Sum; 0 leaves it uncorrected [default: 4000, fewer for round halves; 0 with flood]
+    /// Number of sampled poses; 0 leaves the Sum uncorrected [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
     pub(super) samples: Option<u32>,
     /// Sample for this time instead, such as "20s" or "2 min"

@@ -23,20 +23,24 @@ use std::sync::Arc;
 
 /// Serve the interactive page and recompute on demand
 ///
-/// Serves the page of `catchment report` to this machine alone, under an address that holds a random token, until Ctrl-C. "compute again" in the
-/// page reads the design file again, so that it can be changed beside it; a computation that is still running is given up for the newer one.
+/// Serves the page of `catchment report` to this machine only, under an address with a random token, until Ctrl-C. "compute again" in the
+/// page reads the design file again, so edit it beside the page. A newer request cancels a computation that still runs.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
-    catchment view design.toml                          prints the address to open\n  \
-    catchment view design.toml --resolution 20 --leave-out window\n  \
-    catchment view design.toml --port 8080\n\n\
-    Nothing is written. Whoever does not know the token, comes by another name of this machine, or from another page, is refused.")]
+#[command(after_long_help = "\
+Examples:
+  catchment view design.toml
+      prints the address to open
+  catchment view design.toml --resolution 20 --leave-out window
+  catchment view design.toml --port 8080
+
+Nothing is written. Requests without the token, from another page, or by
+another name of this machine are refused.")]
 pub(crate) struct ViewArgs {
     #[command(flatten)]
     design: DesignArgs,
     #[command(flatten)]
     made: MadeArgs,
-    /// Port on 127.0.0.1; 0 for one that is free
+    /// Port on 127.0.0.1; 0 takes any free port
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
     #[command(flatten)]
