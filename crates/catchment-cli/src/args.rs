@@ -1,6 +1,8 @@
 //! The command line as types.
 
+use crate::color::{self, Color};
 use crate::command::Command;
+use crate::exec_args::EXECUTION;
 use crate::failure::Failure;
 use crate::groups::grouped;
 use crate::setting::number;
@@ -28,18 +30,31 @@ use std::path::PathBuf;
 Common options: catchment COMMAND -h. All options, with examples: --help.
 Version: catchment --version.
 
-Results go to stdout, everything else to stderr. NO_COLOR is respected.
+Results go to stdout, everything else to stderr.
+
+Your own defaults never change a result. An option overrides an environment
+variable, and a variable overrides $XDG_CONFIG_HOME/catchment/config.toml or
+~/.config/catchment/config.toml:
+  --threads 4         CATCHMENT_THREADS=4         threads = 4
+  --memory \"4 GiB\"    CATCHMENT_MEMORY=\"4 GiB\"    memory = \"4 GiB\"
+  --unit mm           CATCHMENT_UNIT=mm           unit = \"mm\"
+  --color never       CATCHMENT_COLOR=never       color = \"never\"
+NO_COLOR=1 overrides the file, too.
+
 Exit codes: 0 done, 1 requirement not met, 2 could not compute,
 130 interrupted, 143 terminated."
 )]
 pub(crate) struct Cli {
+    /// Colours of the output [default: auto, or `CATCHMENT_COLOR`]
+    #[arg(long, global = true, value_enum, value_name = "WHEN", hide_short_help = true, help_heading = EXECUTION)]
+    color: Option<Color>,
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
 /// The command line, before it is read.
 pub(crate) fn command() -> clap::Command {
-    grouped(Cli::command())
+    grouped(Cli::command().color(color::of_help()))
 }
 
 /// Reads a command line; its first word is the name of the program.

@@ -1,5 +1,6 @@
 //! How a computation runs: threads, memory, progress. Nothing here changes a result.
 
+use crate::defaults;
 use crate::failure::Failure;
 use crate::output::to_stderr;
 use crate::signals;
@@ -11,16 +12,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Heading of these options.
-const EXECUTION: &str = "Execution (never changes a result)";
+pub(crate) const EXECUTION: &str = "Execution (never changes a result)";
 
 /// Options of every command that computes.
 #[derive(Debug, Args)]
 pub(crate) struct ExecArgs {
-    /// Worker threads; 0 uses every core
-    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024),
+    /// Worker threads; 0 uses every core [default: 0, or `CATCHMENT_THREADS`]
+    #[arg(long, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=MOST_THREADS),
           help_heading = EXECUTION)]
-    threads: u16,
-    /// Memory budget, such as "4 GiB"; larger results are refused [default: three quarters of the free memory]
+    threads: Option<u16>,
+    /// Memory budget, such as "4 GiB"; larger results are refused [default: three quarters of the free memory, or `CATCHMENT_MEMORY`]
     #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, help_heading = EXECUTION)]
     memory: Option<u64>,
     /// Print no progress
@@ -97,14 +98,14 @@ impl Log {
 impl ExecArgs {
     /// How many worker threads are asked for; 0 means one per core.
     pub(crate) fn threads(&self) -> usize {
-        usize::from(self.threads)
+        usize::from(self.threads.or(defaults::get().threads).unwrap_or(0))
     }
 
     /// Starts threads, progress (a bar on a terminal, lines elsewhere) and the handling of signals: once per process.
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
-        let mut exec = Exec::new().with_threads(usize::from(self.threads))?;
-        if let Some(bytes) = self.memory {
+        let mut exec = Exec::new().with_threads(self.threads())?;
+        if let Some(bytes) = self.memory.or(defaults::get().memory) {
             exec = exec.with_memory_budget(bytes);
         }
         let bar = if self.quiet {
@@ -131,8 +132,17 @@ impl ExecArgs {
     }
 }
 
+/// More threads than any machine has cores.
+const MOST_THREADS: i64 = 1024;
+
+/// A number of threads, as `--threads` takes it.
+pub(crate) fn threads(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok().filter(|number| i64::from(*number) <= MOST_THREADS);
+    number.ok_or_else(|| format!("a number of threads is a whole number from 0 to {MOST_THREADS}"))
+}
+
 /// A size such as `4 GiB`, `500 MB` or `1e9` (bytes).
-fn bytes(text: &str) -> Result<u64, String> {
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 9] = [
         ("", 1.0),
         ("B", 1.0),
@@ -160,7 +170,7 @@ mod tests {
 
     #[test]
     fn what_was_asked_for_is_started() {
-        let args = ExecArgs { threads: 2, memory: Some(1000), quiet: true };
+        let args = ExecArgs { threads: Some(2), memory: Some(1000), quiet: true };
         let running = args.start().unwrap();
         assert_eq!(running.exec.threads(), 2);
         assert_eq!(running.exec.memory_budget(), 1000);

@@ -6,7 +6,9 @@
 mod advice;
 mod args;
 mod bug;
+mod color;
 mod command;
+mod defaults;
 mod drop_args;
 mod error_args;
 mod exec_args;
@@ -25,6 +27,7 @@ mod wording;
 
 pub use exit::ExitStatus;
 
+use color::Color;
 use std::ffi::OsString;
 
 /// Does what the command line of this process says.
@@ -38,15 +41,23 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
     let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
     // Whoever reads JSON types nothing.
     let is_read = words.iter().any(|word| word == "--json");
-    bug::caught(|| match args::parse(words) {
-        Ok(cli) => {
-            let next = cli.command.next().filter(|_| !is_read);
-            let status = cli.command.run().unwrap_or_else(failure::Failure::show);
-            let next = next.filter(|_| status == ExitStatus::Done);
-            output::to_stderr(&next.map(|next| format!("next: {next}")).into_iter().collect::<Vec<_>>());
-            status
+    bug::caught(|| {
+        let loaded = defaults::load();
+        if let Some(color) = Color::of_words(&words).or(defaults::get().color) {
+            color.choose();
         }
-        Err(usage) => usage::tell(usage),
+        let cli = match args::parse(words) {
+            Ok(cli) => cli,
+            Err(usage) => return usage::tell(usage),
+        };
+        if let Err(failure) = loaded {
+            return failure.show();
+        }
+        let next = cli.command.next().filter(|_| !is_read);
+        let status = cli.command.run().unwrap_or_else(failure::Failure::show);
+        let next = next.filter(|_| status == ExitStatus::Done);
+        output::to_stderr(&next.map(|next| format!("next: {next}")).into_iter().collect::<Vec<_>>());
+        status
     })
 }
 

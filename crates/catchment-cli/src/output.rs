@@ -1,5 +1,6 @@
 //! Where text goes: stdout, or a file that is there whole or not at all.
 
+use crate::color::is_coloured;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use catchment::report::document::Style;
@@ -182,16 +183,15 @@ pub(crate) fn what_was_written() -> String {
     }
 }
 
-/// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns; coloured on a terminal unless `NO_COLOR` is set.
+/// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns.
 pub(crate) fn style(details: bool) -> Style {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let is_terminal = io::stdout().is_terminal();
     let width =
         || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
-    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let default = Style::default();
     let columns = said.or_else(width).unwrap_or(default.columns);
-    Style { columns, colour: is_terminal && !is_plain, details }
+    Style { columns, colour: is_coloured(&io::stdout()), details }
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.

@@ -35,6 +35,7 @@ mod view;
 mod window;
 mod zraa;
 
+pub(crate) use place::unit;
 pub(crate) use view::admitted;
 
 use crate::exit::ExitStatus;

@@ -1,6 +1,7 @@
 //! `catchment place`: two parts as they come from CAD, and the design that docks them.
 
 use crate::advice::flags;
+use crate::defaults;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -43,7 +44,7 @@ pub(crate) struct PlaceArgs {
     /// Moving half; without it the first file holds both halves as separate bodies, and the larger is fixed
     #[arg(value_name = "MOVING", value_hint = clap::ValueHint::FilePath)]
     moving: Option<PathBuf>,
-    /// Unit of files that do not state theirs: um, mm, cm, m or in
+    /// Unit of files that do not state theirs: um, mm, cm, m or in [default: `CATCHMENT_UNIT`]
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
     /// Add another part to the fixed half: a file, or a bought part as in a design; may be repeated
@@ -130,7 +131,7 @@ const WORTH: f64 = 0.01;
 
 pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     let kind = files(args)?;
-    let mut settings = settings(args)?;
+    let mut settings = settings(args, args.unit)?;
     let running = args.exec.start()?;
     if kind.is_some() {
         figure::ensure_fits(0, &running.exec)?;
@@ -152,7 +153,15 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     }
     settings.with = [beside(&args.with_fixed, place)?, beside(&args.with_moving, place)?];
     running.may_be_left();
-    let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
+    let mut found = propose(&parts, &settings, place, &running.exec);
+    // A default stands in where the files need a unit, and nowhere else: it changes no proposal that there is without it.
+    if let (Err(ProposalError::NoUnit { .. }), Some((unit, source))) = (&found, defaults::get().unit) {
+        running.beside_bar(|| to_stderr(&[format!("note: unit {}, from {source}", unit.symbol())]));
+        let with = std::mem::take(&mut settings.with);
+        settings = Settings { with, ..self::settings(args, Some(unit))? };
+        found = propose(&parts, &settings, place, &running.exec);
+    }
+    let found = found.map_err(refused)?;
     // All of it is there before any of it is written.
     let picture = match kind {
         Some(kind) => Some(image(&figure::pair(&found.problem)?, kind)?),
@@ -193,7 +202,7 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     })
 }
 
-fn settings(args: &PlaceArgs) -> Result<ProposalSettings, Failure> {
+fn settings(args: &PlaceArgs, unit: Option<LengthUnit>) -> Result<ProposalSettings, Failure> {
     let frames = match args.drawn {
         Drawn::Auto => PartFrames::Any,
         Drawn::Assembled => PartFrames::Assembled,
@@ -217,10 +226,10 @@ fn settings(args: &PlaceArgs) -> Result<ProposalSettings, Failure> {
         frames,
         approach: args.approach,
         facing,
-        unit: args.unit,
+        unit,
         free: args.free,
         name: args.name.clone(),
-        simplify: args.simplify.as_deref().map(|text| simplify(text, args.unit)).transpose()?,
+        simplify: args.simplify.as_deref().map(|text| simplify(text, unit)).transpose()?,
         with: [Vec::new(), Vec::new()],
     })
 }
@@ -337,7 +346,7 @@ fn relative(file: &Path, folder: &Path) -> PathBuf {
     up.chain(file[same..].iter().copied()).collect()
 }
 
-fn unit(text: &str) -> Result<LengthUnit, String> {
+pub(crate) fn unit(text: &str) -> Result<LengthUnit, String> {
     LengthUnit::ALL
         .into_iter()
         .find(|unit| unit.symbol() == text)

@@ -10,6 +10,8 @@ mod chance;
 mod check;
 mod compare;
 mod compose;
+mod defaults;
+mod door;
 mod files;
 mod friction;
 mod hold;
@@ -48,7 +50,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The binary in a folder, with nothing of the tester's terminal.
+/// The binary in a folder, with nothing of the tester's terminal and no defaults of theirs: without HOME there is no file of them.
 fn catchment(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_catchment"));
     command

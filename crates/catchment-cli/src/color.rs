@@ -1,0 +1,110 @@
+//! Whether output is coloured.
+//!
+//! ```text
+//!   --color ▶ CATCHMENT_COLOR ▶ NO_COLOR ▶ color in config.toml ▶ auto: on a terminal
+//! ```
+
+use clap::{ColorChoice, ValueEnum};
+use miette::MietteHandlerOpts;
+use std::ffi::OsString;
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// When output is coloured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Color {
+    /// On a terminal, unless `NO_COLOR` is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// What this process does; [`Color::Auto`] until it is chosen.
+static CHOSEN: AtomicU8 = AtomicU8::new(Color::Auto as u8);
+
+impl Color {
+    /// The choice of a command line that is not read yet: its help and its errors are coloured, too.
+    pub(crate) fn of_words(words: &[OsString]) -> Option<Self> {
+        const OPTION: &str = "--color";
+        let mut words = words.iter().skip(1).map_while(|word| word.to_str().filter(|word| *word != "--"));
+        while let Some(word) = words.next() {
+            let value = match word.strip_prefix(OPTION) {
+                Some("") => words.next(),
+                Some(rest) => rest.strip_prefix('='),
+                None => None,
+            };
+            if let Some(value) = value {
+                return Self::from_str(value, false).ok();
+            }
+        }
+        None
+    }
+
+    /// From now on.
+    pub(crate) fn choose(self) {
+        CHOSEN.store(self as u8, Ordering::Relaxed);
+        let is_coloured = match self {
+            Self::Auto => return,
+            Self::Always => true,
+            Self::Never => false,
+        };
+        // There is one already where this runs twice in a process.
+        let _ = miette::set_hook(Box::new(move |_| {
+            Box::new(MietteHandlerOpts::new().color(is_coloured).build())
+        }));
+    }
+
+    /// The choice so far.
+    fn chosen() -> Self {
+        let all = [Self::Auto, Self::Always, Self::Never];
+        all.into_iter().find(|one| *one as u8 == CHOSEN.load(Ordering::Relaxed)).unwrap_or(Self::Auto)
+    }
+}
+
+/// Whether text on this stream is coloured.
+pub(crate) fn is_coloured(stream: &impl IsTerminal) -> bool {
+    match Color::chosen() {
+        Color::Always => true,
+        Color::Never => false,
+        Color::Auto => stream.is_terminal() && !no_color(),
+    }
+}
+
+/// Whether the user wants no colours, <https://no-color.org>.
+pub(crate) fn no_color() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
+}
+
+/// The choice, for help and errors of the command line.
+pub(crate) fn of_help() -> ColorChoice {
+    match Color::chosen() {
+        Color::Auto => ColorChoice::Auto,
+        Color::Always => ColorChoice::Always,
+        Color::Never => ColorChoice::Never,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_choice_of_a_command_line_is_found_before_it_is_read() {
+        let of = |line: &str| {
+            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+            Color::of_words(&words)
+        };
+        assert_eq!(of("catchment run d.toml --color never"), Some(Color::Never));
+        assert_eq!(of("catchment --color=always run d.toml"), Some(Color::Always));
+        for line in [
+            "catchment run",
+            "catchment run --color",
+            "catchment run --color pink",
+            "catchment run -- --color never",
+        ] {
+            assert_eq!(of(line), None, "{line}");
+        }
+    }
+}
