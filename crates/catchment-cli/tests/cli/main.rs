@@ -11,7 +11,6 @@ mod check;
 mod compare;
 mod compose;
 mod defaults;
-mod door;
 mod files;
 mod friction;
 mod hold;
