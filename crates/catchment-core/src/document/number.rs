@@ -68,13 +68,13 @@ pub fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return significant(value);
     }
-    // Of an interval that reaches far to one side half of it would say nothing.
+    // If an interval reaches far to one side, a half-width would mislead; both ends are written.
     if error > value.abs() && lo > 0.0 {
         return format!("{} … {}", significant(lo), significant(hi));
     }
     let decimals = (1.0 - error.log10().floor()).clamp(0.0, 9.0);
     let unit = 10f64.powf(-decimals);
-    // A little less than a whole unit, so that rounding of the division does not add one.
+    // Slightly less than a whole unit, so that rounding of the division does not add a unit.
     let up = ((error / unit - 1e-9).ceil()) * unit;
     let decimals = decimals as usize;
     format!("{value:.decimals$} ± {up:.decimals$}")

@@ -53,7 +53,7 @@ impl Reporter {
         let mut told = self.run.told.lock().unwrap_or_else(PoisonError::into_inner);
         let known = told.iter().position(|(name, _)| *name == stage);
         let greatest = known.map_or(0.0, |k| told[k].1);
-        // A fraction of nothing is no number, and is not told either.
+        // A fraction of zero items is not a number; it fails this comparison and is not reported.
         if fraction >= greatest {
             match known {
                 Some(k) => told[k].1 = fraction,

@@ -160,7 +160,7 @@ fn shared() -> Option<&'static ThreadPool> {
     SHARED
         .get_or_init(|| {
             let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
-            // Refused where a run begins; here nothing can be said.
+            // The start of a run rejects an invalid setting; here is no way to report it.
             let threads = wanted(environment()).ok().filter(|threads| *threads > 0).unwrap_or(cores);
             most(threads, |threads| {
                 ensure_room(threads, memory::limit()).ok()?;
@@ -179,7 +179,7 @@ fn most<T>(most: usize, start: impl FnMut(usize) -> Option<T>) -> Option<T> {
 fn alone<T>(work: impl FnOnce() -> T) -> T {
     // Once a thread is its own pool it stays so.
     if rayon::current_thread_index().is_none() {
-        // Starts no thread, and fails on none but a thread that is in a pool.
+        // Starts no thread; fails only if the thread already belongs to a pool.
         let _ = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
     }
     work()

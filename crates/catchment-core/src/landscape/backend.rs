@@ -139,7 +139,8 @@ mod conformance {
                 pose.lateral += DVec2::splat(by);
                 brute::height(pair, &pose)
             };
-            // Within the seam of a border two paths may see it on either side: a cell so near to one has no say.
+            // Two methods may place a border differently within the seam; cells so close to a border are
+            // skipped.
             let near = [-1e-9, 0.0, 1e-9].map(at);
             match (near, f64::from(height)) {
                 // Single precision of a height below 4, and the seam's slope.

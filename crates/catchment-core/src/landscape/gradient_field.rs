@@ -299,7 +299,8 @@ impl<'a> Slab<'a> {
                         });
                     }
                     self.numbers[slot] = patches.len() as u16;
-                    // One step of the lattice apart, or one D where it has no step: the patch is then constant.
+                    // At points a lattice step apart, or 1 D apart along an axis without a step: the patch is
+                    // constant there.
                     let at = |kx: f64, ky: f64| lateral(lattices, kx, ky);
                     let gradient = |lateral: DVec2| {
                         let (contact, cor) = self.envelope.carried_by(*carrier, lateral);
@@ -352,7 +353,8 @@ mod tests {
                     continue;
                 }
                 carried += 1;
-                // The gradient of one of the contacts there; all are in the list, the carrier is one of them.
+                // The gradient must belong to one of the active contacts; the list contains all of them,
+                // including the carrier.
                 let error = grid.pose(cell);
                 let pose = CorPose::from_error(&error, -0.4, pair.alignment.free);
                 let mut envelope = pair.at_rotation(pose.rotation);

@@ -239,7 +239,7 @@ mod tests {
         let mut grid = Grid::over(&pair.alignment, |_| 4);
         grid.axes[0].hi = 3.0; // centres at −0.5, 0.5, 1.5, 2.5; the halves meet below 1.
         let heights = Landscape::compute(&pair, &grid, &Exec::new()).unwrap().heights;
-        // Slope 1 on both: half a width apart the tips pass at the height where they would stand level.
+        // Both slopes are 1: half a width apart, the tips are level with each other as they pass.
         assert_eq!(heights, [0.0, 0.0, f32::NEG_INFINITY, f32::NEG_INFINITY]);
     }
 

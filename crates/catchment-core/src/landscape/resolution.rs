@@ -245,7 +245,8 @@ mod tests {
     fn centres_lie_on_fractions_or_do_not() {
         for cells in 2..=64usize {
             for denominator in 2..=8usize {
-                // Centres are at (2 k + 1 − cells)/cells; in lowest terms where nothing but 1 divides both.
+                // Centres are at (2 k + 1 − cells)/cells; the fraction is in lowest terms if only 1 divides
+                // both numbers.
                 let centers = (0..cells).map(|k| (2 * k + 1).abs_diff(cells));
                 let divides = |d: usize, j: usize| (j * denominator).is_multiple_of(d);
                 let found =

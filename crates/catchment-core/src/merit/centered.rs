@@ -102,7 +102,7 @@ fn first_rejected(
     border: f64,
     exec: &Exec,
 ) -> Result<f64, Cancelled> {
-    // A grid without axes is one cell, at zero.
+    // A grid without axes has a single cell, at zero.
     let zero = vec![0.0];
     let (first, others) = table.split_first().map_or((&zero, table), |(first, others)| (first, others));
     let (inner, slabs) = others.split_last().map_or((others, &zero), |(last, inner)| (inner, last));

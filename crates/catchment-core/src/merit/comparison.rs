@@ -337,7 +337,7 @@ fn distances(first: &Acceptance, second: &Acceptance, exec: &Exec) -> Result<Opt
             if !differing.iter().any(|cell| accepted(first, *cell) == side) {
                 continue;
             }
-            // The way to the border from a cell is the way to the nearest one of the other kind.
+            // The distance of a cell from the border is its distance from the nearest cell of the other kind.
             let squares =
                 squared_distances(&grid.shape(), spacing, |cell| accepted(first, cell) != side, exec)?;
             let own = differing.iter().filter(|cell| accepted(first, **cell) == side);
@@ -393,7 +393,7 @@ mod tests {
             (0, 0, found.only_second)
         );
         let d = found.distances.unwrap();
-        // 0.2 is 20 cells, and 0.1 of the box. A ring's median is where half its area lies inside.
+        // 0.2 is 20 cells, and 0.1 of the error box. Half of a ring's area lies inside the median radius.
         assert!((d.cells.max - 20.0).abs() < 1.5 && (d.error_box.max - 0.1).abs() < 0.0075, "{d:?}");
         let median = 100.0 * (0.37f64.sqrt() - 0.5);
         assert!((d.cells.median - median).abs() < 1.0 && d.cells.p95 > 18.0, "{d:?}");

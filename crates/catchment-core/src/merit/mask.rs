@@ -125,7 +125,8 @@ impl Mask {
                 grow_row(block, valid);
                 return Ok(());
             }
-            // Every row takes in the next one, then, backwards, the one before: both as they were.
+            // Each row takes the union with the next row; then, backwards, with the previous row, both as
+            // they were at first.
             let rows = block.len() / stride;
             for k in 1..rows {
                 let (here, next) = block[(k - 1) * stride..(k + 1) * stride].split_at_mut(stride);
@@ -147,7 +148,7 @@ impl Mask {
             let (Some(&from), Some(&to)) = (from.get(axis), to.get(axis)) else { return Ok(()) };
             let mut reach = from;
             while reach < to {
-                // Two boxes that touch or overlap make a longer one.
+                // Two boxes that touch or overlap form a longer box.
                 let step = reach.min(to - reach);
                 if axis == 0 {
                     keep_if_ahead(block, step);

@@ -174,7 +174,7 @@ pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Canc
             warnings.push(Warning::TouchesBorder { axes });
         }
         let tolerable = tolerance::around_zero(grid);
-        // What is undecided may hold.
+        // An undecided cell may be accepted.
         let may = [Outcome::Aligned, Outcome::Undecided];
         let holds = |cell: &usize| may.contains(&acceptance.outcomes[*cell]);
         if !tolerable.is_empty() && !tolerable.iter().any(holds) {

@@ -150,7 +150,7 @@ const SAMPLES_BETWEEN_CHECKS: u32 = 4096;
 /// Sums the product weights of the marked cells: rows first, then slabs of the last axis, then their sums in order, so
 /// that rounding does not depend on threads.
 fn weigh(mask: &Mask, weights: &[Vec<f64>], exec: &Exec) -> Result<f64, Cancelled> {
-    // A grid without axes is one cell of probability 1.
+    // A grid without axes has a single cell of probability 1.
     let one = vec![1.0];
     let (first, others) = weights.split_first().map_or((&one, weights), |(first, others)| (first, others));
     let (inner, slabs) = others.split_last().map_or((others, &one), |(last, inner)| (inner, last));
@@ -199,7 +199,7 @@ fn cell_weights(
     }
     let along = |axis: &GridAxis| {
         let (mean, scale) = (mean.to_array()[axis.dof.index()], scale.to_array()[axis.dof.index()]);
-        // An error that is always the same one: on a border between two cells it counts half in each.
+        // A constant error: on a border between two cells, each cell receives half the probability.
         let below = |q: f64| match (scale == 0.0, (q - mean) / axis.step()) {
             (false, _) => cdf((q - mean) / scale),
             (true, d) if d.abs() < 1e-9 => 0.5,

@@ -72,7 +72,7 @@ fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Toleranc
     let at_zero: Vec<usize> = (home..axis.cells).take_while(|k| gap(axis, *k) == 0.0).collect();
     let (lowest, highest) = (home, *at_zero.last()?);
     let step = axis.step();
-    // With one cell at zero it must be accepted for either side to be; with two, each side has its own.
+    // A single cell at zero must be accepted for either side; with two cells at zero, each side has its own.
     let below = (0..=lowest).rev().take_while(|k| accepted(*k)).last();
     let above = (highest..axis.cells).take_while(|k| accepted(*k)).last();
     Some(Tolerance {

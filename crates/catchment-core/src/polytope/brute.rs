@@ -105,7 +105,7 @@ fn normal(dimension: usize, points: &[PolytopePoint], subset: &[usize]) -> Optio
     if basis.len() + 1 != dimension {
         return None;
     }
-    // What is left of the axis that is farthest from the plane's directions.
+    // The remainder of the coordinate axis that is farthest from the directions of the plane.
     (0..dimension)
         .map(|axis| {
             let mut unit = [0.0; MAX_DIMENSION];

@@ -88,7 +88,8 @@ impl Plane {
     /// lower-dimensional subspace or `below` lies on it.
     pub(super) fn new(dimension: usize, corners: &[Lattice; MAX_DIMENSION], below: &Lattice) -> Option<Self> {
         let (mut unit, mut bound) = rough_normal(dimension, corners);
-        // At most 2^313: its square is a number. Where it vanishes, the side is always computed exactly.
+        // At most 2^313, so the square does not overflow. If it vanishes, the side is always computed
+        // exactly.
         let size = super::dot(&unit, &unit).sqrt();
         if size > 0.0 {
             unit = unit.map(|c| c / size);
@@ -180,7 +181,7 @@ impl Plane {
 /// The normal, not yet turned or scaled, and its components with all signs positive.
 fn rough_normal(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> (PolytopePoint, PolytopePoint) {
     let all = (1usize << dimension) - 1;
-    // By the set of columns; one row after another.
+    // Indexed by the set of columns; expanded row by row.
     let mut minors = [(0.0, 0.0); 1 << MAX_DIMENSION];
     minors[0] = (1.0, 1.0);
     for columns in 1..all {
@@ -291,7 +292,7 @@ mod tests {
     fn a_unit_of_the_lattice_decides_the_side_in_every_dimension() {
         let far = 1i64 << 50;
         for dimension in 1..=MAX_DIMENSION {
-            // The plane x_0 + … = far through the axes' far points, and points one unit beside it.
+            // The plane x_0 + … = far through the far points of the axes, and points one unit off the plane.
             let mut points = [[0; MAX_DIMENSION]; MAX_DIMENSION];
             for (axis, point) in points.iter_mut().enumerate().take(dimension) {
                 point[axis] = far;

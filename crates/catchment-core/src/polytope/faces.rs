@@ -80,7 +80,7 @@ impl Hull {
             let row = all.row(vertex);
             (0..all.rows()).all(|other| {
                 let within = row.iter().zip(all.row(other)).all(|(a, b)| a & !b == 0);
-                // Of two in one place, the first stays.
+                // Of two vertices in the same place, the first remains.
                 !within || other == vertex || (vertex < other && row == all.row(other))
             })
         };
@@ -89,7 +89,7 @@ impl Hull {
         for &corner in &corners {
             incidence.push(super::incidence::ones(all.row(corner).iter().copied()));
         }
-        // Where nothing was put together the faces are those of the hull, which is closed.
+        // If no facets were merged, the faces are those of the hull, which is closed.
         let simplicial =
             facets.len() == self.simplices.len() && incident.len() == self.dimension * facets.len();
         if nearly && !simplicial && !incidence.is_sound(self.dimension, facets.len()) {

@@ -131,7 +131,7 @@ impl Hull {
         for (made, &(facet, slot, beyond)) in horizon.iter().enumerate() {
             let old = &self.simplices[facet];
             let (mut vertices, mut neighbours) = (old.vertices, [NONE; MAX_DIMENSION]);
-            // What the facet that goes had behind the ridge is inside, strictly below the new facet.
+            // The vertex of the removed facet behind the ridge lies inside, strictly below the new facet.
             let below = self.points[vertices[slot]];
             vertices[slot] = point;
             neighbours[slot] = beyond;

@@ -56,8 +56,9 @@ impl Polytope {
             }
             let side: Vec<usize> =
                 face.iter().copied().filter(|vertex| self.incidence.has(*vertex, facet)).collect();
-            // All facets that hold the side: it is a facet of the face if none of them holds more of the face than
-            // it and less than all; and it is counted for the first of them.
+            // All facets that contain the side. The side is a facet of the face if none of them contains more
+            // vertices of the face, except those that contain the whole face; it is counted for the first of
+            // them.
             let mut holding = self.incidence.row(side[0]).to_vec();
             for vertex in &side[1..] {
                 for (all, word) in holding.iter_mut().zip(self.incidence.row(*vertex)) {

@@ -83,7 +83,7 @@ impl FromStr for Dof {
     fn from_str(name: &str) -> Result<Self, UnknownDof> {
         Self::ALL.into_iter().find(|dof| dof.name() == name).ok_or_else(|| {
             let meant = nearest(name, Self::ALL.map(Self::name));
-            // Every single letter is one slip away from x.
+            // Any single letter has edit distance 1 from x.
             let near = |dof: &Self| {
                 meant == Some(dof.name()) && (name.len() > 1 || name.eq_ignore_ascii_case(dof.name()))
             };

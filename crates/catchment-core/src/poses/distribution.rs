@@ -111,7 +111,7 @@ mod tests {
         let design = crate::design::read(text, Path::new("")).unwrap().design;
         let normal = Distribution::normal("x=1 mm, pitch = 2 deg", &design).unwrap();
         let Distribution::Normal { mean, sigma } = normal else { panic!("{normal:?}") };
-        // One division and one multiplication.
+        // A division and a multiplication.
         assert!(mean == PoseError::default() && (sigma.x - 0.02).abs() < 1e-17);
         assert_eq!(sigma.pitch, 2f64.to_radians());
         let text = "x=-1,pitch=1 mmm,yaw=1,z=1,x=2,y";

@@ -233,7 +233,7 @@ fn row(
     }
     let locked = |dof: Dof| !design.alignment.free.contains(dof);
     if faults.iter().any(|(dof, ..)| dof.is_rotation()) {
-        // Where a locked offset belongs depends on the rotation.
+        // The target of a locked offset depends on the rotation.
         OffsetsAt::LATERAL.into_iter().filter(|dof| locked(*dof)).for_each(|dof| written[dof.index()] = None);
     }
     match resolve(&written, at, design) {
@@ -292,7 +292,7 @@ mod tests {
         let errors = table.errors();
         assert_eq!(errors.len(), 2);
         assert_eq!(errors[0].pitch, 90f64.to_radians());
-        // One multiplication and one division.
+        // A multiplication and a division.
         assert!((errors[0].x - 0.1).abs() < 1e-15 && (errors[1].x + 0.05).abs() < 1e-15);
         assert_eq!(table.names(), ["x [mm]", "y", "roll", "pitch (deg)", "yaw"]);
         assert_eq!(table.carried(), [(0, "id".to_owned())]);
@@ -316,7 +316,7 @@ mod tests {
     fn every_cell_is_complained_about_in_its_place() {
         let found = wrong("x,pitch,y\n1,2\nnan,,0\n1e9,4,0.5\n0,0,0.5\n0,0,0.6\n1 mm,0,0\n");
         let cells: Vec<&str> = found.iter().map(|(cell, _)| cell.as_str()).collect();
-        // The second value of the locked y says nothing new.
+        // The second value of the locked y adds no new error.
         assert_eq!(cells, ["1,2", "nan", "", "1e9", "4", "0.5", "1 mm"]);
         assert_eq!(wrong("x_ft,Pitch,rol,x,x_mm,final_x\n0,0,0,0,0,0\n").len(), 5);
         assert_eq!(wrong("time,part\n1,2\n")[0].1, "no column is a pose error");

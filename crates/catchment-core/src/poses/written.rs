@@ -40,7 +40,7 @@ pub(super) fn resolve(
         }
     }
     let measured = PoseError::from_array(values);
-    // Where the face centre is depends on the rotation.
+    // The position of the face centre depends on the rotation.
     if faults.iter().all(|(dof, _)| !dof.is_rotation()) {
         for dof in OffsetsAt::LATERAL.into_iter().filter(|dof| !alignment.free.contains(*dof)) {
             let value = values[dof.index()];
@@ -150,7 +150,7 @@ mod tests {
             else {
                 panic!("one fault of y");
             };
-            // What the message says is taken at its word.
+            // The value that the message proposes is valid input.
             let said = fault.message.split("face centre at ").nth(1).unwrap();
             let said = said.strip_suffix(" at this rotation").unwrap();
             assert!(read(said, OffsetsAt::Face).is_ok(), "{said}");

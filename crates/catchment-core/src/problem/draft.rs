@@ -224,7 +224,7 @@ impl Draft {
         let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         let refusal = apart.first().map(|first| {
-            // Said once: all are about one pose.
+            // Reported once: all problems concern the same pose.
             let advice = remedies::advice(&connector, &pair, &self.design, first);
             self.clone().unmated(&apart, advice)
         });

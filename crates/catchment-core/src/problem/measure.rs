@@ -47,7 +47,7 @@ fn of(draft: Draft, exec: &Exec) -> Result<(f64, WidthFrom), ProblemError> {
             Ok(built) => built,
             Err(problems) => return Err(draft.unbuilt(&problems).into()),
         };
-    // The height without any error does not depend on the alignment problem.
+    // The mated height does not depend on the alignment problem.
     let lift = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X)).mated_height();
     let found = lift.is_finite().then(|| width::default(&connector.fixed, &connector.moving, lift, widest));
     found.flatten().ok_or_else(|| draft.unmated(&[MatedProblem::Apart], None).into())
@@ -66,6 +66,6 @@ fn is_round(design: &Design) -> bool {
 fn rounded(width: f64) -> f64 {
     let places = DIGITS - 1 - width.log10().floor() as i32;
     let shift = 10f64.powi(places.abs());
-    // A power of ten that is whole keeps the last digit what it is.
+    // Multiply or divide by an integer power of ten, which keeps the last digit exact.
     if places >= 0 { (width * shift).round() / shift } else { (width / shift).round() * shift }
 }

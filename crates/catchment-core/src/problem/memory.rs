@@ -44,7 +44,7 @@ fn spec(source: HalfSource, contents: &[MeshContent], built: &Half) -> HalfSpec 
         }
         HalfSource::Mesh { spec, .. } => HalfSpec::Mesh(spec),
         HalfSource::Parts(parts) => HalfSpec::Parts(parts.into_iter().map(|(part, _)| part).collect()),
-        // A half of a family is one that a design of two halves of one's own cannot name.
+        // A design of custom halves cannot name a half of a family, so its triangles are stored.
         HalfSource::Triangles(_) | HalfSource::Surface(_) | HalfSource::Family(_) => {
             HalfSpec::Memory { content: contents.first().cloned().unwrap_or_else(|| content_of(built)) }
         }

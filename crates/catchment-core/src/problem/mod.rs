@@ -87,7 +87,7 @@ impl Problem {
     /// All errors of its geometry or its mated pose.
     pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
         let own = self.design();
-        // Where halves settle depends on the alignment.
+        // The rest that halves settle into depends on the alignment.
         let settles = matches!(&design.connector, ConnectorSpec::Own(own) if own.settle);
         if !settles && design.connector == own.connector && design.alignment.mount == own.alignment.mount {
             return Draft::from(design).with_halves(self.connector().clone(), &Exec::new());
@@ -96,8 +96,8 @@ impl Problem {
     }
 
     fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
-        // What the meshes held is known by now, so that there is a digest.
-        // Known of every design whose halves were built.
+        // The mesh contents are known at this point for any design whose halves were built, so a digest
+        // exists.
         let digest = draft.design().digest().map_or_else(String::new, |digest| hex(&digest));
         Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
     }

@@ -88,7 +88,7 @@ fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let bottom = HeightMap::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
     let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();
     let found = height_map::in_the_way(&top, &bottom, moved, cell)?;
-    // The height map of the moving half is of the half where its face centre is the origin.
+    // The height map of the moving half has its origin at the face centre.
     let at = [HalfRole::Fixed, HalfRole::Moving]
         .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
     Some(height_map::in_words(&found, &at, DisplayUnit::of(design)))

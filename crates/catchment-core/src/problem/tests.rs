@@ -65,7 +65,7 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
     };
     let (here, there) = (problem("here", &plug).unwrap(), problem("there", &plug).unwrap());
     assert_eq!(here.digest(), there.digest());
-    // The report says what was in the file, not only where it lay.
+    // The report contains the content of the file, not only its path.
     let ConnectorSpec::Own(own) = &here.design().connector else { panic!("it has halves of its own") };
     let HalfSpec::Mesh(FileSpec { content: Some(content), .. }) = &own.moving else { panic!("a mesh") };
     assert_eq!((content.bytes, content.triangles), (plug.len() as u64, 6));
@@ -183,7 +183,7 @@ fn a_width_that_is_left_out_is_measured() {
     // The cylinder is a polygon inside of the circle, by at most 0.001 D to either side.
     assert!((12.0 - 0.002 * 12.0..=12.0).contains(&design.width), "{}", design.width);
     assert_eq!(from(&found), WidthFrom::Touching);
-    // Lengths with a unit count in that D, bare ones are in D.
+    // Lengths with a unit are converted with this D; plain numbers are in D.
     assert!((design.alignment.center_of_rotation * design.width - 3.0).abs() < 1e-12);
     assert!((design.alignment.half_ranges[0] * design.width - 6.0).abs() < 1e-12);
     assert_eq!(design.alignment.half_ranges[1], 0.25);
@@ -191,7 +191,7 @@ fn a_width_that_is_left_out_is_measured() {
     let written = draft(&pin_on(&format!("width = {}\n", design.width), 40.0));
     assert_eq!(from(&written), WidthFrom::Written);
     assert_eq!(written.design().alignment, design.alignment);
-    // On a plate 40 times as wide D is what its size demands.
+    // On a plate 40 times as wide, the size of the plate determines D.
     let wide = draft(&pin_on("", 480.0));
     assert_eq!(from(&wide), WidthFrom::Size);
     assert!((wide.design().width - 480.0 / (16.0 * 0.99)).abs() < 1e-6, "{}", wide.design().width);

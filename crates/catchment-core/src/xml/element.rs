@@ -18,7 +18,7 @@ pub(super) struct Prefixes {
 
 impl Prefixes {
     pub(super) fn of(root: &Tag<'_>) -> Self {
-        // The usual one, wherever it is bound.
+        // The usual prefix, if the root binds it.
         let bound = ["svg"].iter().filter(|prefix| {
             root.attribute(&format!("xmlns:{prefix}")).is_some_and(|own| own.value == NAMESPACE)
         });

@@ -163,7 +163,7 @@ impl Sheet {
                 self.rules.push(Rule { selector: parsed, declarations: declared.clone() });
             }
         }
-        // Stable: of equal ones the later counts.
+        // A stable sort: of equal rules the later counts.
         self.rules.sort_by_key(|rule| rule.selector.specificity());
         Ok(())
     }

@@ -193,13 +193,13 @@ pub fn shapes(
 /// The style sheets of a picture, wherever they stand in it.
 fn sheets(text: &str) -> Result<Sheet, UnsupportedSvg> {
     let mut sheet = Sheet::default();
-    // No picture without the word has one.
+    // A picture without the word has no style sheet.
     if !text.contains("style") {
         return Ok(sheet);
     }
     let mut walk = Walk::new(text.as_bytes(), LIMITS);
     let (mut depth, mut style) = (0_usize, None);
-    // What is broken is refused where shapes are read.
+    // A syntax error is reported later, when the shapes are read.
     while let Ok(Some(piece)) = walk.next() {
         match piece {
             Piece::Start(tag) => {

@@ -108,7 +108,7 @@ pub(super) fn check(polytope: &Polytope) -> Result<(), TestCaseError> {
         prop_assert!(polytope.vertices().iter().any(|v| plane.excess(v) < -RESOLUTION));
     }
     if dimension < 5 {
-        // The faces, which the volume is measured by, and the vertices alone say the same.
+        // The volume from the faces equals the volume of the hull of the vertices.
         let hull = Polytope::hull(dimension, polytope.vertices());
         let volume = hull.map_or(0.0, |hull| hull.volume());
         prop_assert!(

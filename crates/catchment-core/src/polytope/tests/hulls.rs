@@ -31,10 +31,10 @@ proptest! {
     fn a_hulls_facets_are_those_of_brute((dimension, points) in cloud(2..=4, 10)) {
         let brute = brute::facets(dimension, &points);
         let depth = |f: &Halfspace| points.iter().map(|p| -f.excess(p)).fold(0.0, f64::max);
-        // Brute cannot tell the sides of what is nearly flat.
+        // Brute force cannot distinguish the sides of a nearly flat set.
         prop_assume!(brute.iter().all(|f| depth(f) > 1e-3 || depth(f) < 1e-9));
         let Some(hull) = Polytope::hull(dimension, &points) else {
-            // All in one plane: every plane through that has all behind it, on both sides.
+            // All points are coplanar: each plane through them has all points behind it, on both sides.
             prop_assert!(brute.iter().all(|f| points.iter().all(|p| f.excess(p) >= -1e-6)), "{brute:?}");
             return Ok(());
         };
@@ -108,7 +108,7 @@ proptest! {
             g[dimension..].fill(0.0);
             g
         }).collect();
-        // Every choice of as many generators as there are dimensions spans a parallelepiped, which is one cell.
+        // Any subset of as many generators as there are dimensions spans a parallelepiped, which is one cell.
         let factorial: f64 = (1..=dimension).map(|k| k as f64).product();
         let mut cells = Vec::new();
         brute::each_subset(n, dimension, 0, &mut Vec::new(), &mut |chosen| {
@@ -200,7 +200,8 @@ proptest! {
             }
             inside
         });
-        // Random points would be off by 0.0035 of the box at one standard deviation; these are by less.
+        // Random points would have a standard error of 0.0035 of the box; the low-discrepancy points err
+        // less.
         prop_assert!((hull.volume() - expected).abs() < 0.012 * room, "{} {expected} {room}", hull.volume());
         let centroid = hull.centroid();
         prop_assert!(hull.contains(&centroid));

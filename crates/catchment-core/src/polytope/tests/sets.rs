@@ -105,7 +105,7 @@ proptest! {
                 }
             }
             let larger = inside.into_iter().chain(outside).max_by(|a, b| a.volume().total_cmp(&b.volume()));
-            // None where both halves are too thin.
+            // Both parts are too thin for a polytope.
             let Some(larger) = larger else { break };
             rest = larger;
         }

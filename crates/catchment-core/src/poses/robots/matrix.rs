@@ -139,7 +139,7 @@ impl Reader<'_> {
             );
             return None;
         }
-        // Symmetry is judged by what was written, before correlations are cut to what they can be.
+        // Test symmetry on the values as written, before the correlations are clamped to ±1.
         let mut correlation = IDENTITY;
         for (i, a) in dofs.iter().enumerate() {
             for b in dofs.iter().take(i) {
@@ -240,7 +240,7 @@ impl Reader<'_> {
             );
             return None;
         }
-        // What rounding left below 0 is lifted to it: every correlation gives way by as little.
+        // Rounding left a slightly negative eigenvalue: all correlations shrink by the same small factor.
         if cholesky(&correlation).is_err() {
             let give = 1.0 / (1.0 + SEMIDEFINITE_WITHIN);
             for (i, row) in correlation.iter_mut().enumerate() {

@@ -42,7 +42,7 @@ fn every_kind_is_read_in_its_units() {
     assert_eq!(names, ["A", "B", "robot 3", "robot 4", "robot 5"]);
     let Spread::Normal { mean, sigma, correlation } = &robots[0].errors else { panic!() };
     assert!((mean.y + 0.1).abs() < 1e-15 && (sigma.x - 0.02).abs() < 1e-15 && *correlation == IDENTITY);
-    // Correlations and a covariance that say the same.
+    // Correlations and an equivalent covariance.
     let Spread::Normal { sigma: b, correlation: by_b, .. } = &robots[1].errors else { panic!() };
     let Spread::Normal { sigma: c, correlation: by_c, .. } = &robots[2].errors else { panic!() };
     for (p, q) in b.to_array().iter().zip(c.to_array()) {
