@@ -25,7 +25,7 @@ impl Bearings {
     /// For given free errors; `units` is the length of a unit of each in the ρ-metric, in D.
     pub(super) fn of(axes: &[Dof], units: &[f64; 5]) -> Self {
         let steps: &[f64] = if axes.len() <= 2 { &[0.0, 1.0, -1.0, 0.5, -0.5] } else { &[0.0, 1.0, -1.0] };
-        // Pairs of errors alone where there are too many otherwise.
+        // With more than three axes, combine at most two errors, to limit the number of bearings.
         let most = if axes.len() <= 3 { axes.len() } else { 2 };
         let mut all = vec![[0.0; 5]];
         for dof in axes {

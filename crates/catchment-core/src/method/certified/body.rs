@@ -187,7 +187,7 @@ fn is_first(
     let at = other.at(other.corners[corner as usize].vertex);
     let sides = facet.corners.iter().map(|k| body.at(*k).y);
     let (near, far) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
-    // An oblique facet is another one at every y.
+    // An oblique facet differs at each y, so no corner is a duplicate there.
     let oblique = facet.normal.y != 0.0;
     near - SEAM <= at.y && at.y <= far + SEAM && (oblique || is_new(at.x.to_bits(), at.z.to_bits()))
 }

@@ -205,7 +205,8 @@ impl EscapeRoute {
         walk(tree, exec, seat.boxes(tree).into_iter(), floor, |&Reached { number, height, from }| {
             came_from[number] = from;
             let cell = &tree.cells[number];
-            // What is known to dock comes back from wherever it goes; what lies beyond the border nobody knows.
+            // From a cell known to dock every motion returns to the seat; beyond the border of the error box
+            // nothing is known.
             let docks = cell.label == Some(Label::Yes) && !tree.is_at_border(cell);
             if !docks && (seat.lets_rest(cell) || leaks(tree, cell)) {
                 level = level.or(Some(height));
@@ -250,7 +251,7 @@ fn floor(cell: &Cell) -> Option<f64> {
 pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<EscapeRoute, Cancelled> {
     let way_out = EscapeRoute::find(tree, seat, exec)?;
     let level = way_out.level;
-    // Beyond the pass at the level itself lies what may lead elsewhere, however deep.
+    // Beyond the pass, at the level itself, cells of any depth may lead elsewhere.
     for (number, _) in way_out.inside.iter().filter(|(_, way)| *way < level) {
         let cell = &mut tree.cells[*number];
         if cell.height.is_some_and(|height| height.up < level) {
@@ -277,7 +278,7 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Esc
     };
     for (cell, way) in tree.cells.iter_mut().zip(way) {
         if cell.label.is_none() && !cell.is_split() && lone(cell, way) {
-            // Whether it comes to rest, or leaves, is not told by heights: see `spread`.
+            // Heights do not decide whether the motion comes to rest or leaves: see `spread`.
             cell.label = Some(Label::Leaves);
         }
     }

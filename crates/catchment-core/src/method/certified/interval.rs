@@ -93,7 +93,7 @@ impl Interval {
 
     /// A wave that has its crests at `crest` and every turn from there.
     fn wave(self, crest: f64, of: impl Fn(f64) -> f64) -> Self {
-        // What nearly reaches a crest counts as reaching it: π is rounded.
+        // A range that nearly reaches a crest counts as reaching it: π is rounded.
         let reaches =
             |at: f64| ((self.lo - SINE - at) / TAU - SINE).ceil() <= (self.up + SINE - at) / TAU + SINE;
         let (a, b) = (of(self.lo), of(self.up));
@@ -107,7 +107,7 @@ impl Add for Interval {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        // Without rounding where nothing is added.
+        // Adding zero is exact.
         if self == Self::ZERO || other == Self::ZERO {
             return if self == Self::ZERO { other } else { self };
         }
@@ -139,7 +139,7 @@ impl Mul for Interval {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        // What is exactly 0 stays so, beside infinity too: locked errors add nothing.
+        // Exact zero remains zero, even times infinity: locked errors contribute nothing.
         if self == Self::ZERO || other == Self::ZERO {
             return Self::ZERO;
         }

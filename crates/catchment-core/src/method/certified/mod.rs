@@ -203,7 +203,7 @@ pub(crate) fn certify(
     }
     let boxes = settings.boxes.saturating_sub(grown);
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, home, meets: &meets };
-    // The seat comes first: most of what docks leads there.
+    // Refine the seat first: most docking boxes lead there.
     let first = tree.cells.len() + boxes / AT_SEAT[tree.axes.len().clamp(1, 5) - 1];
     while tree.cells.len() < first.min(boxes) && !is_over() {
         let flooded = flood(&mut tree, &seat, exec)?;
@@ -246,7 +246,7 @@ pub(crate) fn certify(
         bundle(&mut tree, 0, pair, &bodies, exec)?;
         spread(&mut tree, &seat, exec)?;
     }
-    // How well the seat holds is told best where labels say what comes back and what does not.
+    // The bounds on the retention are tightest once labels are known.
     let last = (tree.cells.len() + at_last).min(boxes);
     loop {
         let way_out = EscapeRoute::find(&tree, &seat, exec)?;
@@ -349,7 +349,7 @@ fn divide(
 
 /// Labels the boxes all of whose motions lead to labelled boxes.
 fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
-    // Once more where there are many more labels to come to.
+    // Retry a box once the number of boxes has grown enough for many new labels.
     let boxes = tree.cells.len();
     let is_open = |cell: &Cell| {
         cell.label.is_none() && !cell.sudden && tree.is_asked(cell) && boxes >= again * cell.followed

@@ -88,7 +88,7 @@ impl Placed {
         let from_face = DVec3::new(0.0, 0.0, bodies.cor);
         let vertices = &bodies.moving.vertices;
         let lateral = vertices.iter().map(|v| {
-            // Without rounding where the centre of rotation is the face centre.
+            // Exact if the centre of rotation is the face centre.
             [0, 1].map(|axis| {
                 let arm = if slides[axis] { *v - from_face } else { *v };
                 // A vertex given from the centre of rotation was rounded once.

@@ -78,7 +78,7 @@ fn depth(
         return Ok(None);
     }
     let (holds, meets) = (|poses: &PoseBox| about.holds(poses), |poses: &PoseBox| about.meets(poses));
-    // At any height: there is but one rest that counts.
+    // At any height: only a single rest counts.
     let level = f64::INFINITY;
     let seat = Seat { mated: f64::NEG_INFINITY, level, holds: &holds, home: None, meets: &meets };
     let most = tree.cells.len() + BOXES;

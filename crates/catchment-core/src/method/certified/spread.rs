@@ -44,14 +44,14 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
     let seated = |number: usize, cell: &Cell| {
         is(cell, true) || !is(cell, false) && cell.height.is_some() && (in_seat[number] || tree.loses(cell))
     };
-    // Where nothing touches, a motion has ended.
+    // A motion ends at a box without contact.
     let may_dock = back(tree, seated, |cell| !is(cell, false) && cell.height.is_some(), exec)?;
     let may_fall = back(tree, |_, cell| falls_off(cell) || tree.leaves_root(cell), |_| true, exec)?;
     for (number, cell) in tree.cells.iter_mut().enumerate() {
         if cell.is_split() || is(cell, true) {
             continue;
         }
-        // That something does not dock may be known from heights alone; what becomes of it, faces tell.
+        // Heights alone may show that a motion does not dock; faces decide whether it leaves or jams.
         let otherwise = if may_fall[number] { Label::Leaves } else { Label::Jams };
         cell.label = match (may_end[number], may_dock[number] && !is(cell, false)) {
             (false, _) => Some(Label::Yes),
@@ -155,7 +155,7 @@ impl Way<'_> {
                 if farthest[number] < first - ROUNDING {
                     continue;
                 }
-                // Where an axis closes on itself, places on either side are not the same.
+                // If an axis is periodic, positions on the two sides of the face differ.
                 let reach = if !rises(from) || tree.closes(to, *face) {
                     range(next)[1]
                 } else {

@@ -65,11 +65,11 @@ impl Survey {
         let mut sudden = true;
         if let Some(mid) = nearby.height(&middle(poses)) {
             let mid = Interval::thin(mid).widened(ROUNDING);
-            // Each time what cannot carry is left out, and the bounds hold for the rest.
+            // Each pass removes pairs that cannot be in contact; the bounds then hold for the rest.
             for _ in 0..LOOKS {
                 let Some(mean) = mean_value(bodies, poses, mid, &touches) else { break };
                 let rims = rims.get_or_insert_with(|| Rims::meeting(bodies, &touching.over));
-                // Before h could jump it would have to be as high as what it jumps from or to.
+                // Before h can jump, it must be as high as the level on either side of the jump.
                 if rims.iter().any(|rim| rim.lift.up >= mean.lo) {
                     break;
                 }
@@ -164,7 +164,7 @@ impl Ways {
 
     /// Between all pushes.
     fn of(pushes: &[PoseBox], axis: usize) -> Self {
-        // What is 0 stays so beyond a face: it depends on nothing that changes there.
+        // A push of exactly 0 remains 0 beyond a face: it depends on nothing that changes there.
         let may = |sign: f64| {
             pushes.iter().any(|push| push[axis] != Interval::ZERO && (push[axis] * sign).up >= 0.0)
         };
@@ -271,7 +271,7 @@ impl Rims {
     /// All corners that may reach a rim from outside.
     fn meeting(bodies: &Bodies, at: &Placed) -> Vec<Meet> {
         let Bodies { fixed, moving, .. } = bodies;
-        // How far a facet with this normal faces the other half.
+        // The z component of a facet normal towards the other half.
         let own = |n: DVec3| Interval::thin(n.z);
         let its = |n: DVec3| -dot(&at.rows[2], &thin(n));
         let rims = |body: &Body, facing: &dyn Fn(DVec3) -> Interval| -> Vec<Option<[bool; 2]>> {
@@ -279,7 +279,7 @@ impl Rims {
         };
         let (own_sides, its_sides) = (rims(fixed, &own), rims(moving, &its));
         let mut found = Vec::new();
-        // Corners of the moving half at rims of the fixed one.
+        // Corners of the moving half at rims of the fixed half.
         for (ridge, sides) in fixed.ridges.iter().zip(&own_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
             let [a, b] = ridge.ends.map(|k| fixed.at(k));
             let along = [Interval::thin(ridge.along.x), Interval::thin(ridge.along.y)];
@@ -299,7 +299,7 @@ impl Rims {
                 });
             }
         }
-        // Corners of the fixed half at rims of the moving one. Seen from below its sides are the other way round.
+        // Corners of the fixed half at rims of the moving half. Seen from below, the sides are swapped.
         for (ridge, sides) in moving.ridges.iter().zip(&its_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
             let [p, q] = ridge.ends.map(|k| k as usize);
             let along = at.turn(ridge.along);
@@ -316,7 +316,8 @@ impl Rims {
                 let sheet = sheet(corner, own).map(|side| (thin(side.along), side.facet));
                 rim.meet(plan(point), &sheet, |outward, level, facet, sheet| {
                     let lift = Interval::thin(point.z) - level;
-                    // As the rim moves inwards, the corner comes out: either end tells, and all between.
+                    // As the rim moves inwards, the corner emerges; the velocities at both ends bound all
+                    // velocities between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
                     let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
                     found.push(Meet { lift, apart, facet, of_fixed: false, sheet });
@@ -362,7 +363,7 @@ impl Rim<'_> {
         }
         for (outward, facet) in self.outward.into_iter().flatten() {
             let leads = |s: &Vector| s[0] * outward[0] + s[1] * outward[1];
-            // One that leads inwards for certain: the halves overlap in plan view, and go on doing so.
+            // If a motion certainly leads inwards, the halves overlap in plan view and continue to overlap.
             if !sheet.clone().any(|(s, _)| leads(&s).up < -LEVEL) {
                 let mut outside: Vec<u32> = sheet.clone().map(|(_, facet)| facet).collect();
                 let may_lead_in =

@@ -67,7 +67,7 @@ fn holds_what_is(pair: &Pair, boxes: usize, most: f64) {
         assert!(bounds.widened(1e-9).contains(height), "{height} at {error:?} not in {bounds:?}");
         let carries = |touch: &&super::touch::Touch| touch.height.widened(1e-9).contains(height);
         assert!(survey.touches.iter().any(|touch| carries(&touch)), "nothing carries {error:?}");
-        // The gradient of the exact contact, where there is one alone.
+        // Compare with the gradient of the exact contact, if it is the only contact.
         let mut found = Vec::new();
         let cor = pose.lateral.extend(height);
         pair.at_rotation(pose.rotation).contacts(cor, 1e-9, &mut found);
@@ -159,7 +159,7 @@ fn contradicts_nothing(pair: &Pair, found: &Certified, poses: usize) -> usize {
 
 #[test]
 fn no_motion_contradicts_a_planar_certificate() {
-    // Undecided shares at most, with room above what is measured.
+    // Upper bounds on the undecided share, with a margin above the measured share.
     for (family, cor, most) in
         [(Family::VFace, 0.0, 0.3), (Family::XFace, 0.5, 0.15), (Family::SFace, 0.0, 0.5)]
     {
@@ -171,7 +171,7 @@ fn no_motion_contradicts_a_planar_certificate() {
         assert!(undecided < most && yes > 0.02, "{family:?} {:?}", found.certificate);
         let motions = motions();
         assert!(contradicts_nothing(&pair, &found, motions) > motions / 3);
-        // From above nothing may have been found: a way out needs boxes all along it.
+        // The upper bound may be missing: it needs boxes along a whole escape path.
         assert!(retention_at_least > 0.0, "{family:?} {retention_at_least}");
         assert!(retention_at_most.is_none_or(|most| most >= retention_at_least));
     }
@@ -190,7 +190,7 @@ fn no_motion_contradicts_the_other_certificates() {
     let [x, y, yaw] = [Dof::X, Dof::Y, Dof::Yaw];
     let charger = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/gallery/pyramid-charger.toml");
     let charger = Draft::open(&charger).and_then(Draft::build).unwrap();
-    // Who asks for more motions gets more labels, too.
+    // A longer test run (more motions) uses more boxes, too.
     let motions = motions();
     let more = if motions > 1000 { 8 } else { 1 };
     for (pair, boxes, least) in [
@@ -240,7 +240,8 @@ fn the_pyramid_is_held_by_its_depth() {
         least <= depth + 1e-9 && depth <= most + 1e-9 && most - least < 0.2 * depth,
         "{least} {depth} {most}"
     );
-    // The captured set is the open square |x|, |y| < 1/2: a quarter of the error box. What is undecided shrinks to its border.
+    // The captured set is the open square |x|, |y| < 1/2: a quarter of the error box. The undecided part
+    // shrinks to its border.
     assert!(
         yes <= 0.25 + 1e-9 && yes > 0.23 && found.certificate.undecided <= 0.02,
         "{:?}",
@@ -303,7 +304,7 @@ fn halves_pass_each_other_by_where_it_is_said() {
 /// No exact motion goes back along a bearing while it is in a box that excludes it.
 #[test]
 fn motions_never_go_back_along_a_bearing() {
-    // Of a step, for what it bends.
+    // Tolerance per step for the curvature of the path.
     const BENDS: f64 = 1e-5;
     for pair in [
         pair_of(Family::VFace, &[], 0.3),
@@ -458,7 +459,7 @@ fn a_ball_is_held_by_the_rim_of_its_pit() {
     let BoxCertificate { retention_at_least: least, retention_at_most: most, .. } =
         certified(problem.pair(), 12_000).certificate;
     let closed = depth + radius - f64::sqrt(2.0) * radius;
-    // Facets that stand for the ball lie within it, by no more than their chord error where it touches.
+    // The facets of the ball lie inside it, at the contact by no more than the chord error.
     let most = most.unwrap();
     assert!(
         0.95 * closed <= least && least <= most && (most - closed).abs() <= 2.0 * chord,

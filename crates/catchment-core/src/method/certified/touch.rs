@@ -227,7 +227,7 @@ impl<'a> Touching<'a> {
             Some(plane) => self.touch_by(number, plane, among, |_| beyond, arm)?,
             None => self.touch_with(number, normal, among, arm),
         };
-        // Of lines that are nearly parallel the cross product tells little, their facets tell more.
+        // For nearly parallel lines the cross product is imprecise; their facets bound the normal better.
         let arc = (spread(&found.normal) > PRECISE).then(|| Arc::of(own)).flatten();
         let Some(arc) = arc.map(|arc| arc.normal(its, &self.over)) else { return Some(found) };
         let arc = arc.filter(|normal| normal[2].up > 0.0)?;
@@ -284,7 +284,7 @@ impl<'a> Touching<'a> {
         if normal[2].lo <= STEEP * size {
             return (normal[2].up > 0.0).then(|| self.touch_with(number, normal, among, arm));
         }
-        // Of the plane, wherever its feet are: what its slope is taken from.
+        // Height of the plane regardless of where the feet are: the slope follows from it.
         let natural = over.height(&self.over)?;
         let whole = self.touch_with(number, normal, natural, beyond);
         let in_middle = plane(&self.middle).height(&self.middle)?;

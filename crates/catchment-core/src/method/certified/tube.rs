@@ -155,7 +155,7 @@ struct Metric {
 impl Metric {
     fn at(bodies: &Bodies, pitch: f64) -> Self {
         let turn = ROTATIONS.into_iter().find(|dof| bodies.free.contains(*dof)).map(Dof::index);
-        // Of the one free rotation all others are 0; only roll and pitch swing the face centre.
+        // All rotations except the free rotation are 0; only roll and pitch swing the face centre.
         let mut swing = [0.0; 2];
         match turn {
             Some(k) if k == Dof::Pitch.index() && bodies.slides(0) => swing[0] = bodies.cor * pitch.cos(),

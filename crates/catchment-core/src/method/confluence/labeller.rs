@@ -59,7 +59,8 @@ impl Labeller<'_> {
             labels[*cell as usize] = Label::UNKNOWN;
         }
         let around = Neighbours::new(grid, fold, self.settings.known);
-        // Motion leaves a grid that does not have all free errors as axes: its cells say nothing of each other then.
+        // If a free error is not an axis of the grid, motions leave the grid, so cells cannot inherit
+        // outcomes.
         let joins = self.pair.alignment.free.iter().all(|dof| grid.axis(dof).is_some());
         let mut told = Joined { cells: order.len(), ..Joined::default() };
         let size = order.len().div_ceil(BATCHES).clamp(LEAST_BATCH, BATCH);
@@ -140,7 +141,8 @@ impl Labeller<'_> {
                 return (label, false);
             }
         }
-        // Where it starts it is among any of those beside it.
+        // At its start a motion is among the neighbours of its cell anyway; inheritance begins when it moves
+        // on.
         let mut base = around.base(&centre);
         let mut joined = None;
         let outcome = follower.follow_until(&centre, |error| {

@@ -100,7 +100,7 @@ impl<'a> Neighbours<'a> {
         }
         let mut spare = (centres - (self.share * f64::from(centres)).ceil() as u32).max(asking);
         let mut found: Option<Label> = None;
-        // Bit k of a corner: whether it is the upper one along axis k.
+        // Bit k of a corner is set if the corner is the upper corner along axis k.
         let number = |axis: usize, corner: usize| {
             let number = base[axis] + i32::from(corner >> axis & 1 == 1);
             self.axes[axis].has(number).then_some(number as usize)
@@ -159,7 +159,7 @@ mod tests {
             })
         };
         assert_eq!(agreed(&labels, 1.5, 2.2), Some((Aligned, false)));
-        // Half a cell outside the nearest centres count, further outside none.
+        // Up to half a cell beyond the border, the nearest centres count; farther out, no centre counts.
         assert_eq!(agreed(&labels, -0.9, 2.2), Some((Aligned, true)));
         assert_eq!(agreed(&labels, -1.1, 2.2), None);
         assert_eq!(agreed(&labels, 3.9, -0.9), Some((Aligned, true)));

@@ -131,7 +131,7 @@ fn a_budget_of_motions_decides_what_lies_lowest() {
     // Jams that are thinner because their neighbours are not known are mended further.
     assert!(otherwise * 1000 <= grid.len(), "{otherwise} of {}", grid.len());
     let warnings = part.acceptance(&Exec::new()).warnings;
-    // Of what was not tried nobody says that it could not be followed.
+    // Cells that were not tried must not be reported as failed simulations.
     assert!(
         matches!(&warnings[..], [Warning::Open { text }] if text.contains("the budget was spent")),
         "{warnings:?}"

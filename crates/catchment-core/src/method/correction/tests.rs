@@ -74,7 +74,7 @@ fn cases() -> Vec<Case> {
 /// Share of intervals that contain the true value; bias in standard errors of the mean; mean half-width as a
 /// share of the Sum; mean number of motions, and effective sample size.
 fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
-    // Not by one pool: a thread that waits in one repeat would begin another, and another in that.
+    // Repeats do not share a pool: a thread that waits in one repeat would start another, nested ever deeper.
     let one = |seed: usize, exec: &Exec| case.estimate(stop, seed as u64, exec);
     let found: Vec<UnbiasedSum> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
     let n = repeats as f64;

@@ -204,7 +204,7 @@ impl Coulomb {
         self.missing.clear();
         let mut boldness = 1.0;
         let mut u = *push;
-        // Where slips are given all planes are kept, and few rounds do.
+        // With given slips all planes are kept, and few rounds suffice.
         let rounds = if free { self.rounds } else { ROUNDS };
         for round in 0..rounds {
             let gaps = self.owners.iter().map(|&k| gap(k) + self.slips[k]);
@@ -238,7 +238,7 @@ impl Coulomb {
             if !free {
                 continue;
             }
-            // Aitken's step: as far as the last two rounds say that it will go.
+            // Aitken's step: extrapolates the slips from the last two rounds.
             if round > SETTLED {
                 let (mut along, mut size, mut both) = (0.0, 0.0, 0.0);
                 for (before, now) in self.before.iter().zip(&self.missing) {
@@ -271,7 +271,7 @@ impl Coulomb {
         if speed <= STILL * scale || speed > SLOW * scale {
             return None;
         }
-        // All that touches and stays closed, not what the last round happened to press against.
+        // All contacts that touch and stay closed, not only those pressed in the last round.
         self.owners.clear();
         self.owners.extend(
             (0..contacts.rows.len())
@@ -288,7 +288,8 @@ impl Coulomb {
         let along = along.map(|x| x / length);
         self.planes.clear();
         self.planes.extend(self.owners.iter().map(|k| contacts.plane(*k, contacts.slip(*k, &along))));
-        // What of the push is left by those forces and one along the slip, or against it.
+        // The part of the push that the contact forces and a force along the slip, or against it, do not
+        // balance.
         let mut left = |way: f64| {
             self.planes.push(along.map(|x| way * x));
             let left = projection.closest_allowed(push, &self.planes, self.planes.iter().map(|_| 0.0), scale);

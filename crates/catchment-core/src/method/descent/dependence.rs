@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_dependence_is_told_with_its_interval() {
-        // A budget of steps that suffices for some motion, but not where its steps are half as long.
+        // A limit on steps that suffices for some motion, but not at half the step length.
         let pair = pair(Family::XFace3dLocking);
         let short = |max_steps: usize| DescentSettings { max_steps, ..DescentSettings::default() };
         let warning = (4..16).find_map(|most| step_dependence(&pair, &short(most), 1, &Exec::new()).unwrap());

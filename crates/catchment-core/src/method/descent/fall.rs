@@ -55,10 +55,12 @@ fn about(pair: &Pair) -> About {
         let settings = DescentSettings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
-        // Where all facets nearly touch, to know that all that is near comes home saves motions the longest part of their way.
+        // If all facets nearly touch, the last part of a motion near the mated pose takes longest; motions
+        // stop early if all starts nearby reach it.
         let mut within = if pair.asks_trees() && !pair.is_tight() { TAKEN } else { 0.0 };
         let mut falls = |from: PoseError| {
-            // What comes home is followed no further, unless its end is asked for: the last of the way takes the longest.
+            // A motion near the mated pose stops early, unless its end is needed: the last part takes
+            // longest.
             let (mut is_home, ends) = (false, within > 0.0);
             let mut home = |at: &PoseError| {
                 is_home = !ends && from != PoseError::default() && pair.alignment.length(at) <= HOME;
@@ -102,7 +104,7 @@ fn starts(pair: &Pair) -> Vec<PoseError> {
         PoseError::from_array(error)
     };
     let alternate = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-    // Where every motion takes long, in the order of a tenth of a second.
+    // Motions of these halves are slow: about a tenth of a second each.
     let is_slow = pair.asks_trees() || pair.is_tight();
     let mut starts = vec![PoseError::default()];
     if !is_slow {

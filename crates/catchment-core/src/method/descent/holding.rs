@@ -81,7 +81,7 @@ impl Holding {
     /// The contacts of a half lowered at a pose error: all features with gaps up to `near`, in D. `None` if
     /// nothing touches.
     pub fn at(pair: &Pair, error: &PoseError, near: f64) -> Option<Self> {
-        // Any friction: slips are asked for.
+        // Any friction coefficient above 0: the rows then include slips.
         let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
         let mut motion = Motion::new(pair, &settings);
         let state = motion.lower(error)?;

@@ -117,7 +117,7 @@ pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) 
     rest.keep_carrying();
     let free = rest.free_directions();
     if free.is_empty() {
-        // Held, but by less than what counts as a slope.
+        // Immobile, but the slope is below the threshold.
         let (slope, weakest) = ([0.0, LEVEL], PoseError::default());
         return Some(Immobility {
             order: ImmobilityOrder::Neutral,
@@ -206,7 +206,7 @@ impl<'a> At<'a> {
                 least = least.min(self.holding.largest(&load, 0.0).unwrap_or(0.0));
             }
         }
-        // A ball fits into the cross of what is withstood along the axes.
+        // The ball in the cross-polytope of the holding forces along the axes.
         [least / spherical.sqrt(), least]
     }
 
@@ -294,7 +294,8 @@ impl<'a> At<'a> {
     fn curvature(&mut self, way: &Vector) -> f64 {
         let rows = self.holding.rows();
         let bends: Vec<f64> = self.carrying.iter().map(|k| -self.bend(*k, way)).collect();
-        // The direction is free: along it each row may tell how its gap bends, and the load what they come to together.
+        // The direction is free: each row may carry the bend of its gap along it, and the load their weighted
+        // sum.
         let told: Vec<Vector> = self
             .carrying
             .iter()

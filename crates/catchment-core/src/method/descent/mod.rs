@@ -193,7 +193,7 @@ impl<'a> Follower<'a> {
     /// the friction of the settings).
     pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
         let mut holding = HoldingFrictionObserver::up_to(most);
-        // All the way, also where it is known before that it docks.
+        // Simulate the whole motion, also where docking is known earlier.
         let homing = std::mem::take(&mut self.0.homing);
         let end = self.0.follow(error, Until::Known, &mut holding);
         self.0.homing = homing;

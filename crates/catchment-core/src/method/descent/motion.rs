@@ -158,7 +158,8 @@ impl<'a> Motion<'a> {
         let Some(mut state) = self.touch_down(error) else { return End::missed(*error) };
         let mut travelled = 0.0;
         let mut mark = (0, travelled, self.push.energy(&state));
-        // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
+        // A seated half stays seated, so the outcome "docked" is known before it comes to rest, unless some
+        // rests do not count.
         let (mut seated, mut asked, mut docked) = (false, false, false);
         let all_count =
             !self.seat.is_limited() && (self.trusting || fall(self.pair).is_none() && !self.seat.leaks());
@@ -174,19 +175,20 @@ impl<'a> Motion<'a> {
                     state = self.home();
                 }
                 if self.is_home(&state) {
-                    // What touches there does not hang on the way there.
+                    // The contacts at the mated pose do not depend on the path to it.
                     pace.step = self.settings.step;
                     self.turn(&state.rotation, state.cor.truncate(), pace.step);
                 } else {
-                    // Beyond the mated pose it climbs again, and to look there takes long.
+                    // Beyond the mated pose the half climbs again, and a search there is slow.
                     pace.step = pace.step.min(far.max(TOUCHING));
                 }
             }
-            // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
-            // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
+            // A half below the seat's level stays in its part of the level set, so one test decides whether
+            // that part is the seat. If all motions near the mated pose lead to it, coming near suffices, and
+            // a half that slides off needs no test.
             let energy = self.push.energy(&state);
             let deep = !self.homing && energy <= self.seat.level();
-            // Below its floor it has left the seat again, and does not climb.
+            // Below the floor of the seat the half has left it, and does not climb back.
             let above = energy >= self.seat.floor();
             seated = above && (seated || deep && !asked && self.is_seated(&state));
             asked |= deep;
@@ -263,7 +265,7 @@ impl<'a> Motion<'a> {
                 && (seated || motion.is_seated(last))
                 && motion.seat.allows(&error, motion.push.energy(last))
         };
-        // What runs off has left whatever it was in.
+        // A half that leaves is no longer docked, whatever it was before.
         let docked = docked && outcome != Outcome::Missed || rests_well(self);
         self.ended(if docked { Outcome::Aligned } else { outcome }, last)
     }

@@ -106,7 +106,7 @@ impl Projection {
                     steepest = j;
                 }
             }
-            // A column that depends on the passive ones cannot help.
+            // A column that depends on the passive columns cannot help.
             if steepest == usize::MAX
                 || passive.count == MOST
                 || !passive.push(steepest, columns)

@@ -119,7 +119,7 @@ impl Motion<'_> {
             let push = self.push.at(&state).map(|part| PUSH * part);
             self.turn(&state.rotation, state.cor.truncate(), FARTHEST);
             self.nearby.contacts_within(state.cor, 2.0 * TOUCHING, seam, &mut self.contacts);
-            // What overlaps beyond the border of its features does not.
+            // An overlap beyond the border of a contact's features does not count.
             let pair = self.pair;
             let is_on = |contact: &Contact, meeting: &Meeting| {
                 pair.hold(contact, meeting, &state.rotation, state.cor).foot >= -BORDER

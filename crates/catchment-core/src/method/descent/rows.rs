@@ -110,7 +110,7 @@ impl Motion<'_> {
             let row = self.row(contact, state, &axes);
             let clear = margin(contact);
             let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
-            // Corners, edges and facets that meet at one point say the same thing several times.
+            // Corners, edges and facets that meet at a point yield duplicate rows.
             let tangents = self.tangents(contact, state, &axes);
             self.rows.learn(row, tangents, gap);
         }
@@ -160,7 +160,7 @@ impl Motion<'_> {
             let row = self.row(contact, landed, &axes);
             let there = -contact.normal.z * rise;
             let here = there - dot(&row, u);
-            // A contact this step already respects tells nothing new.
+            // A contact that the step respects already adds nothing.
             if there < -OVERLAP && here > 0.25 * there {
                 let tangents = self.tangents(contact, landed, &axes);
                 added |= self.rows.learn(row, tangents, here.max(0.0));

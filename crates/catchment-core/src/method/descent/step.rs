@@ -99,7 +99,7 @@ impl Motion<'_> {
                 bend = deflection(&before, &u);
                 halve = pace.step > longest && bend > BENT;
                 if self.settings.friction > 0.0 && length <= REST * pace.step {
-                    // What slips here sticks within the step: where, shorter ones say.
+                    // The half slips here but sticks within the step; shorter steps locate the place.
                     if pace.step <= longest * SMALLEST_SHARE {
                         return Advance::Ended(Outcome::Jammed, *state);
                     }
@@ -131,7 +131,8 @@ impl Motion<'_> {
                 let climbs = energy > self.push.energy(state) + ROUNDING;
                 let rises = rise > allowed || climbs;
                 halve = if blocked {
-                    // A wall that no contact announced is one more contact, if it was not met before; or what carries the body there is.
+                    // A wall without a known contact becomes a contact, if it is new; or the contact that
+                    // carries the body there does.
                     let looks =
                         cuts < MAX_CUTS && (!self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE);
                     if looks
@@ -143,7 +144,8 @@ impl Motion<'_> {
                         continue;
                     }
                     if pace.step <= longest * SMALLEST_SHARE {
-                        // What no contact tells of hooks under the other half, or the motion cannot be followed further.
+                        // Without any contact, the half hooks under the other half, or the motion cannot be
+                        // followed further.
                         if !self.nearby.look_under() {
                             return Advance::Ended(Outcome::Undecided, *state);
                         }
@@ -153,7 +155,8 @@ impl Motion<'_> {
                 } else if pace.step > longest && (rise.abs() > allowed || climbs) {
                     true
                 } else if rises {
-                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                    // An unknown contact carries the body. It is added if it lies below the body as seen from
+                    // here.
                     if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
                         cuts += 1;
                         fresh = false;
@@ -227,7 +230,8 @@ impl Motion<'_> {
             found = solve(*reach);
         }
         if *reach > HARD && settings.friction == 0.0 {
-            // A half that settles onto level ground turns as its gaps close: by which slope it goes on, if at all, is known afterwards.
+            // A half that settles onto level ground rotates while its gaps close; the slope of its further
+            // motion, if any, is known only afterwards.
             let first = solve(1.0);
             if let Some(closed) = first.2 {
                 *most = MAX_REACH_ON_LEVEL;

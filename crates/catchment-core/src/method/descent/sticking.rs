@@ -61,12 +61,13 @@ const SECOND: f64 = 0.95;
 const SHARE: f64 = 0.7;
 const NEAR: f64 = 2e-3;
 
-/// So many times the friction at which it slips is hardly more: engines let a half go up to 1.05 times there (`docs/friction.md`).
+/// A half holds weakly if μ is less than this factor above the friction coefficient at which it slips:
+/// physics engines let a half slip up to a factor of 1.05 (`docs/friction.md`).
 pub const HARDLY: f64 = 1.1;
 
 /// Sticking thresholds at first contact of a half lowered at a pose error; `None` without contact.
 pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
-    // Any friction: what slips is asked for.
+    // Any friction coefficient above 0: the rows then include slips.
     let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
     let mut motion = Motion::new(pair, &settings);
     let state = motion.lower(error)?;
@@ -103,7 +104,7 @@ impl Touching {
     }
 
     pub(super) fn see(&mut self, motion: &Motion, state: &State) {
-        // Plain motion keeps clear of walls, and what tight fits keep are contacts that touch.
+        // Plain motion keeps a margin from walls; the contacts that tight fits keep are closed.
         let touches =
             |contact: &Contact| motion.pair.is_tight() || contact.gap <= OVERLAP + 2.0 * margin(contact);
         self.see_those(touches, motion, state);

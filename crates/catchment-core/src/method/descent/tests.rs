@@ -67,15 +67,15 @@ proptest! {
         }
         let path = trace(&pair, &PoseError::from_array(start), &DescentSettings::default());
         for pairs in path.waypoints.windows(2) {
-            // Past a corner that no contact announced a motion is carried by the smallest step, 0.02/4096 D = 5e-6 D, up
-            // slopes of at most 20 (steeper ones are walls): 1e-4.
+            // At a corner without a known contact, the smallest step, 0.02/4096 D = 5e-6 D, may climb a slope
+            // of at most 20 (steeper slopes are walls): 1e-4.
             prop_assert!(pairs[1].height <= pairs[0].height + 1e-4, "{pairs:?}");
             prop_assert!(pairs[1].travelled >= pairs[0].travelled);
         }
         for waypoint in &path.waypoints {
             let pose = CorPose::from_error(&waypoint.error, cor, free);
-            // At the height of first contact, or lower where the half has slid beside the other or under an overhang: then
-            // free all the same.
+            // At the height of first contact, or lower if the half has slid beside the other half or under an
+            // overhang; it is free of overlap there, too.
             let first = pair.height(&pose).is_some_and(|z| (z - waypoint.height).abs() < 1e-6);
             let mut nearby = pair.nearby(0.0, 0.0);
             nearby.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
@@ -355,7 +355,8 @@ fn trees_change_no_motion() {
         let (roll, pitch) = (0.9 * (2.1 * a).sin(), 0.9 * (0.9 * a).cos());
         let error = PoseError { x, y, roll, pitch, yaw: 0.0 };
         let (found, expected) = (by_trees.come_to_rest(&error), by_list.come_to_rest(&error));
-        // Their steps differ, so ends do: by less than one of them, and where it docks by less than finer play than is seen.
+        // The step lengths differ, so the ends may differ by less than a step; if the half docks, by less
+        // than the finest play that counts.
         let moved = found.error.to_array().into_iter().zip(expected.error.to_array());
         let apart = moved.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
         let near = if found.outcome == Outcome::Aligned { 1e-4 } else { settings.step };

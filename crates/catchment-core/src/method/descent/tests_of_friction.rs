@@ -34,15 +34,15 @@ fn on_a_facet_both_thresholds_are_its_slope() {
         (Family::XFace, 0.7, &lateral[..1], at(0.2, 0.0), 0.7),
         (Family::Pyramid, 0.5, &lateral[..], at(0.2, 0.1), 1.0),
         (Family::Pyramid, 1.0, &lateral[..], at(0.2, -0.1), 2.0),
-        // The outer edges, and where the middle one carries.
+        // The outer edges, and the range in which the middle edge carries.
         (Family::SFace, 0.4, &lateral[..1], at(0.1, 0.0), 0.6),
         (Family::SFace, 0.4, &lateral[..1], at(-0.1, 0.0), 1.2),
-        // Two facets carry where |y| < |x|, as h = AR·max(|x|, |y|); the force has no part across.
+        // Two facets carry if |y| < |x|, as h = AR·max(|x|, |y|); the force has no transverse component.
         (Family::XFace3d, 0.3, &lateral[..], at(0.2, 0.1), 0.3),
     ];
     for (family, aspect_ratio, free, error, slope) in cases {
         let found = sticking(&of(family, aspect_ratio, free), &error).unwrap();
-        // Found to 1e-9 where a slip of 1e-7 of the push counts as none.
+        // Accurate to 1e-9 if a slip of 1e-7 of the push counts as zero.
         assert!((found.holds_from.unwrap() - slope).abs() < 1e-6, "{family:?} {found:?}");
         assert!((found.slips_until.unwrap() - slope).abs() < 1e-6, "{family:?} {found:?}");
     }

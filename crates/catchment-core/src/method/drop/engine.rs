@@ -111,7 +111,7 @@ impl<'a> Engine<'a> {
             // Nothing below it: it falls past.
             return Ok(End::missed(*error));
         };
-        // What hangs over beside the fixed half may meet the ground first.
+        // A part that extends beyond the fixed half may hit the ground first.
         let on_ground = self.ground.map(|ground| ground - lowest(&self.pair.moving, &start.rotation));
         let height = on_ground.map_or(height, |on_ground| height.max(on_ground));
         let cor = start.lateral.extend(height + self.settings.drop_height);
@@ -132,7 +132,7 @@ impl<'a> Engine<'a> {
             }
             seen(step, &fall);
             let apart = self.apart(cor, &rotation);
-            // The way into the seat is looked for once: what is deep enough stays where it is connected.
+            // The path into the seat is searched only once: a half deep enough stays in its connected part.
             seated = (seat.floor() - SUNK..=seat.level()).contains(&cor.z)
                 && (seated || seat.holds(&self.end(Outcome::Aligned, cor, &rotation).error, cor.z));
             settled = if seated { settled + 1 } else { 0 };
@@ -216,7 +216,7 @@ fn shape(part: &Part) -> Result<SharedShape, DropError> {
             .or_else(|| SharedShape::convex_hull(&surface.vertices))
             .ok_or(DropError::Shape { reason: "a convex piece is too thin for it".to_owned() }),
         Part::Mesh(surface) => {
-            // `Surface` is closed and wound outwards, which is what these flags rest on.
+            // These flags require a closed, outward-wound surface, which `Surface` guarantees.
             let flags = TriMeshFlags::ORIENTED | TriMeshFlags::FIX_INTERNAL_EDGES;
             SharedShape::trimesh_with_flags(surface.vertices.clone(), surface.triangles(), flags)
                 .map_err(|error| DropError::Shape { reason: error.to_string() })
@@ -265,8 +265,9 @@ impl<'a> Fall<'a> {
             ..IntegrationParameters::default()
         };
         let free = |dof| engine.pair.alignment.free.contains(dof);
-        // The engine solves friction along two tangents at once, and drops it altogether where nothing can move along one of
-        // them. There the fixed half is heavy instead of fixed, and put back after every step.
+        // The engine solves friction along two tangents at once, and drops it altogether if nothing can move
+        // along either of them. In that case the fixed half is heavy instead of fixed, and is put back after
+        // every step.
         let held = settings.friction > 0.0 && !(free(Dof::X) && free(Dof::Y));
         let fixed = world.insert_body(if held {
             let heavy = MassProperties::new(DVec3::ZERO, HEAVY * engine.damped.weight, DVec3::ZERO);
@@ -331,7 +332,7 @@ impl<'a> Fall<'a> {
                 for contact in pushes {
                     let touch =
                         Touch { point: place * contact.local_p1, normal: manifold.data.normal * towards };
-                    // Pieces of a half that meet there say it once each.
+                    // Several pieces of a half that meet at a point report the same contact.
                     let is_known = |known: &Touch| {
                         known.point.distance(touch.point) < CENTERED && known.normal.dot(touch.normal) > 0.5
                     };

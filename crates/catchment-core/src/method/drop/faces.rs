@@ -39,7 +39,7 @@ pub(super) fn joined(surface: &Surface) -> Surface {
     };
     let polygons: Vec<Vec<u32>> =
         faces.into_iter().map(|face| face.into_iter().map(&mut number).collect()).collect();
-    // A corner that is straight in one face and not in the next keeps the surface as it is.
+    // If a corner is collinear in one face but not in the next, the surface stays unchanged.
     let found = Surface::from_polygons(vertices, &polygons).ok();
     found.filter(|found| found.convex).unwrap_or_else(|| surface.clone())
 }
@@ -170,7 +170,7 @@ mod tests {
             joined(&Surface::from_polygons(vertices, &facets).unwrap()).facets.len()
         };
         assert_eq!(bent(5e-6), 6);
-        // The knot beside it is on the line to the next corner; the bent one is not.
+        // The neighbouring knot lies on the line to the next corner; the bent knot does not.
         assert!(bent(1e-3) > 6, "{}", bent(1e-3));
     }
 }

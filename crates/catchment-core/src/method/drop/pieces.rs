@@ -190,7 +190,7 @@ mod tests {
             let surface = boss(out);
             let parts = parts(&Half::of(vec![surface.clone()]));
             assert!(parts.iter().all(|part| matches!(part, Part::Convex(_))), "{out}");
-            // What is left out beside the walls: their length times what they are out by.
+            // Volume lost at the walls: their length times their deviation.
             assert!((volume(&parts) - surface.volume()).abs() < 1e-7, "{out}");
         }
         // A hundred times as much is drawn.

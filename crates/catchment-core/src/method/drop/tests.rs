@@ -116,7 +116,7 @@ fn a_solid_falls_by_gravity_like_a_given_mass() {
     };
     let poses = vec![x(0.1), PoseError { yaw: 0.2, ..x(0.0) }, x(0.9)];
     assert_eq!(outcomes(&pair, poses, &settings), [Outcome::Aligned, Outcome::Aligned, Outcome::Missed]);
-    // Its centre of mass is not at the COR, so locking y there is not what the engine would do.
+    // Its centre of mass is not at the COR, so locking y there is not equivalent in the engine.
     let locked = super::tests::pair(Family::Pyramid, DofSet::ALL.without(Dof::Y));
     let refused = run(&locked, Domain::Poses(vec![x(0.1)]), &settings, &Exec::new()).unwrap_err();
     assert!(matches!(refused, DropError::OffCenter { .. }), "{refused}");
@@ -252,7 +252,8 @@ fn a_half_in_flight_keeps_its_velocities() {
     let path = Bench::new(&pair).unwrap().trace(&start, &settings, &Exec::new()).unwrap();
     let landing = path.moments.iter().find(|moment| !moment.waypoint.touches.is_empty()).unwrap();
     let at = crate::pose::CorPose::from_error(&landing.waypoint.error, 0.5, DofSet::ALL);
-    // It touches where the heights of contact say, but for what it falls in a step, and what the engine sees ahead.
+    // The contact height matches the contact model, except for the fall within a step and the engine's
+    // prediction distance.
     let above = landing.waypoint.height - pair.height(&at).unwrap();
     assert!(above.abs() < 3e-3, "{above}");
     let flown = path.moments.iter().rfind(|moment| moment.time < 0.4).unwrap();

@@ -152,7 +152,7 @@ fn settle(
     exec.ensure_fits("the plateaus of a flooded grid", flat * size_of::<(u32, u32)>() as u64, |_| {
         vec![Advice::CoarserGrid]
     })?;
-    // The rim: flat cells beside an equal one that drains.
+    // The rim: flat cells next to an equal cell that drains.
     let mut rim: Vec<(u32, u32)> = Vec::new();
     let mut outside = None;
     for cell in 0..ways.len() {
@@ -191,7 +191,7 @@ fn settle(
         inner.sort_unstable();
         rim = inner;
     }
-    // What is left has no rim.
+    // The remaining plateaus have no rim, so they are minima.
     let mut minima = Vec::new();
     let mut plateau = Vec::new();
     for cell in 0..ways.len() {

@@ -210,7 +210,7 @@ fn touched_axes(grid: &Grid, outcomes: &[Outcome]) -> Vec<String> {
     let mut names = Vec::new();
     let mut stride = 1;
     for axis in &grid.axes {
-        // The cells at either border are runs of `stride` cells, one per `block`.
+        // The cells at either border form runs of `stride` cells, a run per `block`.
         let block = stride * axis.cells;
         let aligned = |run: &[Outcome]| run.contains(&Outcome::Aligned);
         let touches = outcomes

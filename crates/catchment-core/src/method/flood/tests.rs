@@ -84,7 +84,7 @@ proptest! {
         prop_assert_eq!((counts.first, counts.dams), (tree.minima.len() - outside, 0));
         joined.sort_unstable();
         joined.dedup();
-        // The outside counts for none, whether or not another basin ran into it.
+        // The outside is not counted, whether or not another basin was merged into it.
         prop_assert_eq!(counts.merged, joined.len() - outside);
         let moved = (0..labels.len()).filter(|cell| watersheds.merged(*cell) != Some(labels[*cell])).count();
         prop_assert_eq!(counts.moved, moved);
@@ -133,7 +133,8 @@ const NONE: f32 = f32::NEG_INFINITY;
 
 #[test]
 fn a_valley_between_two_jams_and_the_outside() {
-    // Dams (3, 5, 4, 4) drain to the steeper side: the outer ones off the edge, 5 → 1 and 4 → 1 to the middle.
+    // Dams (3, 5, 4, 4) drain to the steeper side: the outer dams off the edge, 5 → 1 and 4 → 1 to the
+    // middle.
     assert_eq!(outcomes(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE], 0.5), "mmjaaaaajmm");
 }
 
@@ -348,7 +349,8 @@ fn five_axes_agree_between_odd_and_even_grids_and_a_quarter_turn_doubles_the_bas
         let acceptance = accept(&pair, &grid, &FloodSettings::default(), &Exec::new()).unwrap();
         acceptance.counts()[0] as f64 / grid.len() as f64
     };
-    // Rolls and pitches aside, yaw in ±90° holds one whole basin and two halves of its quarter turns.
+    // At zero roll and pitch, yaw in ±90° contains a whole basin and halves of two others, a quarter turn
+    // apart.
     let (odd, even) = (share(9, 4), share(10, 4));
     assert!((odd / even - 1.0).abs() < 0.06, "{odd} {even}");
     // 12, so that no cell lies on the ridge at 45° between two turns.

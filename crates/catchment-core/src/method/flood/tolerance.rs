@@ -56,9 +56,9 @@ pub enum ToleranceReason {
 const NOISE: f64 = 1.0 / 8.0;
 
 /// The tolerance in the widest gap. `staircase` is that of the mated basin, `height_step` as in
-/// [`ToleranceReason::WidestGap`].
+/// [`Reason::WidestGap`].
 pub(super) fn choose(tree: &MergeTree, staircase: &[ToleranceStep], height_step: f64) -> Choice {
-    // Where the mated basin holds first, and where it runs into a lower one.
+    // The first step at which the mated basin has cells, and the step at which it merges into a lower basin.
     let first = staircase.iter().position(|step| step.cells > 0).unwrap_or(0);
     let holds = staircase.get(first).map_or(0.0, |step| step.above);
     let ends = staircase.iter().skip(first).find(|step| step.cells == 0).map(|step| step.above);
@@ -158,7 +158,7 @@ mod tests {
         // It is shallower than the noise of this grid.
         let shallow = choice(&[0.005, 0.5], &[(0.0, 5), (0.005, 0)], 0.16);
         assert!(shallow.depth < 0.005 && shallow.depth > 0.0);
-        // It only holds from 0.1 on, where it has joined the pit beside it.
+        // The mated basin has cells only from 0.1 on, after it has merged with the neighbouring pit.
         let pit = choice(&[0.05, 0.5], &[(0.0, 0), (0.1, 5), (0.5, 0)], 0.16);
         assert!(pit.depth > 0.1 && pit.depth < 0.5);
     }

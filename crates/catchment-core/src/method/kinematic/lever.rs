@@ -314,7 +314,7 @@ mod tests {
             let lateral = d * theta_1.cos() + q1 * theta_1.sin() + l * (theta_1 - theta_2).cos();
             prop_assert!((lever.lateral().dot(apart) - lateral).abs() < 1e-9);
             prop_assert!((lever.normal.dot(apart) - (d + l * theta_2.cos())).abs() < 1e-9);
-            // θ₂ lacks of β_p + α_e what the halves are turned apart.
+            // β_p + α_e exceeds θ₂ by the relative rotation of the halves.
             let corner_turns = if lever.corner == LeverBody::Moving { 1.0 } else { -1.0 };
             let lacks = wrapped(lever.aligned() - theta_2 - lever.sense * corner_turns * pitch);
             prop_assert!(lacks.abs() < 1e-9, "{lacks}: {lever:?}");

@@ -163,7 +163,7 @@ impl Faces {
                 return Halt::Away;
             }
             let half = self.step(&contact, x0, angles, 0.5 * step);
-            // The midpoint rule, as long as the contact stays what it is.
+            // The midpoint rule, while the contact stays between the same features.
             let middle = self.highest(x0, half).filter(|middle| middle.pair == contact.pair);
             let next = self.step(&middle.unwrap_or(contact), x0, angles, step);
             if [half, next].iter().any(|[moving, base]| (moving - base) * side <= 0.0) {
@@ -233,7 +233,7 @@ impl Faces {
     /// θ₂ of a contact, in (−π, π].
     fn theta2(contact: &Contact, x0: f64, [moving, base]: Angles) -> f64 {
         let [r_moving, r_base] = levers(contact, x0);
-        // The lever of the corner's body against the normal that points at the other one.
+        // The lever of the corner's body against the normal that points at the other body.
         let (lever, normal, apart) = if contact.pair.moving {
             (r_moving, -contact.normal, moving - base)
         } else {
@@ -254,7 +254,7 @@ fn wrapped(angle: f64) -> f64 {
 fn touch(pair: Pair, base: &[DVec2; 3], moving: &[DVec2; 3], x0: f64) -> Option<Contact> {
     let (corners, edges) = if pair.moving { (moving, base) } else { (base, moving) };
     let (corner, a, b) = (corners[pair.corner], edges[pair.edge], edges[(pair.edge + 1) % 3]);
-    // The third corner tells the two sides of an edge apart: the solid lies on its side.
+    // The third corner determines on which side of the edge the solid lies.
     let inside = edges[(pair.edge + 2) % 3];
     let shift = if pair.moving { x0 } else { -x0 };
     let (x, along) = (corner.x + shift, b - a);

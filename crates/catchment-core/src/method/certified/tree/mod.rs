@@ -196,7 +196,7 @@ impl Tree {
     /// The error at a place of an axis.
     fn error(&self, axis: usize, place: u32) -> f64 {
         let ([from, to], errors) = self.stretch(axis, |end, _| place > end);
-        // Exact at ends and in the middle, and one number for both boxes that meet there.
+        // Exact at the ends and in the middle, so that both boxes that share a border have the same number.
         if place == from {
             return errors.lo;
         }
@@ -254,7 +254,7 @@ impl Tree {
             if poses[k].lo < lo || poses[k].up > up {
                 return None;
             }
-            // One more either way than where rounding says they are.
+            // Widen by one position on both sides against rounding.
             let first = (self.place(k, poses[k].lo).floor() - 1.0).max(0.0) as u32;
             let last = ((self.place(k, poses[k].up).ceil() + 1.0) as u32).min(WHOLE);
             span[k] = [first, last];
@@ -392,7 +392,7 @@ impl Tree {
             part.poses = self.between(&self.span(&part));
             let survey = Survey::of(bodies, &part.poses, &whole.among, nearby);
             part.among = survey.numbers();
-            // What holds for the whole holds for its parts.
+            // Bounds for the whole box hold for its parts.
             let both = |own: Interval| whole.height.and_then(|height| own.and(height)).unwrap_or(own);
             part.height = survey.height.map(both);
             part.sudden = survey.sudden && whole.sudden;

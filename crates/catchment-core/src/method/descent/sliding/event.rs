@@ -135,7 +135,7 @@ impl Motion<'_> {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
-        // Overlap is tested where the step would end; once the halves overlap, at every length.
+        // Test overlap at the end of the step; once the halves overlap, test it at every length.
         let mut wary = false;
         for _ in 0..MOST_TRIALS {
             let trial = self.attempt(state, start, at, wary);
@@ -263,7 +263,7 @@ impl Motion<'_> {
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
         let carrying = std::mem::take(&mut self.sliding.carrying);
-        // Contacts that hold a body fast cannot all be kept; that none overlaps is enough.
+        // Contacts that fix the body cannot all be kept; it suffices that none overlaps.
         let corrected =
             self.corrected(&next, &carrying, trusted).or_else(|| self.corrected(&next, &[], trusted));
         self.sliding.carrying = carrying;
@@ -278,7 +278,7 @@ impl Motion<'_> {
         if let Some(event) = self.first_met(state, &next, reach) {
             return Trial::Passed(next, event, false);
         }
-        // Only of what was not looked at it is asked whether it overlaps.
+        // If the search covered the whole reach, the overlap test is not needed.
         let wary = wary || reach < closed;
         let holds = carrying.iter().map(|&k| {
             let (before, meeting) = self.contacts[k];

@@ -141,7 +141,7 @@ impl Motion<'_> {
                 Reached::Blocked(None) => break,
             }
         }
-        // What cannot be followed from event to event is passed by one plain step.
+        // If no event can be followed, a plain step passes the place.
         let mut plain = Pace::new(self.settings.step);
         self.sliding.forget();
         self.turn(&state.rotation, state.cor.truncate(), plain.step);
@@ -182,7 +182,7 @@ impl Motion<'_> {
 
     /// Lowers the body to the next contact below it.
     fn drop_down(&mut self, state: &State) -> Advance {
-        // Faces may land flush: what nearly supports counts too.
+        // Faces may land flush, so contacts that nearly support count, too.
         self.sliding.looked = None;
         self.turn(&state.rotation, state.cor.truncate(), self.settings.step);
         let Some(z) = self.nearby.height_below(state.cor.truncate(), state.cor.z).0 else {
@@ -197,7 +197,7 @@ impl Motion<'_> {
         if !self.overlaps(&landed) {
             return Advance::Moved(landed, 0.0);
         }
-        // Rims have crossed on the way without a contact that says so.
+        // Rims have crossed on the way without a contact between them.
         match self.until_event(state, &self.push.at(state), state.cor.z - z) {
             Reached::At(next, _) => Advance::Moved(next, 0.0),
             Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),

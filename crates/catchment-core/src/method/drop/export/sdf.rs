@@ -49,7 +49,8 @@ pub fn write(scene: &Scene) -> io::Result<World> {
 fn compose(scene: &Scene, out: &mut String) -> std::fmt::Result {
     let Scene { settings: s, body, cor, rotation, turning, pair, .. } = scene;
     let centered = body.center.length() == 0.0;
-    // SDF has no constant force; gravity is one where the centre of mass is the COR. Elsewhere a plugin applies it.
+    // SDF has no constant force. Gravity replaces it if the centre of mass is the COR; if not, a plugin
+    // applies the force.
     let (gravity, wrench) = match s.push {
         Push::Gravity(gravity) => (gravity, None),
         Push::Force(force) if centered => (force / body.weight, None),
@@ -97,7 +98,8 @@ fn compose(scene: &Scene, out: &mut String) -> std::fmt::Result {
         i.z_axis.y
     )?;
     let decay = |rate: f64| 1.0 - 1.0 / (1.0 + s.timestep * rate);
-    // The rate at which turning decays is that of its damping over its inertia, the same about all axes where it is ρ.
+    // The decay rate of the rotation is its damping divided by its inertia, the same about all axes with ρ as
+    // radius of gyration.
     let inertia = (i.x_axis.x + i.y_axis.y + i.z_axis.z) / 3.0;
     writeln!(
         out,

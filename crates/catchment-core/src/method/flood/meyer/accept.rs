@@ -134,7 +134,7 @@ pub fn accept(
             outcome
         };
     }
-    // Every cell has a basin once the dams are given: a landscape without NaN leaves none undecided.
+    // Each cell has a basin once dams are assigned: a landscape without NaN leaves no cell undecided.
     let outcome = |cell| division.basin(cell).map_or(Outcome::Undecided, |basin| of_basin[basin as usize]);
     let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
     let warnings = outcomes::warnings(landscape, &outcomes, &targets, border_cells, exec)?;

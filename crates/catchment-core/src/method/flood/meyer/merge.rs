@@ -103,7 +103,7 @@ pub(super) fn merge(bottoms: Vec<f64>, mut passes: Vec<Passes>, tolerance: f64) 
                 }
             }
         }
-        // The others' lowest passes are what they were: only whom they lead to has changed.
+        // The lowest passes of the other basins keep their heights; only the basins behind them changed.
         depth[k] = depth_of(bottom[k], &passes[k]);
         if depth[k] < tolerance {
             queue.push(Reverse((Depth(depth[k]), neighbour)));
