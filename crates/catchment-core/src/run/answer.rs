@@ -89,7 +89,7 @@ impl Answer {
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.merits.warnings.clone();
         let descended = self.run.method.follows().is_some() && self.run.method.name() == "descent";
-        // What is certain says itself how much it leaves open.
+        // A certified result states its own undecided share.
         let is_certain = self.by_products.certificate.is_some();
         match &self.corrected {
             Some(corrected) => {

@@ -143,7 +143,7 @@ mod tests {
             for threads in [1, 2, 4] {
                 let exec = Exec::new().with_threads(threads).unwrap();
                 let stop = exec.cancel_flag();
-                // Stopped as soon as progress is told.
+                // Stop at the first progress report.
                 let exec = exec.with_progress(Arc::new(move |_, _| stop.store(true, Ordering::Relaxed)));
                 let partial = problem.follow_keeping(&method, poses, &exec).unwrap();
                 let finished = partial.finished.unwrap();

@@ -96,7 +96,7 @@ impl Run {
                 (Domain::Grid(grid), cost)
             }
             Over::Stream(count) => {
-                // What a cell costs, a pose costs.
+                // A pose costs as much as a cell.
                 let one = method.cost(problem, &grid(&Resolution::default())?);
                 let bytes_per_cell = one.bytes_per_cell + size_of::<PoseError>() as u64;
                 let domain = Domain::random(problem.alignment(), *count, self.seed);

@@ -92,7 +92,7 @@ impl<'a> ReportSchema<'a> {
         match fields.get("additionalProperties") {
             Some(Value::Bool(false)) => None,
             Some(further) => Some(further),
-            // Where nothing is said anything may be.
+            // A schema without a type permits any value.
             None => (!fields.contains_key("type")
                 && !fields.contains_key("const")
                 && !fields.contains_key("enum"))
@@ -145,7 +145,7 @@ impl<'a> ReportSchema<'a> {
         if types.is_empty() || types.contains(&"number") {
             return None;
         }
-        // That it may be null says nothing of what it is.
+        // The alternative "null" is not its type.
         let of = types.iter().find(|of| **of != "null").unwrap_or(&"null");
         Some(match *of {
             "boolean" => "true or false",

@@ -99,7 +99,7 @@ impl Seating {
         let docked: Vec<End> = ends.into_iter().filter(|end| end.outcome == Outcome::Aligned).collect();
         let offs: Vec<[f64; 5]> = docked.iter().map(|end| seat.off(&end.error).to_array()).collect();
         let mut play = play(pair);
-        // What rests there is play, wherever it was looked for.
+        // All rests in the seat are part of the play, regardless of how they were found.
         for play in &mut play {
             let rests = offs.iter().map(|off| off[play.axis.index()]).filter(|off| off.abs() > NONE);
             play.minus = rests.clone().fold(play.minus, |most, off| most.max(-off));

@@ -142,7 +142,7 @@ impl Stages<'_> {
         let correct = |settings| correct(&plan.method, problem, grid, acceptance, doubts, &settings, exec);
         let corrected = sample.map(correct).transpose()?;
         if let Some(doubts) = doubts {
-            // Which cells are settled depends on the number of random poses, not on the time they took.
+            // The number of settled cells depends on the number of sampled poses, not on their time.
             let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
             settle(&plan.method, problem, grid, doubts, acceptance, most, exec)?;
         }
@@ -176,7 +176,7 @@ impl Stages<'_> {
         }
         let grid = &match &plan.domain {
             Domain::Grid(grid) => grid.clone(),
-            // Its axes say no more than the error box.
+            // Its axes are those of the error box.
             Domain::Poses(_) => Grid::over(problem.alignment(), |_| 1),
         };
         let Afterwards { steps, random } = plan.afterwards;

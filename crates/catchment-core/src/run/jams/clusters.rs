@@ -63,7 +63,7 @@ pub(in crate::run) fn gather(
         groups.extend(near(rests, members, images).into_iter().map(|group| (features, group)));
     }
     let leader = |group: &(usize, Vec<usize>)| &rests[group.1[0]];
-    // How firmly each holds: level ones on the same features are one.
+    // The stability class of each group: level groups on the same features are merged.
     let held: Vec<RestStability> = groups
         .iter()
         .map(|group| {
@@ -140,7 +140,7 @@ impl Cluster {
         seed: u64,
     ) -> Self {
         let pose = |k: usize| &rests[k].pose;
-        // How far the images of all members that are nearest to one are off it.
+        // Deviations of the members' nearest images from a given member.
         let folded = |to: usize| -> Vec<[f64; 5]> {
             let image = |k: &usize| images.nearest(pose(*k), pose(to)).0;
             members.iter().map(image).map(|image| images.off(&image, pose(to), &rests[to].error)).collect()
@@ -157,7 +157,8 @@ impl Cluster {
         };
         let nearest = (0..members.len()).min_by(|a, b| off(&around[*a]).total_cmp(&off(&around[*b])));
         let middle = members[nearest.unwrap_or_default()];
-        // On level ground around a hole the mean lies in the hole, and what is nearest to it at its edge: one that lies level stands for all.
+        // On level ground around a hole the mean lies in the hole, and the member nearest to it at the edge
+        // of the hole; a member that lies level represents the cluster.
         let (middle, own_held) = if matches!(held.firmness, Stability::Level | Stability::Ridge) {
             let tried = std::iter::once(middle).chain(members.iter().copied());
             level(problem, rests, tried, seed).map_or((middle, None), |(member, held)| (member, Some(held)))
@@ -214,7 +215,7 @@ fn levels(rests: &[RestEnd], places: &[usize], images: &Images) -> usize {
     let mut sets = DisjointSets::new(places.len());
     for j in 0..places.len() {
         for k in 0..j {
-            // Between two that are as near as they can be there may be one that is near to both.
+            // Two places up to 2 `NEAR` apart may both be near a third place between them.
             if images.distance(pose(j), pose(k)) <= 2.0 * NEAR {
                 sets.join(j as u32, k as u32);
             }

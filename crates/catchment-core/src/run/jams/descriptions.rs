@@ -138,7 +138,7 @@ impl<'a> RestDescriptions<'a> {
 
     /// The range of the rests, if they are at more than a single place.
     fn extent(self, pose: &PoseError, extent: &[Extent]) -> String {
-        // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
+        // On its side, roll and yaw rotate about the same axis: only their sum, or difference, is defined.
         let on_its_side = pose.pitch.cos().abs() < ON_ITS_SIDE;
         let is_shown = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
         let wide = extent.iter().filter(|side| is_shown(side.axis) && side.to - side.from > ONE_PLACE);

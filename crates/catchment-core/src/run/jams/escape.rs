@@ -235,7 +235,8 @@ impl Search<'_> {
                 }
             }
             top = top.max(highest.1 - self.rest.height);
-            // From a step before the highest place on: what leads there was as high as where this look began.
+            // Start a step before the highest point; the height there is at least the height at the start of
+            // this search.
             last = begun.max(highest.1 - STEEPEST * step);
             (from, to) = ((highest.0 - step).max(0.0), (highest.0 + step).min(best.length));
         }

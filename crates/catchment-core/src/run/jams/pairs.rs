@@ -80,7 +80,7 @@ pub(super) fn touching(
         }
     }
     let mut pairs: Vec<(TouchingPair, Vec<usize>)> = pairs.into_values().collect();
-    // Stable: of equals the one whose name comes first.
+    // A stable sort: equal counts stay in the order of their names.
     pairs.sort_by_key(|(pair, _)| std::cmp::Reverse(pair.count));
     pairs
 }

@@ -250,7 +250,7 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
         let share = 0.01f64.powf(k as f64 / MOVES as f64);
         let way = moved(&best.0, &space.random(stream, tries + k), share);
         if way == [0.0; 5] {
-            // Of one free error a move may lead back to where it is.
+            // With a single free error a move may lead back to the start.
             continue;
         }
         let found = rise(&way, PUSH);

@@ -52,9 +52,10 @@ fn a_tip_on_its_side_is_one_jam_at_two_places() {
     let jam = &found.jams[0];
     assert_eq!(jam.places, 2, "{jam:#?}");
     assert!(jam.of_box.count * 10 > found.jammed() * 9, "{found:#?}");
-    // Laid upon each other they are one place: pitches of opposite sign do not add up to an extent.
+    // Mirror images count as a single place: pitches of opposite sign do not add up to an extent.
     assert!(jam.extent.iter().all(|side| side.to - side.from < 0.05), "{:?}", jam.extent);
-    // Its base lies flush on a flank of slope 2: turned by a right angle and what is left of one. The motion ends within a step's rounding.
+    // Its base lies flush on a flank of slope 2, so its pitch is π/2 + (π/2 − atan 2). The motion ends within
+    // a step's rounding.
     assert!((jam.pose.pitch.abs() - (PI - 2f64.atan())).abs() < 1e-3 && jam.above_mated_d > 0.1, "{jam:#?}");
     let examined = jam.examined.unwrap();
     assert_eq!(examined.back, examined.pushed, "{examined:?}");
@@ -108,7 +109,7 @@ fn a_rigid_body_stays_where_it_jams() {
     let found = found(&problem, 1500);
     let drop = "drop".parse().unwrap();
     for jam in &found.jams {
-        // Level ones stay anywhere on their level.
+        // Halves at rest on level ground stay anywhere on their level.
         let is_level = jam.examined.unwrap().firmness == Stability::Level;
         let aside = if is_level { 0.0 } else { 0.01 };
         for side in [1.0, -1.0] {

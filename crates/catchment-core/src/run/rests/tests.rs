@@ -88,7 +88,8 @@ fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
 fn ball_in_cone() -> String {
     const SIDES: usize = 12;
     let (slope, rim) = (1.0f64, 0.5f64);
-    // Wedges about the axis: each holds up one plane through the apex; the least rim is in the middle of a side.
+    // Wedges about the axis: each supports a plane through the apex; the rim is lowest in the middle of a
+    // side.
     let mut text = String::from("[connector]\nwidth = 1.0\n");
     let corner = rim / (std::f64::consts::PI / SIDES as f64).cos();
     let height = slope * rim;
@@ -119,7 +120,7 @@ fn a_ball_in_a_cone_leaves_over_its_rim() {
     let found = found(&problem(&ball_in_cone()), 60);
     let place = &found.rests[0];
     let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
-    // The ball is a chord error too small, and its facets shift where it touches by as much.
+    // The inscribed ball is smaller by up to the chord error, and its facets shift the contact by as much.
     assert!((depth(place) - expected).abs() < 4e-3, "{expected} {place:?}");
     assert_eq!(place.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
 }
@@ -247,7 +248,7 @@ fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
     let one = with(1);
     assert_eq!(one, with(2));
     assert_eq!(one, with(4));
-    // Every pose that rests is in one rest.
+    // Each pose that comes to rest belongs to exactly one rest.
     assert_eq!(
         one.rests.iter().map(|place| place.of_box.count).sum::<usize>(),
         one.outcomes[&Outcome::Aligned].count + one.outcomes[&Outcome::Jammed].count

@@ -66,7 +66,7 @@ pub(in crate::run) fn follow(
     for (axis, lo, hi) in of_cells.iter().flatten() {
         center[axis.index()] = 0.5 * (lo + hi);
     }
-    // What is no larger than the centred one is not told.
+    // A box no larger than the centred box is not reported.
     let is_elsewhere = center.iter().any(|middle| middle.abs() > 1e-9);
     let elsewhere = if is_elsewhere { about(center, centered.scale)?.scale } else { 0.0 };
     let (edge, center) =
@@ -178,7 +178,7 @@ mod tests {
             let end = descent::outcome(problem.pair(), &PoseError::from_array(error), &motions);
             end.outcome != Outcome::Aligned
         });
-        // None of 200 leaves open 1.5 %, which is three of other 200.
+        // 0 failures in 200 samples leave a failure rate of up to 1.5 %, which is three of another 200.
         assert!(found.scale > 0.0 && fails.count() <= 6);
     }
 }

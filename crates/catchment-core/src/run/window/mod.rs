@@ -304,7 +304,7 @@ const fn unit(axis: Dof) -> &'static str {
 }
 
 fn place(error: &PoseError) -> String {
-    // What four decimals show as nothing is told by its size, if nothing else is.
+    // A value that rounds to zero at four decimals is written with its magnitude if no value is larger.
     const SHOWN: f64 = 5e-5;
     let parts = || Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| *value != 0.0);
     let large = parts().any(|(_, value)| value.abs() >= SHOWN);

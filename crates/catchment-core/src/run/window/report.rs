@@ -103,7 +103,7 @@ impl WindowDetails {
         if worst.outcome == Outcome::Jammed {
             document.more(format!("rests at {}", units.pose(&worst.end)));
         }
-        // Corners, edges and facets that meet at one point are one place.
+        // Corners, edges and facets that meet at a point are listed as a single place.
         let mut places: Vec<String> = Vec::new();
         for place in worst.touches.iter().map(|touch| units.point(touch.point.to_array())) {
             if !places.contains(&place) {

@@ -83,7 +83,7 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
                 problem.follow(&PoseError::from_array(error)).outcome != Outcome::Aligned
             };
             let failed = (0..1000).filter(|k| fails(*k)).count();
-            // Of 2000 that were tried beyond the window none was left that fails.
+            // The search left no failure among the 2000 poses that it sampled beyond the window.
             assert!(failed <= 3, "{failed} of 1000 with {} up to {}", side.axis.name(), side.beside);
         }
     }
