@@ -274,7 +274,7 @@ fn mobility(q: &PolytopePoint, free: DofSet, rotation_length: f64, g: &PolytopeP
     let place = |dof: Dof| places.iter().position(|free| *free == dof);
     let of = |values: &PolytopePoint, dof: Dof| place(dof).map_or(0.0, |k| values[k]);
     let torque = ROTATIONS.map(|dof| of(g, dof));
-    // Singular at the pole of the Euler angles only, where no cell has its centroid.
+    // Singular only at the pole of the Euler angles; no cell has its centroid there.
     let rates = euler_rates(of(q, Dof::Pitch), of(q, Dof::Yaw), free, rotation_length, torque);
     let mut mobile = *g;
     for (rate, dof) in rates.into_iter().zip(ROTATIONS) {

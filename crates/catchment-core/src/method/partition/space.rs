@@ -152,7 +152,7 @@ impl Roof {
 
     /// The half-spaces within which this roof lies above a facet's plane; `None` if it nowhere does over the facet.
     fn covers(&self, facet: &Polytope, plane: &Affine, tie: bool) -> Option<Vec<Halfspace>> {
-        // Most roofs are lower all over the facet, or beside it: a few products tell.
+        // Most roofs are lower over the whole facet, or lie beside it; a few products detect this.
         let corners = facet.vertices();
         let lower = |roof: &Affine| corners.iter().all(|q| roof.at(q) < plane.at(q) - RESOLUTION);
         let beside = |side: &Halfspace| corners.iter().all(|q| side.excess(q) >= 0.0);
@@ -220,7 +220,7 @@ fn without(part: Polytope, cover: &[Halfspace]) -> Vec<Polytope> {
     let excess = |halfspace: &Halfspace| {
         part.vertices().iter().map(|q| halfspace.excess(q)).fold(f64::INFINITY, f64::min)
     };
-    // Wholly beyond one of them: nothing is covered.
+    // The part lies entirely beyond a half-space, so nothing is covered.
     if cover.iter().any(|halfspace| excess(halfspace) >= -RESOLUTION) {
         return vec![part];
     }

@@ -87,7 +87,7 @@ fn tiles_cover_the_shadow_at_the_height_of_the_highest_roof() {
                     None => assert!(over.is_empty(), "case {case} at {q:?}: nothing is met there"),
                     Some(height) => {
                         assert_eq!(over.len(), 1, "case {case} at {q:?}: the tiles do not tile");
-                        // Facets are met where they were cut, to a few times the resolution.
+                        // Facets meet at their cuts, within a few times the resolution.
                         assert!(
                             (over[0] - height).abs() < 1e-7,
                             "case {case} at {q:?}: {} {height}",
@@ -108,7 +108,7 @@ fn on_slices_the_height_is_that_of_first_contact() {
         for angle in slices(std::f64::consts::FRAC_PI_2, 6) {
             let rotation = PoseError { pitch: angle, ..PoseError::default() }.rotation();
             for k in -20..=20 {
-                // Off the corners, where two answers are right.
+                // Avoid corners, which have two valid results.
                 let x = 0.0613 * f64::from(k) + 0.0017;
                 let exact = pair.at_rotation(rotation).height(glam::DVec2::new(x, 0.0));
                 let q = [x, angle, 0.0, 0.0, 0.0, 0.0];
@@ -137,7 +137,7 @@ fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [us
             Parts::Whole(label) => Some(*label),
             Parts::Cut(parts) => parts.iter().find(|(part, _)| part.contains(&q)).map(|(_, label)| *label),
         };
-        // Places of rest along a level ravine are many for points and one for parts.
+        // Along a level ravine the points have many rests and the parts have a single rest.
         let fate = match oracle::fate(&partition.cells, &q) {
             MotionEnd::Lost => Outcome::Missed,
             MotionEnd::Rest(place) if docks(pair)(&place) => Outcome::Aligned,
@@ -174,7 +174,8 @@ fn sums_come_to_those_of_exact_descents() {
     for (family, ratio, cor) in FIVE {
         let pair = pair(family, ratio, cor, 1.0, &[]);
         let exact = exact(&pair, 100);
-        // In the thin ravine of the last one the crest that parts two watersheds is a ten-thousandth of D high.
+        // In the thin ravine of the last family the crest between two watersheds is a ten-thousandth of D
+        // high.
         let strips = if (family, ratio) == (Family::VFace, 0.5) { 64 } else { 24 };
         let partition = run(&pair, &PartitionSettings { slices: 50, strips }, &Exec::new()).unwrap();
         let sum = partition.measure(Outcome::Aligned);
@@ -230,8 +231,8 @@ fn the_outline_encloses_what_is_accepted() {
     let (family, ratio, cor) = FIVE[1];
     let pair = pair(family, ratio, cor, 1.0, &[]);
     let partition = run(&pair, &PartitionSettings { slices: 12, strips: 4 }, &Exec::new()).unwrap();
-    // Green: the area is the integral of x dθ around the border, each segment with what is accepted on its left;
-    // the unsigned sum over polygons is the same without the box.
+    // Green's theorem: the area is the integral of x dθ around the border, with the accepted side on the left
+    // of each segment; the unsigned sum over polygons gives the same area independently of the error box.
     let area = |corners: &[Corner]| {
         let next = corners.iter().cycle().skip(1);
         0.5 * corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()

@@ -127,7 +127,7 @@ impl<'a> Links<'a> {
                     let to = corner.place.cell;
                     let h = self.field.heights[to as usize];
                     if to == cell && self.is_its_own_image(&corner) {
-                        // Back where it came from.
+                        // The motion returned to its own cell.
                     } else if h == f32::NEG_INFINITY {
                         lost += corner.weight;
                     } else if h < height {

@@ -172,7 +172,8 @@ const BYTES_PER_CELL: u64 =
 /// Bytes that transport over a grid needs at most, for a pair.
 pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-    // Symmetric rotations that are their own image are kept whole: this is what folding saves at least.
+    // Symmetric rotations that are their own image are stored completely, so this is the least saving of
+    // folding.
     let folded = BYTES_PER_CELL - size_of::<Outcome>() as u64;
     let kept = Fold::new(grid, pair.mirrors()).map_or(cells, |fold| fold.kept_cells() as u64);
     kept.saturating_mul(folded).saturating_add(cells)

@@ -43,7 +43,7 @@ fn fast_and_brute_agree_cell_by_cell() {
         let differ = |arrival: &ArrivalFractions| {
             (0..brute.len()).filter(|c| (arrival.fraction(*c) - brute[*c]).abs() > 0.002).count()
         };
-        // Single precision may tip what is lower, here and there.
+        // Single precision may swap nearly equal heights in a few cells.
         assert!(differ(&arrival) * 500 <= brute.len(), "{} of {} cells", differ(&arrival), brute.len());
         // Folding changes nothing but ties, of which a coarse grid in five dimensions has many.
         assert!(differ(&folded) * 15 <= brute.len(), "{} of {} cells", differ(&folded), brute.len());
@@ -94,7 +94,7 @@ fn nearly_all_that_is_wrong_is_ambiguous() {
     let sure = wrong.iter().filter(|c| !arrival.is_ambiguous(**c)).count();
     assert!(wrong.len() * 30 < exact.outcomes.len(), "{} wrong", wrong.len());
     assert!(sure * 20 <= wrong.len(), "{sure} of {}", wrong.len());
-    // What becomes of the others is told apart too.
+    // The remaining outcomes are distinguished, too.
     let agree = exact.outcomes.iter().zip(&acceptance.outcomes).filter(|(a, b)| a == b).count();
     assert!(agree * 20 > exact.outcomes.len() * 18, "{agree} of {}", exact.outcomes.len());
 }

@@ -117,7 +117,7 @@ fn uncovered(
         let higher = |p: DVec2| other.height(p) - sheet.height(p);
         let steepness = (other.gradient - sheet.gradient).length();
         let region = if steepness <= seam {
-            // Parallel planes: the higher one wins everywhere, and the first of two equal ones.
+            // Parallel planes: the higher sheet wins everywhere; of two equal sheets, the first.
             let above = higher(sheet.footprint[0]);
             let wins = above > seam || (above >= -seam && j < i);
             if !wins {
@@ -202,7 +202,7 @@ fn overlap(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
 
 /// The border of every cell, cut at the points at which the neighbour across changes.
 pub(super) fn borders(cells: &[Cell], seam: f64, exec: &Exec) -> Result<Vec<Vec<Border>>, Cancelled> {
-    // Sides meet where their lines fall together within a few seams.
+    // Sides are shared if their lines coincide within a few seams.
     let near = SLIVER * seam;
     let places = PolygonIndex::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * near);
     let mut borders = Vec::with_capacity(cells.len());

@@ -85,7 +85,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         docked: D,
     ) -> Self {
         let stretches = borders.iter().map(|b| vec![Stretch::Unknown; b.len()]).collect();
-        // What touches a point within `near` has a box that holds it by then.
+        // Boxes are enlarged so that each cell within `near` of a point is found at the point.
         let places = PolygonIndex::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * NEAR * seam);
         Self { sheets, cells, borders, places, seam, docked, stretches, tangled: false }
     }
@@ -118,7 +118,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
     /// The strips of a cell that lie in part between two values of [`Flow::across`], in order.
     fn strips_between(&mut self, cell: usize, low: f64, high: f64, depth: usize) -> Vec<Strip> {
         if self.direction(cell) == DVec2::ZERO {
-            // A level cell: at rest, all of it in the seat or none.
+            // A level cell is at rest: it is entirely in the seat or entirely outside.
             let polygon = &self.cells[cell].polygon;
             let middle = polygon.iter().sum::<DVec2>() / polygon.len() as f64;
             let height = self.sheet(cell).height(middle);
@@ -336,7 +336,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
             }
             let border = self.borders[cell][k];
             for (end, across) in [(border.from, from), (border.to, to)] {
-                // Straight into a point where borders meet.
+                // The motion runs straight into a point at which borders meet.
                 if (across - s).abs() <= self.near() && end.distance(at) > self.near() {
                     return self.ends_well(end, self.sheet(cell).height(end), direction, depth + 1);
                 }

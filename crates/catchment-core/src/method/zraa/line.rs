@@ -36,7 +36,7 @@ fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
     for k in 0..n {
         let (a, b) = (sheet.footprint[k], sheet.footprint[(k + 1) % n]);
         let side = (b - a).normalize_or_zero();
-        // Inside where perp_dot(side, s·axis − a) ≥ −seam: linear in s.
+        // Inside if perp_dot(side, s·axis − a) ≥ −seam: linear in s.
         let (rate, at_zero) = (side.perp_dot(axis), -side.perp_dot(a) + seam);
         if rate.abs() <= seam {
             if at_zero < 0.0 {
@@ -140,7 +140,8 @@ fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
         }
         // Up a step outward is a drop on the way home; down a step outward is a wall.
         let segment = top.segment;
-        // Ends are known to a few seams: a steep stretch may begin lower than the one before ended by that much of its slope.
+        // Ends are accurate to a few seams, so a steep segment may start lower than the previous end by that
+        // much times the slope.
         let walled = below.is_some_and(|(z, slope)| {
             let steep = 1.0 + slope.abs() + segment.slope.abs();
             segment.height(reached * sign) < z - near * steep
@@ -186,7 +187,7 @@ mod tests {
                 // On an end itself, which random places do not hit, either may be missing.
                 match (brute, found) {
                     (Some(brute), Some(found)) => prop_assert!((brute - found).abs() < 1e-9, "{brute} {found} at {s}"),
-                    // Only where one piece of the envelope ends, and the next begins, is there none.
+                    // The envelope may be missing only at the end of a piece, where the next begins.
                     (brute, found) => prop_assert_eq!(brute.is_some() && tops.iter().all(|t| t.from != s && t.to != s), found.is_some()),
                 }
             }

@@ -362,7 +362,8 @@ mod tests {
                 assert_eq!(found.ungendered, ungendered);
                 assert!((found.bound() - reach).abs() < 1e-12 && (found.both() - reach).abs() < 1e-12);
                 let [_, to] = found.catches.map(Option::unwrap);
-                // V: the tip up to the rim. S: the left end's climb to the maximum at −D/6, before the right one's.
+                // V: the tip up to the rim. S: the climb of the left end to the maximum at −D/6, which comes
+                // before the right end's climb.
                 let minimum = if ungendered { [-0.5, 1.0 / 6.0] } else { [0.0; 2] };
                 assert!(minimum.iter().any(|x| (to.minimum - x).abs() < 1e-12), "{to:?}");
             }

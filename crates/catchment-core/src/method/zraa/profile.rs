@@ -101,7 +101,7 @@ impl HeightProfile {
         }
         let mut corners: Vec<DVec2> = tops.iter().map(|top| end(top, top.from)).collect();
         corners.extend(tops.last().map(|top| end(top, top.to)));
-        // Stretches within the tolerance are none.
+        // Segments shorter than the tolerance are removed.
         corners.dedup_by(|b, a| b.x - a.x <= tolerance);
         Self::new(&corners)
     }

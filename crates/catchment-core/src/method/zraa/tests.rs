@@ -87,7 +87,8 @@ fn layers_accept_their_gap() {
         let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
         let found = run(&pair, &ZraaSettings::default(), &Exec::new());
         let Ok(Zraa::Region { area, .. }) = found else { panic!("{thickness} {gap}: {found:?}") };
-        // A gap wider than the layers are thick lets them pass each other before they meet the wrong one.
+        // If the gap exceeds the thickness of the layers, they pass each other before they meet the wrong
+        // layer.
         let reach = f64::min(gap, thickness);
         assert!((area - 2.0 * 2.0 * reach).abs() < 1e-9, "{thickness} {gap}: {area}");
     }
@@ -232,7 +233,7 @@ proptest! {
             .map(|(k, j)| 0.5 * DVec2::from_angle((k as f64 + j) * std::f64::consts::TAU / n as f64))
             .map(|p| p - DVec2::from_array(apex))
             .collect();
-        // Seen from the apex the rim runs round it; otherwise the apex lies beside it.
+        // The rim runs around the apex; if not, the apex lies beside it.
         prop_assume!((0..n).all(|k| rim[k].perp_dot(rim[(k + 1) % n]) > 0.01));
         let at = |p: DVec2, z: f64| [p.x, p.y, z];
         let wedge = |k: usize| {

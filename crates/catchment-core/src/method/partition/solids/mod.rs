@@ -230,7 +230,7 @@ impl Frame {
             DVec3::from(place)
         };
         let mut faces = polytope.boundary();
-        // An odd order of axes is a mirror: what was outside is inside.
+        // An odd order of axes is a mirror, which swaps inside and outside.
         if *places == [0, 2, 1] {
             for face in &mut faces {
                 face.reverse();

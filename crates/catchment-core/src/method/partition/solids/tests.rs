@@ -203,9 +203,10 @@ fn boxes_add_their_sides() {
     assert_eq!(shape.solids.len(), 1);
     assert!((measure(&shape.solids[0]) - size.x * size.y * size.z).abs() < 1e-12);
     let sides = sides(&shape, 0.3, -0.2).unwrap();
-    // From the one's top under the other's bottom to the other way round.
+    // From the top of the moving brick at the bottom of the fixed brick, to its bottom at the fixed brick's
+    // top.
     assert!((sides[0] + size.z).abs() < 1e-12 && sides[1].abs() < 1e-12, "{sides:?}");
-    // One translation: the rectangle of x and z, on the axis of y where that is the free one.
+    // A single translation: the rectangle of x and z, placed on the y axis if y is the free error.
     for (free, side) in [(X, size.x), (&[Dof::Y], size.y)] {
         let shape =
             made(&Pair::new(&connector, &alignment(Family::Pyramid, 0.0, free)), SolidShape::Collision, 3);
@@ -235,7 +236,7 @@ fn a_swept_tip_is_made_of_cones() {
     let height = 0.5;
     let shape = made(&pair(Family::VFace, height, -height / 6.0, X_PITCH), SolidShape::Swept, 15);
     assert_eq!((shape.axes, shape.dimension), (["x", "pitch", "z"], 3));
-    // 15 slices of 12° about 0, and a half one at either end: 16 intervals of 2 · 3 bodies.
+    // 15 slices of 12° about 0, and a half slice at either end: 16 intervals of 2 · 3 bodies.
     assert_eq!(shape.solids.len(), 16 * 6);
     for solid in &shape.solids {
         let (_, [low, high]) = solid.slice.unwrap();
@@ -267,7 +268,7 @@ fn the_upper_side_is_first_contact_and_the_lower_side_contact_from_below() {
         let upright = alignment(family, cor, free);
         let halves = connector(family, ratio, &upright);
         let pair = Pair::new(&halves, &upright);
-        // Both turned over about x: what was below is above.
+        // Both halves turned about x by 180°, so that top and bottom swap.
         let over = |half: &Half| half.mapped(|p| DVec3::new(p.x, -p.y, -p.z));
         let turned = Connector::from_halves(over(&halves.fixed), over(&halves.moving));
         let below = Pair::new(&turned, &Alignment { center_of_rotation: -cor, ..upright.clone() });

@@ -309,7 +309,7 @@ fn highest(planes: &[Plane], middle: DVec2, corners: &[DVec2; 4], cap: f64) -> (
         for other in &planes[..k] {
             part = clip(&part, |p| other.at(p) - plane.at(p) + ROUNDING);
         }
-        // Empty by rounding alone: then the bound stays above, where it is still one.
+        // Empty only through rounding: the bound then stays too high, which is still valid.
         if let Some(&best) = part.iter().max_by(|a, b| plane.at(**a).total_cmp(&plane.at(**b))) {
             (at, top) = (best, plane.at(best));
         }

@@ -151,8 +151,8 @@ proptest! {
         let found = square(&region);
         prop_assert!(fits(&region, found.center, found.edge / 2.0 - 1e-8), "{found:?}");
         let tried = by_trial(&region);
-        // A corner that sticks out by d covers at least d²/4 where no side of the rim is steeper than 2, so that 1e-10 · r hide less
-        // than 2e-5; steeper ones hide more, in proportion to the root.
+        // A corner that sticks out by d covers at least d²/4 if no side of the rim is steeper than 2, so that
+        // 1e-10 · r hides less than 2e-5; steeper sides hide more, in proportion to the root.
         prop_assert!(found.edge >= tried - 1e-4, "{found:?} {tried}");
         prop_assert!(found.edge <= tried + 0.1, "{found:?} {tried}");
     }
