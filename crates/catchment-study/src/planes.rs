@@ -135,7 +135,8 @@ mod tests {
             };
             let aligned = differing(|a, b| (a == Outcome::Aligned) == (b == Outcome::Aligned));
             assert!(aligned * 1000 <= wide * high, "{aligned} of {}", wide * high);
-            // What slides off ends on the rims of both halves at once, and rounding decides whether it jams there.
+            // A half that slides off ends on the rims of both halves at once; rounding decides whether it
+            // jams there.
             let any = differing(|a, b| a == b);
             assert!(any * 50 <= wide * high, "{any} of {}", wide * high);
         }

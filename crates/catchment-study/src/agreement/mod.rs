@@ -168,7 +168,7 @@ pub fn run(
             ..Run::by(method.clone())
         };
         let answer = within(&run, problem, settings.time_limit, &part);
-        // Whoever stops the study wants nothing more of it.
+        // A requested stop ends the study, also if the method only failed because of it.
         exec.check()?;
         let (result, left_out) = match answer {
             Ok(answer) => {

@@ -94,7 +94,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
         let overall = found.overall.unwrap();
         let [slow, fast] = found.curve[..] else { panic!("{:?}", found.curve) };
         assert!((slow.factor, fast.factor) == (0.01, 16.0));
-        // Both have doubts of their own.
+        // Both values are estimates with intervals of their own.
         let apart = (slow.probability - overall.quasi_static).abs();
         let half = |[lo, hi]: [f64; 2]| 0.5 * (hi - lo);
         let doubt = half(slow.ci95).hypot(half(overall.quasi_static_ci95));
@@ -136,7 +136,7 @@ fn a_heavy_half_coasts_as_a_fast_one() {
     let problem = sliding();
     let at = |mass: f64, speed: f64| {
         let law = ScalarDistribution::Measured { measured: vec![mass, mass] };
-        // Its mean is that of the settings where the law is a constant.
+        // Its mean is the nominal mass for a constant distribution.
         let nominal = ScalarDistribution::Measured { measured: vec![1.0] };
         let drop = drop::DropSettings { perturbation: 0.0, ..ChanceSettings::default().drop };
         let dynamics = Dynamics::default().with(Circumstance::Mass, nominal);

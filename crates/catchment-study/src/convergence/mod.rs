@@ -202,7 +202,8 @@ fn sequence(
         if cells(resolution) > settings.most_cells as f64 && !trials.is_empty() {
             break StopReason::Cells { resolution };
         }
-        // Each refinement is dearer than all before it together: half of what is left.
+        // Each refinement costs more than all earlier refinements together, so it gets half of the remaining
+        // progress.
         let done = 1.0 - 0.5f64.powf(trials.len() as f64);
         let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
         let tried = GridDecision::by(method, problem, resolution, &part)

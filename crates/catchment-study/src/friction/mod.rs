@@ -426,7 +426,7 @@ fn first_lost(poses: &[PoseError], ways: &[Way]) -> Vec<(PoseError, f64)> {
     let docked = ways.iter().filter(|way| way.without == Outcome::Aligned).count();
     let lost = poses.iter().zip(ways).filter_map(|(pose, way)| way.critical.map(|[_, fails]| (*pose, fails)));
     let mut lost: Vec<(PoseError, f64)> = lost.collect();
-    // Stable: of equals the one that was drawn first.
+    // A stable sort: equal values stay in sample order.
     lost.sort_by(|a, b| a.1.total_cmp(&b.1));
     lost.truncate((docked * FIRST / 100).max(AT_LEAST));
     lost

@@ -20,7 +20,7 @@ impl Subject for Friction {
         if undecided > 0 {
             warnings.push(Warning::Undecided { cells: undecided });
         }
-        // Right beside the border any friction matters: what counts is what is more than chance among the poses.
+        // Some poses always dock only just; the share is reported if it exceeds the confidence interval.
         let hardly = self.curve.iter().filter(|rung| {
             let [lo, hi] = rung.aligned.ci95;
             rung.hardly_held as f64 > 0.5 * (hi - lo) * self.motions as f64

@@ -22,19 +22,20 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
             assert!(kept.ci95[0] <= kept.friction && kept.friction <= kept.ci95[1]);
             assert!(!kept.is_top);
         }
-        // Nothing bends the way, so that more friction never helps.
+        // The paths are straight, so more friction never helps.
         assert!(found.curve.windows(2).all(|two| two[1].aligned.count <= two[0].aligned.count));
-        // All of them at their slope: within a tenth of what is asked, or not.
+        // All poses fail at the slope of the face: within a tenth above it, all lost poses hold weakly.
         for tally in &found.curve {
             let friction = &tally.friction;
             let is_near = *friction > slope && *friction < HARDLY * slope;
             assert_eq!(tally.hardly_held, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
         }
         let last = found.curve[4];
-        // What starts within the depth of the seat is docked as it is.
+        // Poses that start within the depth of the seat dock without motion.
         assert_eq!((last.lost + last.aligned.count, last.gained, found.come_back), (docked, 0, 0));
         assert!(last.aligned.count < docked / 10, "{last:?}");
-        // Nothing bends the way here: the static test is right, but where it begins within a step of the seat.
+        // The paths are straight here, so the static test is right, except for starts within a step of the
+        // seat.
         assert!(found.curve.iter().all(|rung| rung.static_wrong <= 2), "{:?}", found.curve);
         assert_eq!(found.sticks_first.poses, AT_LEAST);
         let pair = &found.sticks_first.features[0];

@@ -227,7 +227,7 @@ pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Ho
     if matches!(outcome, Outcome::Missed | Outcome::Undecided) {
         return Err(HoldError::NoRest { outcome });
     }
-    // What touches is known better than by a distance, unless play is to be taken for used.
+    // The rest provides the active contacts exactly; a gap limit applies only if play is to count as used.
     let near =
         |touching: f64| if settings.play > TOUCHING { settings.play } else { settings.play.min(touching) };
     let holding = match rest {
@@ -402,7 +402,7 @@ impl LoadedHalf {
             }
         }
         for (value, side) in [left, right] {
-            // What only rounding makes weaker is not.
+            // A difference within rounding does not count as weaker.
             if value < least * (1.0 - ROUNDING) {
                 (least, best) = (value, side);
             }

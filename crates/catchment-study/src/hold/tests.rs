@@ -32,7 +32,7 @@ fn the_spatial_x_face_at_thirty_degrees() {
     let problem = problem(&format!("family = \"x-face-3d\"\naspect_ratio = {ratio}"), "");
     let found = found(&problem, &HoldSettings::default());
     for side in &found.sideways {
-        // |x| + |y| = AR bounds what is withstood, as h = AR·max(|x|, |y|).
+        // |x| + |y| = AR bounds the holding force, as h = AR·max(|x|, |y|).
         let expected = ratio / (side.direction_rad.cos().abs() + side.direction_rad.sin().abs());
         let slope = ratio * side.direction_rad.cos().abs().max(side.direction_rad.sin().abs());
         assert!((guided(&side.withstood) - slope).abs() < EXACT, "{side:?}");

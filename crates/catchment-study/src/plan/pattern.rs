@@ -238,7 +238,7 @@ impl Maker<'_> {
             for pitch in pitch {
                 let turned = PoseError { pitch: *pitch, yaw: *yaw, ..PoseError::default() };
                 let face = face_from_cor(&turned.rotation(), -lever);
-                // Where the face does not move, it is at 0 and not beside it by rounding.
+                // A face that does not move has offset exactly 0, without rounding.
                 let clean = |value: f64| if value.abs() < f64::EPSILON { 0.0 } else { value };
                 let error = PoseError { x: clean(face.x), y: clean(face.y), ..turned };
                 let locked = |axis: Dof| !alignment.free.contains(axis);
@@ -316,11 +316,12 @@ impl Maker<'_> {
         if borders.is_empty() {
             return Err(TrialPlanError::NoBorder);
         }
-        // There may be fewer lines than were wanted: their trials go to more pairs, and what is left to controls.
+        // If there are fewer lines than requested, their trials become further pairs, and the remainder
+        // becomes controls.
         let pairs = (trials - controls) / (2 * borders.len());
         for (number, Border { along, at, sides }) in borders.iter().enumerate() {
             for side in sides {
-                // The widest first: each pair halves what the one before left open.
+                // The widest pair first: each pair halves the interval that the previous pair left.
                 let at = (0..pairs).rev().map(|pair| at + side * f64::from(1u32 << pair.min(16)));
                 let place = |t: f64| Placed { error: self.scaled(along, t), line: number + 1 };
                 made.poses.extend(at.filter(|t| is_within(*t)).map(place));

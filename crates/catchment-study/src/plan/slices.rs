@@ -141,7 +141,7 @@ fn range(problem: &Problem, axis: Dof, poses: &[PoseError]) -> [f64; 2] {
         let half = problem.alignment().half_range(axis);
         return [-half, half];
     }
-    // Room on the side of zero is wasted where all poses are on the other.
+    // If all poses lie on one side of zero, the other side needs little room.
     let below = if lo < 0.0 { room } else { 0.2 * room };
     let above = if hi > 0.0 { room } else { 0.2 * room };
     [lo - below, hi + above]

@@ -41,7 +41,7 @@ fn the_lattice_of_the_x_face_has_28_points_that_decide_and_14_that_do_not() {
         *rows.entry(sum.round() as i64).or_default() += 1;
         assert_eq!(point.prediction.docks(), sum < 65.5, "{point:?}");
         assert_eq!(point.prediction.either, sum.round() == 65.0, "{point:?}");
-        // The diamond's side, or its corner where that is nearer than the foot on the side.
+        // The side of the diamond, or its corner if that is nearer than the foot on the side.
         let [x, y] = [point.error.x, point.error.y].map(|v| v * 65.5);
         let foot = [x, y].map(|v| v - 0.5 * (x + y - 65.5));
         let exact = if foot.iter().all(|v| *v >= 0.0) {
@@ -153,7 +153,7 @@ fn an_arc_moves_the_face_with_its_pitch() {
     let docking = |line: usize| plan.points.iter().filter(|p| p.line == line && p.prediction.docks()).count();
     // 14.75° and 15.75°: steps 0 to 6 of 2.25°, and 15.75° itself is the seventh.
     assert_eq!((docking(1), docking(2)), (7, 8));
-    // Another joint would have to move sideways what is locked.
+    // A joint elsewhere would have to move a locked offset.
     let elsewhere = Pattern::Arc { lever: 0.5 * lever, pitch: vec![0.3], yaw: vec![0.2] };
     let refused = run(&problem, &TrialPlanSettings::new(elsewhere, accuracy), &Exec::new()).unwrap_err();
     assert!(matches!(refused, TrialPlanError::JointElsewhere { axis: Dof::Y, .. }), "{refused}");
@@ -193,7 +193,7 @@ fn a_bracket_takes_a_third_of_the_trials_of_a_grid() {
     assert!(bracket_lines >= lines && grid_lines <= bracket_lines + 1, "{grid_lines} {bracket_lines}");
     assert!(narrow <= step * 1.0001 && narrow <= wide * 1.0001, "{narrow} {wide} {step}");
     assert!(3 * bracket.trials.len() <= grid.trials.len(), "{} {}", bracket.trials.len(), grid.trials.len());
-    // Points at the border are told apart from it.
+    // No point at the border remains undecided.
     let either = bracket.points.iter().filter(|p| p.prediction.either).count();
     assert_eq!(either, 0);
 }
@@ -302,7 +302,7 @@ fn a_bracket_has_the_trials_that_were_asked_for() {
         poses.sort_unstable();
         poses.dedup();
         assert_eq!(poses.len(), trials, "{design}");
-        // Most of them decide: a line on whose both sides a pair fits goes before one on which it does not.
+        // Most trials are decisive: lines on which a pair fits on both sides come first.
         let decide = plan.points.iter().filter(|point| point.prediction.margin() >= 1.9).count();
         assert!(10 * decide >= 9 * trials, "{design}: {decide} of {trials}");
     }

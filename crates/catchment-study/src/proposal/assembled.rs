@@ -27,7 +27,7 @@ pub(super) fn docked(
     };
     let mut looks = look(&ways);
     if both.settings.approach.is_none() {
-        // Of a diagonal it says nothing that it does not hold.
+        // A diagonal counts only if it holds; a failure along it is not reported.
         let [fixed, moving] = &both.diagonals;
         let common: Vec<AxisDirection> = fixed.iter().copied().filter(|way| moving.contains(way)).collect();
         looks.extend(
@@ -45,7 +45,7 @@ pub(super) fn docked(
     looked.add(found);
     rank(&mut looked.judged, both.settings.free, both.told, exec)?;
     if !looked.has_seat() {
-        // A groove holds one way only, which is none to a lattice.
+        // A groove holds in a single direction, which the lattice search does not recognise as a seat.
         let rests = |drawn: &sink::ApproachResult| matches!(drawn, sink::ApproachResult::Flat { .. });
         let is_asked = both.settings.frames == PartFrames::Assembled || both.settings.approach.is_some();
         let flat: Vec<AxisDirection> =

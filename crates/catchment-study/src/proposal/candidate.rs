@@ -108,7 +108,7 @@ pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) ->
 fn settles(off: &PoseError, width: f64, unit: &str) -> SeatCheck {
     let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
     let shift = off.x.hypot(off.y) * width;
-    // What is less is how well the rest is known.
+    // Smaller deviations are within the accuracy of the rest.
     let shown = [(turn.to_degrees(), "deg", 0.05), (shift, unit, 1e-4 * width)];
     let parts: Vec<String> = shown
         .into_iter()

@@ -180,7 +180,7 @@ const MOST_COMPARED: usize = 2000;
 fn bodies(half: &Half) -> usize {
     let mut boxes: Vec<(DVec3, DVec3)> = Vec::new();
     for surface in &half.surfaces {
-        // Corners that a facet joins are of one body.
+        // Corners that a facet connects belong to the same body.
         let mut body = DisjointSets::new(surface.vertices.len());
         for facet in &surface.facets {
             for corner in &facet.corners {

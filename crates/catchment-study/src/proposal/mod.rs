@@ -259,7 +259,7 @@ pub fn propose(
     };
     let mut looked = SeatSearch::default();
     let (mut doubts, mut why, mut frame) = (Vec::new(), None, diagnosis::Frame::Own);
-    // Of parts that lie flat on each other as drawn: said if no other way is found.
+    // The cause for parts that lie flat on each other as drawn; reported only if there is no other seat.
     let mut flat = None;
     let meet = settings.frames != PartFrames::Any || settings.approach.is_some() || are_near(both.halves);
     if may_be(PartFrames::Assembled) && meet {
@@ -272,7 +272,7 @@ pub fn propose(
             if may_be_assembly && let Some(doubt) = let_down(&both, &looks, &mut looked, exec)? {
                 doubts.push(doubt);
             }
-            // Of frames of their own it says nothing.
+            // Parts in frames of their own say nothing about an assembly, so no cause is given.
             why = (may_be_assembly || !may_be(PartFrames::Facing))
                 .then(|| diagnosis::of(both.lattices(), &looks, both.grain, told));
             let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::ApproachResult::Flat { .. }));
@@ -296,7 +296,7 @@ pub fn propose(
             let why = if let SeatCheck::Refused(why) = &one.seat { why } else { flat };
             format!("{}{}: {why}", one.lie, one.place_among(&candidates, design_unit(settings)))
         };
-        // What is nearest to docking first, before all that is flat: what lacks nothing but play.
+        // List the refusals nearest to docking first: those that lack only play come before flat ones.
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
         let (mut tight, refused): (Vec<RejectedLayout>, Vec<RejectedLayout>) =
             refused.into_iter().partition(|refusal| refusal.by <= 0.0);
@@ -428,7 +428,7 @@ fn rank(
         }
     }
     *judged = kept;
-    // Whoever is asked and refused falls back.
+    // If the seat of the best candidate is refused, its score drops and the next candidate is tried.
     loop {
         exec.check()?;
         let level = judged.first().map_or(0.0, |best| (NEARLY * best.score()).max(LEAST));

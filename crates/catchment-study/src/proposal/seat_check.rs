@@ -186,7 +186,7 @@ pub(super) fn judge(
     let mut lift = height(&pair, offset).ok_or(APART)?;
     let mut offset = offset;
     if let Some(sunk) = sunk {
-        // A lattice is off by a cell: where the half stands on the rim of its hole it may be beside.
+        // The lattice is accurate to a cell: a half that stands on the rim of its hole may belong beside it.
         let on_the_rim = |lift: f64| lift > sunk.height + 0.5 * sunk.climb;
         let near = others.iter().copied().filter(|other| other.distance(sunk.offset) < 2.0 * sunk.cell);
         let mut around = near.chain(rings(sunk.cell).map(|by| sunk.offset + by));
@@ -209,7 +209,7 @@ pub(super) fn judge(
     let wide = width::width(&fixed, &at(offset), lift).ok_or(APART)?;
     if let PartLayout::Facing { .. } = lie {
         for other in others {
-            // Round numbers win where the half lies as deep.
+            // Prefer round numbers at which the half lies as deep.
             if let Some(z) =
                 height(&pair, *other).filter(|z| *z <= lift + 1e-4 * wide && other.distance(offset) < wide)
             {
@@ -338,7 +338,7 @@ fn seat(
     told: DisplayUnit,
     exec: &Exec,
 ) -> Result<Seat, String> {
-    // What does not hold may hold where it cannot tip, or where it only shifts.
+    // A seat that does not hold with all errors free may hold without tilts, or with offsets only.
     let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
     let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
     let mut first = None;
@@ -368,11 +368,11 @@ fn held(
     let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
     let spins = alignment.free.contains(Dof::Yaw) && spins(&pair);
     drop(pair);
-    // The yaw of what is round does not matter; any other error that the seat does not hold is locked.
+    // The yaw of a round half does not matter; any other error that the seat does not constrain is locked.
     let may_go = |dof: &Dof| !exactly || *dof == Dof::Yaw && spins;
     let leave_out = |alignment: &mut Alignment, dof: Dof| leave_out(alignment, dof, dof == Dof::Yaw && spins);
     let mut is_without_walls = DofSet::EMPTY;
-    // Every step leaves one out, or says the play of some.
+    // Each step locks an error or sets the play of some errors.
     loop {
         let mut settle = None;
         let mut held = connector.clone();
@@ -384,7 +384,7 @@ fn held(
             found = problems_on(&Pair::new(&settled, &alignment), exec);
             held = settled;
         }
-        // What nothing stops near, a wall may stop farther off.
+        // If nothing nearby limits an error, a wall farther off may.
         let unsaid = found.iter().filter_map(|problem| match problem {
             MatedProblem::Free { dof, .. } if !is_without_walls.contains(*dof) => Some(*dof),
             _ => None,
@@ -393,7 +393,7 @@ fn held(
         if !unsaid.is_empty() {
             let without = walls(connector, &mut alignment, unsaid, exec);
             is_without_walls = without.iter().fold(is_without_walls, DofSet::with);
-            // Looked at again it would be found again.
+            // A further search would give the same result.
             if let Some(dof) = without.iter().find(may_go) {
                 leave_out(&mut alignment, dof)?;
             }

@@ -48,7 +48,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
     let rivals = |other: &&Candidate| {
         let is_refused = matches!(other.seat, SeatCheck::Refused(_));
         if best.steep > 0.0 && other.steep > 0.0 && other.class != best.class {
-            // What is as steep and does not hold may be off by a cell of the lattice.
+            // A candidate that is as steep but does not hold may be wrong by a lattice cell.
             other.steep >= if is_refused { NEARLY } else { RIVAL } * best.steep
         } else {
             !is_refused && other.score > NEARLY * best.score

@@ -64,7 +64,7 @@ pub(super) fn gains(
             gain_ci95: difference((halved.probability, halved.ci95), (found.probability, found.ci95)),
         });
     }
-    // The order of the errors where two gain alike.
+    // A stable sort: equal gains stay in the order of the errors.
     improvements.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     Ok((improvements, followed))
 }

@@ -206,7 +206,7 @@ fn check(
     }
     for robot in robots {
         let free = problem.alignment().free;
-        // What a table says of a locked offset is what its lock makes of it.
+        // A measured table may contain locked offsets: their values follow from the rotation.
         let declared = !matches!(robot.errors, Spread::Measured { .. });
         if let Some(axis) = robot.errors.occurring().find(|dof| declared && !free.contains(*dof)) {
             return Err(SuccessError::Locked { robot: robot.name.clone(), axis });

@@ -87,7 +87,7 @@ impl<'a> Curve<'a> {
         // Down until even the lower end is high enough, up until even the upper end is too low.
         let mut lowest = one;
         for k in 1..=DOWN {
-            // What never fails becomes no surer with smaller errors.
+            // A success rate of 1 does not rise with smaller errors.
             if lowest.ci95[0] >= required || lowest.probability >= 1.0 {
                 break;
             }
@@ -111,7 +111,7 @@ impl<'a> Curve<'a> {
         }
         let [middle, low, high] = values;
         let factor = crossing(&self.points, required, middle);
-        // The ends are the outer ones of what was tried, so that nothing rests on how P runs between.
+        // The ends are tested factors outside the interval, so that no interpolation of P is needed.
         let surely = bracket(&self.points, required, low).map(|[before, _]| before.factor);
         let at_most = bracket(&self.points, required, high).map(|[_, after]| after.factor);
         let beyond = |value| crossing(&self.points, required, value).value(&self.points);

@@ -262,7 +262,8 @@ impl SweepPlan {
         if designs > MOST {
             return Err(SweepError::TooMany { designs });
         }
-        // The file itself must be a design, or messages would be about values that nobody doubts.
+        // The file itself must be a valid design; if it is not, errors would concern values that the sweep
+        // sets.
         let base = change(Draft::read(source.clone())?)?.design().clone();
         let swept = axes.iter().filter_map(|axis| DesignParameter::of_key(&axis.key));
         let base = swept.fold(base, Design::untitled);
@@ -332,7 +333,7 @@ impl SweepPlan {
             exec.check()?;
             one(&drafts[number], &settings.run, keep, exec)
         };
-        // Side by side each has its share of the memory; what needs more is computed afterwards, alone.
+        // Designs that run in parallel share the memory; a design that needs more runs alone afterwards.
         let lanes = exec.threads();
         let shared = exec.clone().with_memory_budget(exec.memory_budget() / lanes as u64);
         let first = shared.each(count, lanes, "designs", |number, exec| match one(number, exec) {
@@ -391,7 +392,7 @@ fn one(draft: &Draft, run: &Run, keep: &dyn DesignStore, exec: &Exec) -> Result<
     }
     let found = match run.on(&problem, exec) {
         Ok(answer) => DesignResult::Figures(Box::new(figures(&answer)?)),
-        // Of a design, only what the method says against it; a stop may come as an error of any room.
+        // Only a refusal by the method concerns the design; a requested stop may appear as any error.
         Err(RunError::Decide(error)) if !exec.is_cancelled() => DesignResult::Refused(error.to_string()),
         Err(_) if exec.is_cancelled() => return Err(Cancelled.into()),
         Err(error) => return Err(error.into()),

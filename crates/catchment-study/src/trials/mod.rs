@@ -324,7 +324,7 @@ mod tests {
         for round in &found.rounds {
             assert_eq!((round.rejected_inside, round.accepted_outside, round.timestep), (0, 0, None));
             assert!(round.disagreeing_ci95[0] == 0.0 && round.disagreeing_ci95[1] < 0.1);
-            // 4√2 D of border, and one trial for every cell that it crosses.
+            // The border is 4√2 D long, with a trial for each cell that it crosses.
             assert!((round.accepted - 2.0).abs() < 4.0 / round.resolution as f64, "{round:?}");
         }
         let diamond = |trial: &RoundTrial| trial.inside == (trial.x.abs() + trial.y.abs() < 1.0);

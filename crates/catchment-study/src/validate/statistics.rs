@@ -81,7 +81,7 @@ mod tests {
         let [low, high] = clopper_pearson(150, 150, 0.05);
         assert!((low - 0.025f64.powf(1.0 / 150.0)).abs() < 1e-12 && high == 1.0, "{low}");
         assert!((low - 0.976).abs() < 1e-3);
-        // One-sided 95 % of 6 of 6 and 18 of 18.
+        // One-sided 95 % bounds for 6 of 6 and 18 of 18.
         for (n, printed) in [(6, 0.607), (18, 0.847)] {
             assert!((clopper_pearson(n, n, 0.1)[0] - printed).abs() < 1e-3);
         }

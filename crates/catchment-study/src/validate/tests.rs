@@ -177,7 +177,7 @@ const MISSED: Option<ObservedOutcome> = Some(ObservedOutcome::Missed);
 
 #[test]
 fn counts_margins_and_lines_are_those_of_the_table() {
-    // Margins by 0.02: 0.1 is 20 from the border, 0.45 2.5, 0.49 half a one, 0.55 2.5.
+    // Margins in units of 0.02: 0.1 is 20 from the border, 0.45 is 2.5, 0.49 is 0.5, 0.55 is 2.5.
     let found = judged(&[
         (0.1, DOCKED),
         (0.2, DOCKED),
@@ -193,7 +193,7 @@ fn counts_margins_and_lines_are_those_of_the_table() {
     for (judged, margin) in found.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
         assert!((judged.prediction().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
     }
-    // The one that may go either way stands apart.
+    // The trial that may go either way is counted separately.
     assert_eq!((found.agreement.agreed, found.agreement.trials), (6, 6));
     let either: Vec<&Count> = found.counts.iter().filter(|count| count.either).collect();
     assert_eq!((either.len(), either[0].trials, either[0].observed), (1, 1, ObservedOutcome::Missed));
@@ -231,7 +231,7 @@ fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
     let failed = inside(JAMMED);
     assert_eq!((failed.verdict, failed.evidence.beyond), (PredictionVerdict::Inconsistent, 1));
     assert!(failed.evidence.p_value < 1e-10 && failed.early.p_value < 1e-10);
-    // At 2.05 accuracies one of ten may well fail: 1 − (1 − 0.04)¹⁰ = 0.34.
+    // At 2.05 accuracies, a failure among ten trials is likely: 1 − (1 − 0.04)¹⁰ = 0.34.
     let near: Vec<_> = (0..10).map(|k| (0.459, if k == 0 { MISSED } else { DOCKED })).collect();
     let near = judged(&near);
     assert_eq!((near.verdict, near.evidence.beyond), (PredictionVerdict::Consistent, 1));

@@ -49,7 +49,7 @@ pub(in crate::proposal) fn drawn(
 ) -> ApproachResult {
     let lie = PartLayout::as_drawn(way);
     let (mut flat, mut off, mut passes) = (None, None, false);
-    // What is as wide as its hole fits by one cell that is worn away.
+    // A plug exactly as wide as its hole fits after it is eroded by a cell.
     for worn in [0, 1] {
         let window = Window::around(parts, lie.turns(), DVec2::ZERO, worn, grain);
         if window.z[window.z.len() / 2] == NOTHING {
@@ -78,7 +78,7 @@ pub(in crate::proposal) fn drawn(
             if offset.length() > ACROSS * grain.small {
                 continue;
             }
-            // What is wide climbs on beyond the window.
+            // The climb of a wide part continues beyond the window.
             let wide =
                 Window::around(parts, lie.turns(), DVec2::ZERO, 0, Grain { small: WIDER * grain.small });
             if let Some(start) = wide.lowest(offset, 0.5 * WIDER * grain.small) {

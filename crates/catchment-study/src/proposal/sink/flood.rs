@@ -37,7 +37,7 @@ pub(super) fn basins(z: &[f32], wide: usize, least: f32) -> Vec<Basin> {
     let deep = z.len() / wide;
     let mut order: Vec<u32> = (0..z.len() as u32).filter(|k| z[*k as usize] > NOTHING).collect();
     order.sort_unstable_by(|a, b| z[*a as usize].total_cmp(&z[*b as usize]));
-    // The outside is one more point, the lowest of all.
+    // The outside is an extra point, the lowest of all.
     let outside = z.len();
     let mut parent: Vec<u32> = vec![NONE; z.len() + 1];
     // The lowest point of each root.

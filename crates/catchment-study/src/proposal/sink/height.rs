@@ -167,7 +167,7 @@ impl PartHeights {
         }
         let highest = |map: &Self| map.z.iter().copied().fold(NOTHING, f32::max);
         let lift = highest(self) - highest(other);
-        // Steps fall on one point or the next.
+        // A step may fall on either of two neighbouring points.
         let most = 8 + self.z.len() / 200;
         let differ = self.z.iter().zip(&other.z).filter(|(a, b)| {
             (a.is_finite() || b.is_finite()) && {
@@ -215,7 +215,8 @@ pub(super) struct Offsets {
 pub(super) fn overlaps(fixed: &PartHeights, below: &PartHeights, shift: [isize; 2], height: f32) -> bool {
     /// Distant rows come first: most overlaps are along a side.
     const STRIDE: usize = 16;
-    // Of the moving one along an axis, and where the first of them is over the fixed one.
+    // The index range of the moving part along an axis, and the index of the fixed part under its first
+    // point.
     let range = |k: usize| {
         let [ahead, behind] = [shift[k].max(0).unsigned_abs(), shift[k].min(0).unsigned_abs()];
         let to = (fixed.counts[k] + behind).saturating_sub(ahead).min(below.counts[k]);

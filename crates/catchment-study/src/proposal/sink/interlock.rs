@@ -82,7 +82,8 @@ pub(in crate::proposal) fn lead(parts: [&Triangles; 2], way: AxisDirection, grai
     };
     let raised = |k: i32| f64::from(k) * STEP * grain.small;
     let steps = (RAISED / STEP).round() as i32;
-    // The middle of the heights nearest to where it is drawn at which it fits, if it does not fit there.
+    // The middle of the range of heights, nearest to the drawn height, at which the part fits; `None` if it
+    // fits as drawn.
     let fits = |angle: f64| {
         let plug = turned(angle);
         let level = overlap(&plug, 0.0);
@@ -147,7 +148,7 @@ mod tests {
             let found = lead([&nut, &bolt], down(), GRAIN).unwrap();
             assert!((found.abs() - lead_mm).abs() < 0.11, "{lead_mm}: {found}");
         }
-        // A round pin turns freely, a square one not at all.
+        // A round pin turns freely; a square pin does not turn.
         let smooth = |grown, is_hole| thread([0.0, 12.0], 1e6, grown, is_hole);
         assert_eq!(lead([&smooth(0.05, true), &smooth(-0.05, false)], down(), GRAIN), None);
     }
@@ -166,7 +167,7 @@ mod tests {
         let mut pin = block([-5.0, -5.0, -12.0], [5.0, 5.0, -2.2]);
         pin.extend(block([-4.5, -4.5, -2.2], [4.5, 4.5, 10.0]));
         let found = undercut([&socket, &pin], down(), GRAIN).unwrap();
-        // 0.4 mm to each side, in cells of 0.1 mm, the next of those that are looked at.
+        // 0.4 mm on each side, in cells of 0.1 mm, rounded up to the next tested offset.
         assert!((0.4..0.61).contains(&found), "{found}");
         // Three millimetres are no snap.
         let mut wide = block([-5.0, -5.0, -12.0], [5.0, 5.0, -2.2]);

@@ -260,7 +260,7 @@ impl Tops {
         let mut found: Vec<Sunk> = Vec::new();
         for (map, h) in self.maps.iter().zip(&heights) {
             let mut places = basins(&h.z, h.wide, grain.least_climb() as f32);
-            // Of few points a rim may be missed: what they do not see is no basin.
+            // With few points a rim may be missed, so the basin is checked against all points.
             if view.points.len() > 1 {
                 places.truncate(MOST_ASKED);
                 let is_one = |basin: &Basin| {

@@ -186,7 +186,8 @@ pub(super) fn refined(parts: [&Triangles; 2], mut sunk: Sunk, coarse: f64, grain
             continue;
         }
         let floor = window.floor(start, sunk.climb, grain);
-        // What is exactly as wide as its hole has half a cell of play to each side where a cell is worn away; what has none is a gap between samples.
+        // After erosion by a cell, a plug exactly as wide as its hole has half a cell of play on each side;
+        // less play means a gap between samples.
         if floor.least < 0.4 * window.cell {
             continue;
         }

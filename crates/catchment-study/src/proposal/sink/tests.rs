@@ -51,7 +51,7 @@ fn a_pin_in_its_hole_holds_as_drawn() {
     let plate = plate(5.3, 12.0, [3.0, -2.0]);
     let looked = |pin: &Triangles| drawn([&plate, pin], down(), false, GRAIN);
     let ApproachResult::Holds(sunk) = looked(&pin([3.0, -2.0, -12.0])) else { panic!() };
-    // Its climb is the depth of the hole, its play what is between, up to a cell of 0.1 mm to each side.
+    // The climb is the depth of the hole; the play is the clearance, up to a cell of 0.1 mm on each side.
     assert!((sunk.climb - 12.0).abs() < 1e-3 && sunk.height.abs() < 1e-3, "{sunk:?}");
     assert!((sunk.play - 0.3).abs() < 0.11 && sunk.offset.length() < 0.06, "{sunk:?}");
     // Drawn 4 mm above its floor it slides down; 9 mm above is apart, unless any distance is.
@@ -84,7 +84,7 @@ fn a_plate_is_flat_and_a_hole_without_a_floor_lets_pass() {
 #[test]
 fn a_turned_pin_is_found_with_its_twin() {
     let plate = plate(5.3, 12.0, [3.0, -2.0]);
-    // The pin lies along x, somewhere; a head tells its ends apart.
+    // The pin lies along x, at an arbitrary place; its head distinguishes its ends.
     let lying =
         [block([30.0, 5.0, 7.0], [50.0, 15.0, 17.0]), block([50.0, 2.0, 4.0], [54.0, 18.0, 20.0])].concat();
     let exec = Exec::new();
