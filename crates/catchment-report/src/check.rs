@@ -268,7 +268,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
         }
         if let Some(error) = settled {
-            // What is less is how well the rest is known.
+            // Smaller deviations are within the accuracy of the rest.
             let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
             let amount = |(dof, off): (Dof, f64)| match design.unit {
                 _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),

@@ -99,7 +99,7 @@ pub fn compare(
     exec: &Exec,
 ) -> Result<ComparisonResult, CompareError> {
     let started = Stopwatch::start();
-    // Stored results first: their grid is what a problem is decided on.
+    // Read stored results first: problems are computed on their grid.
     let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
     for (side, source) in sides.iter_mut().zip(&sources) {
         if let ComparisonSource::Stored(path) = source {

@@ -139,7 +139,7 @@ impl<'de, T: ReportBody + Deserialize<'de>> Deserialize<'de> for ReportEnvelope<
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         struct Read<T> {
-            // Refused as soon as it is met: what follows may be of any form.
+            // An unknown version is rejected as soon as it is read: the remaining fields may have any form.
             #[serde(rename = "schema")]
             _schema: Known,
             catchment: Version,

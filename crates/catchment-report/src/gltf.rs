@@ -106,7 +106,8 @@ fn frames(trace: &TraceReport, metres: f64) -> Vec<Frame> {
     for waypoint in &trace.waypoints {
         let (rotation, place) = waypoint.frame(cor);
         let turn = DQuat::from_mat3(&rotation).normalize();
-        // Both signs are the same turn; the nearer one is the shorter way.
+        // Both signs represent the same rotation; the sign nearer to the previous quaternion gives the
+        // shorter path.
         let turn = if turn.dot(before) < 0.0 { -turn } else { turn };
         before = turn;
         let time = waypoint.time_s.unwrap_or(waypoint.travelled_d * pace) as f32;

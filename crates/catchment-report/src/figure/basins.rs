@@ -197,7 +197,7 @@ fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, f
 /// A dot for each minimum: its depth, and the share of all cells that drain to it before any merging.
 fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &Depths, rect: Rect) {
     let total = acceptance.outcomes.len() as f64;
-    // From one cell to all of them.
+    // A logarithmic scale from a single cell to all cells.
     let py = |share: f64| {
         rect.y + rect.h * (1.0 - 0.06 - 0.88 * (share * total).max(1.0).ln() / total.ln().max(1.0))
     };
@@ -212,7 +212,7 @@ fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &D
     svg.text_up([rect.x - 46.0, rect.y + 0.5 * rect.h], LABEL, "share of the box [%]");
     let mut minima: Vec<_> = hierarchy.tree.minima.iter().collect();
     minima.sort_by_key(|m| m.cells);
-    // Minima that are images of each other have one place: a dot with their number.
+    // Symmetric minima have the same position: a dot with their number.
     let mut dots: BTreeMap<(usize, u64, u8), (Outcome, bool, usize)> = BTreeMap::new();
     for minimum in &minima[minima.len().saturating_sub(DOTS)..] {
         let (outcome, kept) = kind(minimum, acceptance, hierarchy);

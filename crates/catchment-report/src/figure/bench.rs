@@ -210,7 +210,7 @@ fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: R
     svg.begin_clip(rect);
     cells(svg, panel, rect);
     let value = |error: &PoseError, axis: Dof| error.to_array()[axis.index()] * units.factor(axis);
-    // Wrong ones on top.
+    // Wrong predictions on top.
     for wrong in [false, true] {
         for found in panel.poses.iter().map(|k| &marks[*k]).filter(|found| found.wrong == wrong) {
             let place = |k: usize| panel.across.get(k).map(|(axis, _)| value(&found.error, *axis));

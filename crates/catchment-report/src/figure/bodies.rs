@@ -82,7 +82,7 @@ fn colours(shape: &Solids, solid: &Solid) -> [Rgb; 2] {
 fn flat(svg: &mut Svg, rect: Rect, design: &Design, shape: &Solids, [lo, hi]: [DVec3; 2]) {
     /// Room around the shape, as a share of its extent.
     const MARGIN: f64 = 0.06;
-    // Of x and y the one along which it lies.
+    // The axis, x or y, along which the shape extends.
     let across = usize::from(hi.x == lo.x);
     let units = ShownUnits::of(design);
     let range = |k: usize| {

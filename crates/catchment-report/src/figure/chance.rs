@@ -153,7 +153,7 @@ fn bar(svg: &mut Svg, rect: Rect) {
 fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
     let percent = |share: f64| 100.0 * share;
     let (factor, unit) = unit_of(&report.design, Circumstance::Speed);
-    // Speeds where there are any, else what they are multiplied by.
+    // Plot the speed if it is known at each point; if not, the factor.
     let has_speed = report.curve.iter().all(|at| at.speed > 0.0);
     let place = |times: f64, speed: f64| if has_speed { speed * factor } else { times };
     let mut points: Vec<ChartPoint> = report

@@ -103,7 +103,7 @@ pub fn faces(faces: &[PicturedDesign<'_>]) -> Result<Picture, FigureError> {
         (column.x, column.width) = (x, (widest(column) * scale).max(COLUMN));
         x += column.width + GAP;
     }
-    // Face centres of a row lie at one height.
+    // The face centres of a row are at the same height.
     let rows = [0, 1].map(|k| {
         let spans = columns.iter().map(|column| column.rows[k].0.span());
         spans.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])

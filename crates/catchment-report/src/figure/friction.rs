@@ -159,7 +159,7 @@ mod tests {
         for (height, share) in heights.iter().zip(&kept) {
             assert!((height - heights[0] - (1.0 - share) * per_share).abs() < 0.02, "{heights:?} {kept:?}");
         }
-        // The dashed level stands where the curve has 95 %.
+        // The dashed level is at 95 % of the curve.
         let dashed = document.descendants().filter(|node| node.attribute("stroke-dasharray").is_some());
         let level: Vec<f64> = dashed
             .filter(|node| number(node, "y1") == number(node, "y2"))

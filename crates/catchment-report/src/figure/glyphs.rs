@@ -148,11 +148,11 @@ mod tests {
                 "{left} {right}"
             );
         }
-        // The second one begins where the first one ends.
+        // The second glyph starts at the end of the first.
         assert!((extent("start", "HH")[1] - 100.0 - 15.40 - 13.39).abs() < 2e-3);
         // A V goes under the arm of an A.
         assert!(extent("start", "AV")[1] < extent("start", "A")[1] + extent("start", "V")[1] - 100.0);
-        // What the font lacks is a box, and a blank is nothing.
+        // A character missing in the font is a box; a blank is empty.
         assert!(extent("start", "\u{10ffff}")[1] > 105.0);
     }
 }

@@ -327,7 +327,7 @@ mod tests {
 
     #[test]
     fn the_border_runs_between_accepted_and_rejected_cells() {
-        // The lower left quarter of a 4 × 4 map: one joined run up, one to the right; y grows upwards.
+        // The lower left quarter of a 4 × 4 map: a joined run up and a run to the right; y grows upwards.
         let accepted = |k: usize| if k % 4 < 2 && k < 8 { Outcome::Aligned } else { Outcome::Missed };
         let map = map((0..16).map(accepted).collect(), 4);
         assert_eq!(map.border(&frame(&map, 4.0)), "M2 4L2 2M0 2L2 2");

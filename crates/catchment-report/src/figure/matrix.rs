@@ -176,7 +176,7 @@ mod tests {
         let picture = slice_matrix(&design, &pyramid(), &slices(&design, 31)).unwrap();
         look("slice-matrix-5", &picture);
         let count = |words: &str| picture.svg().matches(words).count();
-        // Ten maps and the halves; one label per row and column, so roll stands at both.
+        // Ten maps and the halves; a label per row and column, so roll appears at both.
         assert_eq!((count("<image"), count("ONAA 0."), count("roll [deg]"), count("x [mm]")), (11, 10, 2, 1));
         assert!(count("0.2 … 0.39") == 1 && count("D·rad") == 6);
     }

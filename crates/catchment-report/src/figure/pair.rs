@@ -21,7 +21,7 @@ pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
     const HEIGHT: f64 = 400.0;
     let (design, connector) = (problem.design(), problem.connector());
     let mated = MovingHalfPose::mated(design, 0.0);
-    // Where the halves do not touch as they should, that is drawn where they do.
+    // If the mated pose as drawn is not a contact pose, the figure shows the first contact.
     let height = problem.pair().mated_height();
     let meets = (height - mated.height).abs() <= CONTACT_TOLERANCE;
     let is_mated = !height.is_finite() || meets && misdrawn(connector, &design.connector).is_none();

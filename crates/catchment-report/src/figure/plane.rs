@@ -108,7 +108,7 @@ impl Plane {
         }
         let middles = strokes.iter().flatten().map(Stroke::middle);
         let best = middles.chain(is_usual.then_some(0.0)).max_by(|a, b| {
-            // Of as many the one that is nearer to the axis.
+            // Of equal counts, the offset nearer to the axis.
             counts(*a).cmp(&counts(*b)).then(b.abs().total_cmp(&a.abs()))
         });
         let Some(offset) = best else { return usual };
@@ -237,7 +237,7 @@ mod tests {
         assert_eq!((plane.azimuth, plane.offsets.as_slice()), (0.0, &[0.1][..]));
         let in_plane = |contact: &Patch| contact.strokes(&plane.turn())[0].holds(plane.offsets[0], 1e-12);
         assert!(contacts.iter().all(in_plane));
-        // The same turned by 50°: what was y = 0.1 is as far beside the axis.
+        // The same contacts turned by 50°: the offset y = 0.1 becomes an offset of 0.1 from the axis.
         let by = DMat3::from_rotation_z(50f64.to_radians());
         let turned: Vec<Patch> = contacts
             .iter()
@@ -260,7 +260,7 @@ mod tests {
         };
         let plane = Plane::through(&pyramid(), &[beside(DMat3::IDENTITY, DVec3::new(0.1, -0.1, 0.2))]);
         assert_eq!(plane.name(), "along −45° from x");
-        // Turned about the axis by a little: what is at x = 0.3 is off along y.
+        // Turned slightly about the axis: the point at x = 0.3 moves along y.
         let plane = Plane::through(&pyramid(), &[beside(DMat3::from_rotation_z(0.02), DVec3::ZERO)]);
         assert!((plane.azimuth.to_degrees() + 71.0).abs() < 2.0, "{plane:?}");
     }

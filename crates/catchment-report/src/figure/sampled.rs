@@ -46,7 +46,7 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
         let half = alignment.half_range(dof) * units.factor(dof);
         AxisScale::new(units.label(dof), -half, half, dof.is_rotation())
     };
-    // What docks is drawn last.
+    // Docking poses are drawn last.
     let order = [Outcome::Missed, Outcome::Undecided, Outcome::Jammed, Outcome::Aligned];
     for row in 1..free.len() {
         for column in 0..row {

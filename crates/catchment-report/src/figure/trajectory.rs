@@ -31,7 +31,8 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     let ghosts = ghosts(&path.waypoints);
     let placements: Vec<MovingHalfPose> = ghosts.iter().map(|w| placed(w)).collect();
     let meeting = path.waypoints.iter().find(|w| !w.touches.is_empty()).unwrap_or(first);
-    // What docks touches all around at its end; what misses, nowhere.
+    // A half that docks has contacts all around at its end, and a half that misses has none, so only a jam is
+    // shown at its end.
     let jams = path.outcome == Outcome::Jammed;
     let shown = if jams { last } else { meeting };
     let patches = patches(design, shown);

@@ -70,7 +70,7 @@ fn region(svg: &mut Svg, frame: &PlotFrame, design: &Design, zraa: &Zraa, filled
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
     svg.begin_clip(rect);
     let opacity = if filled { 1.0 } else { 0.22 };
-    // Tiles share borders; of half-covering ones a line would show.
+    // Tiles share borders; semi-transparent strokes would show as lines.
     let line = if filled { format!(r#" stroke="{fill}" stroke-width="0.6""#) } else { String::new() };
     let style = format!(r#"fill="{fill}" fill-opacity="{opacity}"{line} {JOIN}"#);
     match zraa {
@@ -102,7 +102,7 @@ fn dots(svg: &mut Svg, frame: &PlotFrame, design: &Design, found: &Trials) {
             [frame.px(along * factor), line]
         }
     };
-    // Wrong ones on top.
+    // Wrong trials on top.
     let mut order: Vec<&RoundTrial> = found.trials.iter().collect();
     order.sort_by_key(|trial| is_wrong(trial));
     for trial in order {

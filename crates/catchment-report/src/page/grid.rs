@@ -55,7 +55,7 @@ pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, Pag
     let Some(grid) = acceptance.grid() else {
         return Ok(Chunks { cells: 1, packed: vec![deflated(&[Outcome::Undecided as u8])?] });
     };
-    // Before they are packed and, at worst, after: what does not compress stays as it is.
+    // The bytes before packing and, at worst, after it: incompressible data keep their size.
     let needed = 2 * acceptance.outcomes.len() as u64;
     exec.ensure_fits("the outcomes of a page", needed, |_| vec![Advice::MoreMemory])?;
     let shape = grid.shape();

@@ -32,7 +32,7 @@ pub(super) fn describe(document: &mut Document, basins: &BasinsReport, run: &Run
                 (offset, false) => rounded((offset * 1e3).round() / 1e3),
             })
             .collect();
-        // Where nothing touches there is no lowest place.
+        // Without contact there is no lowest pose.
         let place = basin.height.map_or_else(|| "no contact".to_owned(), |_| place.join(", "));
         table.push([
             basin.outcome.name().into(),

@@ -38,7 +38,7 @@ pub fn border(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
         return Err(ViewError::OneAxis);
     }
     let [nx, ny, nz] = view.shape();
-    // The numbers of all corners beside the faces, which are two to a cell at most where none has its neighbour.
+    // The numbers of all corners, and the faces: at most two per cell, if no cell has an accepted neighbour.
     let needed = (4 * ((nx + 1) * (ny + 1) * (nz + 1)) as u64).saturating_add(FACE_BYTES * view.len() as u64);
     exec.ensure_fits("the border of the set", needed, |_| vec![Advice::MoreMemory])?;
     let mut surface = Surface::over(view);
@@ -122,7 +122,7 @@ impl<'a> Surface<'a> {
         let (origin, spacing) = self.view.lattice();
         self.points.push(std::array::from_fn(|k| origin[k] + corner[k] as f64 * spacing[k]));
         let count = self.points.len();
-        // As many corners as have a number of 32 bits do not fit beside what a grid may have.
+        // A grid that fits into memory has fewer corners than a 32-bit number can count.
         self.numbers[place] = u32::try_from(count).ok().and_then(std::num::NonZeroU32::new);
         count - 1
     }

@@ -52,7 +52,7 @@ pub fn image(view: &View, exec: &Exec) -> Result<Vec<u8>, ViewError> {
 fn counts(view: &View, exec: &Exec) -> Result<Vec<u32>, ViewError> {
     /// Cells between two checks for cancellation.
     const AT_ONCE: usize = 1 << 20;
-    // What a step along each axis of the grid adds to the number of the cell that is shown.
+    // The step of the number of the shown cell per step along each axis of the grid.
     let mut strides = vec![0; view.grid.axes.len()];
     let mut stride = 1;
     for axis in &view.shown {

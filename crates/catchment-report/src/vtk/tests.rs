@@ -97,7 +97,7 @@ fn a_border_is_closed_and_encloses_the_accepted_cells() {
     let accepted = view.cells().filter(|cell| acceptance.outcomes[*cell] == Outcome::Aligned).count();
     let measure: f64 = view.axes().map(GridAxis::step).product::<f64>() * accepted as f64;
     assert!((volume - measure).abs() < 1e-12, "{volume} {measure}");
-    // Every edge is run along as often one way as the other.
+    // Each edge is traversed equally often in both directions.
     let mut edges = std::collections::BTreeMap::<[usize; 2], i32>::new();
     for face in &faces {
         for k in 0..4 {

@@ -51,7 +51,7 @@ pub fn abandon() {
         return; // the next start removes what is left
     }
     for path in std::mem::take(&mut gate.unfinished) {
-        // The process ends; what cannot be removed now is removed by the next start.
+        // The process ends; the next start removes the rest.
         let _ = remove(&path);
     }
 }
@@ -97,7 +97,7 @@ pub fn abandon_at_once() {
     gate.shut = true;
     let idle = gate.busy == 0;
     for path in std::mem::take(&mut gate.unfinished) {
-        // The process ends; what cannot be removed now is removed by the next start.
+        // The process ends; the next start removes the rest.
         let _ = match fs::symlink_metadata(&path) {
             Ok(meta) if !meta.is_dir() => fs::remove_file(&path),
             Ok(_) if idle => fs::remove_dir_all(&path),
@@ -177,7 +177,7 @@ impl Permit {
 
     pub(super) fn write(&self, path: &Path, file: &mut File, bytes: &[u8]) -> io::Result<()> {
         let written = self.step(path, || file.write_all(bytes));
-        // What stops in the middle of a write leaves a part of it.
+        // A stop in the middle of a write leaves a part of the data.
         #[cfg(test)]
         if written.is_err() {
             file.write_all(&bytes[..bytes.len() / 2])?;
@@ -247,7 +247,7 @@ pub(super) fn open_up(folder: &Path) {
         use std::os::unix::fs::PermissionsExt;
         let mode = meta.permissions().mode();
         if mode & OWNER != OWNER {
-            // Where it does not help, removing will say why.
+            // If this fails, the later removal reports the reason.
             let _ = fs::set_permissions(folder, Permissions::from_mode(mode | OWNER));
         }
     }

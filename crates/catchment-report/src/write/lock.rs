@@ -95,7 +95,8 @@ pub(super) fn claim(place: &Path, patience: Duration, exec: &Exec) -> Result<Opt
         exec.check()?;
         let (path, waited) = (place.to_owned(), since.elapsed());
         let over = waited >= patience;
-        // At first, too: what a process was started with does not change.
+        // Also at the first attempt: a lock that a parent process holds, or that is inherited, is not
+        // released while this process waits.
         if over || std::mem::take(&mut first) {
             let HeldLock { by, above } = held(&folder);
             if above {

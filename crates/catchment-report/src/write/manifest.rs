@@ -75,7 +75,7 @@ impl Manifest {
 
     fn parse(text: &[u8]) -> Option<Self> {
         let manifest: Self = serde_json::from_slice(text).ok()?;
-        // What it lists will be removed one day: nothing above the folder or beside it.
+        // The listed files will be removed one day, so no path may leave the folder.
         let inside =
             |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         manifest.files.keys().all(|name| inside(name)).then_some(manifest)
@@ -130,7 +130,7 @@ impl Manifest {
             permit.remove_file(&folder.join(name))?;
             folders.extend(Path::new(name).ancestors().skip(1).filter(|name| !name.as_os_str().is_empty()));
         }
-        // A path comes after the one that holds it.
+        // In reverse order, so that a folder is removed after its content.
         for name in folders.into_iter().rev() {
             permit.remove_dir(&folder.join(name))?;
         }

@@ -203,7 +203,8 @@ fn look_undisturbed(
         }
         match fs::symlink_metadata(place) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok((None, There::Nothing)),
-            // It came since: what others may take away meanwhile is not looked at.
+            // The folder has appeared meanwhile. Try again: without a claim, others may remove its content
+            // during the check.
             Ok(meta) if meta.is_dir() => {}
             _ => break,
         }
@@ -282,7 +283,7 @@ fn put(new: &mut Temporary, place: &Path, kind: &str, exec: &Exec) -> Result<boo
             if matches!(there, There::Empty) {
                 permit().remove_dir(place).map_err(at)?;
             }
-            // An empty folder at the place gives way; one that is not refuses.
+            // An empty folder at the place is replaced; the rename fails for any other folder.
             let renamed = permit().rename(&new.path, place);
             match renamed {
                 Err(error) if error.kind() == ErrorKind::DirectoryNotEmpty => return Ok(false),
@@ -319,7 +320,8 @@ fn replace(new: &mut Temporary, place: &Path, old: &Manifest) -> Result<(), Writ
     };
     permit.unfinished(&new.path, stepped.is_err() && back.is_ok());
     if stepped.is_ok() {
-        // What came in this very moment is not listed, and stops it; what is left is put in order by the next start.
+        // A file added at this moment is not listed, and stops the removal; the next start cleans up the
+        // rest.
         let _ = old.remove(&aside, &permit);
     }
     drop(permit);

@@ -40,7 +40,7 @@ fn stop(writer: &Writer, fault: Fault, exchange: bool, first: bool) -> usize {
         let done = (writer.write)(path, 2);
         let happened = faults::clear(home.path());
         let there = (writer.read)(path);
-        // Without exchange there is a moment without either, for whoever looks before the next start.
+        // Without exchange there is a moment with neither result, until the next start.
         let gap = first || (!exchange && fault == Fault::Crash);
         assert!(
             matches!(there, Some(1 | 2)) || gap && fs::symlink_metadata(path).is_err(),
@@ -195,7 +195,7 @@ fn a_run_survives_every_stop() {
             let over = Over::Grid((4 + version).to_string().parse().unwrap());
             let run = Run { over, sample: Sample::None, ..Run::default() };
             let answer = run.on(&problem, &exec).unwrap();
-            // As many files as of a run; its pictures take longer to draw than all that is asked here.
+            // As many files as for a run; drawing its real pictures would take longer than the whole test.
             let dot = Picture::of(Svg::new(8.0, 8.0));
             (answer, DrawnFigures { pictures: vec![("section", dot)], left_out: Vec::new() })
         })

@@ -63,7 +63,7 @@ impl Temporary {
                 Ok(folder) => Ok(Made::Locked(folder, ())),
                 Err(error) if error.kind() == ErrorKind::NotFound => Ok(Made::Swept),
                 Err(error) if cfg!(unix) => {
-                    // Nobody can know it any more, not even by its lock.
+                    // The folder cannot be recognised later, not even by its lock.
                     let _ = permit.remove_dir(path);
                     Err(error)
                 }
@@ -119,10 +119,10 @@ impl Drop for Temporary {
             let permit = permit();
             let mut removed = permit.remove_tree(&self.path);
             if removed.as_ref().is_err_and(is_exhausted) && self.lock.take().is_some() {
-                // The lock's own descriptor is the one that was missing.
+                // The descriptor of the lock itself was the missing descriptor.
                 removed = permit.remove_tree(&self.path);
             }
-            // Nobody is left to report to; the next start tries again.
+            // A failure cannot be reported here; the next start tries again.
             drop(removed);
             permit.unfinished(&self.path, false);
         }
@@ -192,7 +192,7 @@ pub(crate) fn sweep(place: &Path) -> Result<(), WriteError> {
         if !meta.is_file() && !meta.is_dir() {
             continue;
         }
-        // Without a lock nobody can know whether it is still being written.
+        // Without a lock it is unknown whether the folder is still being written.
         let Ok(lock) = File::open(&path) else { continue };
         if lock.try_lock().is_err() || !is_at(&lock, &path) {
             continue;

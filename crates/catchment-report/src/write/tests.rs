@@ -82,7 +82,7 @@ fn refusals_are_typed_and_leave_nothing() {
     ));
     assert!(matches!(check_folder(&file, KIND, &Exec::new()), Err(WriteError::NotAResult { .. })));
     assert_eq!(names(home.path()), ["file"]);
-    // A device that is always full, where the system has one.
+    // A device that is always full, if the system has such a device.
     if Path::new("/dev/full").exists() {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap().write_all(b"x").unwrap_err();
         assert!(matches!(WriteError::at(home.path(), full), WriteError::DiskFull { .. }));
@@ -146,7 +146,7 @@ fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
     renew();
     fs::remove_file(path.join(MANIFEST)).unwrap();
     refuses(|e| matches!(e, WriteError::NotAResult { .. }));
-    // What is missing is nobody's loss, and neither is an empty folder.
+    // A missing file or an empty folder holds no data, so replacing it loses nothing.
     renew();
     fs::remove_file(path.join("inner/b")).unwrap();
     save(path, 2).unwrap();
@@ -282,7 +282,7 @@ fn what_is_no_ordinary_file_stays() {
 fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     let home = home();
     let at = |name: &str| home.path().join(name);
-    // Old stepped aside, new not complete: the old one returns.
+    // The old result stepped aside and the new result is incomplete: the old result returns.
     save(&at(".out.1.old"), 1).unwrap();
     let ours = |number: &str| format!(".out.{number}.{}.tmp", temporary::mark(".out.".as_ref(), number));
     fs::create_dir(at(".out.1.tmp")).unwrap();
@@ -291,7 +291,7 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     fs::write(at(&ours("1-3")), "half a file").unwrap();
     check_folder(&at("out"), KIND, &Exec::new()).unwrap();
     assert_eq!((names(home.path()), saved(&at("out"))), (vec!["out".to_owned()], Some(1)));
-    // What looks like ours.
+    // Names that look like temporary names of this program.
     fs::create_dir(at(".out.123.tmp")).unwrap();
     fs::write(at(".out.123.tmp/notes"), "mine").unwrap();
     fs::write(at(".out.77.tmp"), "mine").unwrap();
@@ -311,7 +311,7 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     for name in others.map(|name| at(name.split('/').next().unwrap())) {
         permit().remove_tree(&name).unwrap();
     }
-    // Nobody else's names.
+    // Names of other programs.
     for name in [".out.x.tmp", ".out.1.bak", "out.1.tmp", ".out.1-.tmp", ".other.1.tmp"] {
         fs::write(at(name), "").unwrap();
     }
@@ -345,7 +345,7 @@ fn a_process_without_memory_leaves_nothing_unfinished() {
         let busy = home.ends_with("busy").then(permit);
         abandon_at_once();
         assert!(!half.path.exists() && folder.path.exists() == busy.is_some());
-        // Their drops would wait for leave to write, which nobody has any more.
+        // Dropping them would wait for a permit to write, which is not given any more.
         std::mem::forget((half, folder));
         return;
     }
@@ -403,7 +403,7 @@ fn what_is_unfinished_has_one_owner() {
                 })
             })
             .collect();
-        // Those who sweep end whatever becomes of the others, and so do these.
+        // The makers end in any case. Stop the sweepers before the assertion.
         let made: Vec<_> = makers.into_iter().map(std::thread::ScopedJoinHandle::join).collect();
         stop.store(true, std::sync::atomic::Ordering::Relaxed);
         assert!(made.iter().all(Result::is_ok));

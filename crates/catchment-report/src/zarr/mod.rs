@@ -15,7 +15,7 @@
 
 mod outcomes;
 mod read;
-// What writes folders also draws.
+// Only builds that draw figures write sweep folders.
 #[cfg(feature = "figure")]
 mod sweep;
 
@@ -130,7 +130,7 @@ pub fn write(
         exec.install(|| fill(folder, report, acceptance, grid, layers, exec))
     });
     filled.map_err(|error| match error {
-        // The storage library does not say where.
+        // The storage library does not report the path.
         ZarrError::Storage { reason } => WriteError::at(path, std::io::Error::other(reason)).into(),
         error => error,
     })
@@ -440,7 +440,7 @@ mod tests {
         assert_eq!(chunk_shape(&[100, 100]), [100, 100]);
         assert_eq!(chunk_shape(&[3 << 20]), [1 << 20]);
         assert_eq!(chunk_shape(&[64; 5]), [1, 4, 64, 64, 64]);
-        // The last chunk of a 3 × 5 array in chunks of 2 × 3: one row and two columns are inside.
+        // The last chunk of a 3 × 5 array in chunks of 2 × 3: a row and two columns are inside.
         assert_eq!(gather(&[3, 5], &[2, 3], &[1, 1], 99, |cell| cell), [13, 14, 99, 99, 99, 99]);
     }
 }

@@ -66,7 +66,8 @@ fn cells<T, const N: usize>(
     check_metadata(&folder.join("zarr.json"), shape, kind)?;
     let chunk = chunk_shape(shape);
     let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
-    // The dimension along which the last chunk ends early: before it chunks hold one row, behind it all.
+    // The dimension along which the last chunk is partial: chunks have a single row in the dimensions before
+    // it, and the whole extent behind it.
     let cut = chunk.iter().zip(shape).rposition(|(c, n)| c < n).unwrap_or_default();
     let row: usize = chunk[cut + 1..].iter().product();
     let cells: usize = chunk.iter().product();

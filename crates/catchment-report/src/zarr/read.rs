@@ -30,7 +30,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     let mut root: Value =
         serde_json::from_slice(&text).map_err(|error| bad(format!("zarr.json: {error}")))?;
     let foreign = || bad("it was not written by this program".to_owned());
-    // Whatever is not an object has none.
+    // A value that is not an object has no attributes.
     let attributes = root.get_mut("attributes").ok_or_else(foreign)?;
     match attributes["catchment"].as_u64() {
         Some(layout) if layout == u64::from(LAYOUT) => {}

@@ -83,7 +83,7 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
         let attributes = outcome_attributes(found.settings.run.method.name());
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, digit)?);
     }
-    // Every number is an array: the report has what is left.
+    // All numbers are arrays; the report contains the rest.
     let head = json!({
         "design": report.design,
         "settings": found.settings,
