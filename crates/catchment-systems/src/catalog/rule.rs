@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn an_extent_ends_at_the_first_gap_and_passes_seams() {
-        // Two tiles that share a border, one with a gap before it, one that does not meet the axis.
+        // Two tiles that share a border, a tile after a gap, and a tile that does not meet the axis.
         let parts =
             [[-0.1, -0.2, 0.1, 0.3], [0.0, -0.05, 0.05, 0.3], [0.3, -0.1, 0.2, 0.2], [-1.0, 0.5, 2.0, 0.1]];
         let extents = Extents::of(&region(&parts));
@@ -174,7 +174,7 @@ mod tests {
         let wrong: Vec<&str> =
             full.iter().filter(|(_, holds)| !holds).map(|(name, _)| name.as_str()).collect();
         assert_eq!((full.len(), wrong), (6, vec!["CONRO"]));
-        // By the way to one side Vacuubes would not be High.
+        // With half the extent Vacuubes would not be High.
         let half = printed(0.5);
         assert!(half.iter().any(|(name, holds)| name == "Vacuubes" && !holds));
     }

@@ -69,7 +69,7 @@ impl ModuleFace {
         module: usize,
     ) -> PlanarPose {
         let rotor = rotors[module - 1];
-        // What lies before the joint does not turn with it.
+        // Faces before the joint do not turn with it.
         let before = if self == Self::Back { -angles[module - 1] } else { 0.0 };
         rotor.ahead(before + self.turn(), body.overhang)
     }
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn faces_that_a_module_lacks_do_not_latch() {
-        // A ring of four: the last module's front meets the first one's back, and nothing else.
+        // A ring of four: the front of the last module meets the back of the first, and no other faces meet.
         let ring = [0.0, -FRAC_PI_2, -FRAC_PI_2, -FRAC_PI_2];
         let found = latches(&ring);
         assert_eq!(found.len(), 1);

@@ -66,7 +66,7 @@ fn image(map: &OverlapMap) -> Result<Vec<u8>, FigureError> {
     for row in map.values.chunks(map.cells[0]).rev() {
         for value in row {
             let share = value / largest;
-            // Light where there is little: the border of the region is where it fades.
+            // Light for a small overlap: the border of the region fades out.
             let [r, g, b] = mix([0xff, 0xff, 0xff], sequential(1.0 - 0.8 * share), 0.25 + 0.75 * share);
             pixels.extend(if *value > 0.0 { [r, g, b, 255] } else { [255, 255, 255, 0] });
         }
@@ -152,7 +152,7 @@ fn meeting(svg: &mut Svg, found: &Composition, unit: &str) -> Result<(), FigureE
         svg.image(Rect { x, y, w, h }, &image(map)?, false);
     }
     if let Some(own) = own {
-        // What the bodies take away is covered.
+        // White covers the part of the overlap that the bodies exclude.
         let covered = [slice.region.outer.bounds(), map_bounds(map)];
         if let Some([low, high]) = covered[1].or(covered[0]) {
             let taken = Region::rectangle(low, high).minus(&slice.region.outer);

@@ -89,7 +89,7 @@ impl<'r> Borders<'r> {
 /// The least larger coordinate, in size, along a segment.
 fn chessboard(a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
-    // It is least at an end or where |x| = |y|, x = 0 or y = 0.
+    // The minimum is at an end or at a point with |x| = |y|, x = 0 or y = 0.
     let zeros = [
         -(a.x - a.y) / (along.x - along.y),
         -(a.x + a.y) / (along.x + along.y),

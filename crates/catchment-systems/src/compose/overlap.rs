@@ -123,7 +123,8 @@ fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64) -> Vec<Corner>
         }
         if (here >= 0.0) != (there >= 0.0) {
             let at = corner.at.lerp(next.at, here / (here - there));
-            // Out of the half plane the side of the second begins, into it the polygon's own goes on.
+            // At an exit from the half-plane the side of the second polygon begins; at an entry the polygon's
+            // own side continues.
             kept.push(Corner { at, of_second: here >= 0.0 || corner.of_second });
         }
     }

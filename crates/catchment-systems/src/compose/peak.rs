@@ -193,7 +193,7 @@ mod tests {
                     let [d, other] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
                     let value = overlap.at(d);
                     prop_assert!(value <= found.at_most * (1.0 + 1e-12) + 1e-12);
-                    // And none is above what another place says of its surroundings.
+                    // The bound around any other place holds, too.
                     let around = overlap.around(other, (d - other).abs().max_element());
                     prop_assert!(value <= around.at_most + 1e-9, "{value} {around:?}");
                 }

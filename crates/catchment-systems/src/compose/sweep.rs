@@ -121,7 +121,7 @@ impl Bracket {
     /// Those of the change.
     pub fn try_map<E>(&self, change: impl Fn(&Region) -> Result<Region, E>) -> Result<Self, E> {
         let inner = change(&self.inner)?;
-        // Most regions are exact: what holds for one polygon then holds for both.
+        // Most regions are exact: both polygons are equal, and so are the results.
         let outer = if self.inner == self.outer { inner.clone() } else { change(&self.outer)? };
         Ok(Self { inner, outer })
     }
@@ -251,7 +251,7 @@ fn outward(outline: &[Node]) -> Vec<Vec<DVec2>> {
         }
     }
     let rising = |k: usize| points[(k + 1) % points.len()].length() > points[k % points.len()].length();
-    // Begin where a stretch begins; an outline about the origin at one distance has none.
+    // Start at the beginning of a segment; an outline at constant distance around the origin has no segments.
     let Some(first) = (0..points.len()).find(|&k| rising(k) != rising(k + points.len() - 1)) else {
         return Vec::new();
     };
@@ -333,7 +333,7 @@ mod tests {
         let square = SweptShape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(4.0, 0.5), 1.0);
         let turn = 0.4;
         let swept = Motion::Turn { pivot: DVec2::ZERO, from: 0.0, to: turn }.sweep(&square, 1e-4).unwrap();
-        // Midpoints of rings, on which the square is one stretch of angles.
+        // Midpoints of rings, on each of which the square covers a single interval of angles.
         let rings = 4000;
         let (near, far) = (3.0, 5.0f64.hypot(1.5));
         let mut area = 0.0;
@@ -372,8 +372,9 @@ mod tests {
     fn growing_and_sliding_are_exact() {
         let square = SweptShape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(3.0, 0.0), 1.0);
         let grown = Motion::Scale { about: DVec2::ZERO, from: 1.0, to: 2.0 }.sweep(&square, 1.0).unwrap();
-        // From the square at x 2…4 to the one at 4…8, between the lines y = ±x/2: a trapezoid x 2…4 widened from 2 to 4 … 8.
-        // Left of x = 4 the half-height is max(1, x/2) = x/2 from x = 2; from 4 to 8 it is 2.
+        // From the square at x 2…4 to the square at 4…8, between the lines y = ±x/2: a trapezoid x 2…4
+        // widened from 2 to 4 … 8. Left of x = 4 the half-height is max(1, x/2) = x/2 from x = 2; from 4 to 8
+        // it is 2.
         assert!((grown.inner.area() - (6.0 + 16.0)).abs() < 1e-6, "{}", grown.inner.area());
         let slid = Motion::Slide { by: DVec2::new(3.0, 4.0) }.sweep(&square, 1.0).unwrap();
         // Area plus the width seen along the way, times its length: 4 + 2·3 + 2·4.

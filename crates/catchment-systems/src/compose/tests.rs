@@ -198,7 +198,7 @@ fn bodies_are_kept_apart() {
 
 #[test]
 fn a_stack_of_headings_has_a_volume() {
-    // A segment of length 2 against one of length 3: area 6 |sin ψ|, over a quarter turn ∫ = 6.
+    // A segment of length 2 with a segment of length 3: area 6 |sin ψ|, over a quarter turn ∫ = 6.
     let (a, b) = (Region::segment(v(-1.0, 0.0), v(1.0, 0.0)), Region::segment(v(-1.5, 0.0), v(1.5, 0.0)));
     let headings: Vec<f64> = (0..=90).map(|k| f64::from(k) * FRAC_PI_2 / 90.0).collect();
     let found = composed(&a, &b, &ComposeSettings { headings, ..at(RegionFrames::World, 0.0) });
@@ -260,12 +260,12 @@ fn the_shipped_example_is_the_one_of_the_page() {
     let told = report(&found);
     assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());
     assert!(figure(&found).unwrap().png(1.0).unwrap().len() > 1000);
-    // What is written is read again, to the digit.
+    // The written files are read back, to the last digit.
     let svg = read(SourceText::new("sum.svg", outline_svg(&found)), &Exec::new()).unwrap();
     let table = catchment::report::csv(&told.records()).unwrap();
     let table = read(SourceText::new("sum.csv", String::from_utf8(table).unwrap()), &Exec::new()).unwrap();
     let inner = found.slices[0].region.inner.area();
-    // Corners of the drawing go through a scale of one, rounded.
+    // Corners of the drawing are rounded by a scale factor of 1.
     assert!((svg.region.inner.area() - inner).abs() < 1e-4, "{}", svg.region.inner.area());
     assert!((table.region.inner.area() - inner).abs() < 1e-7);
 }

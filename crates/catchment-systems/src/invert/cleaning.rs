@@ -52,7 +52,7 @@ impl Heights {
                 Some((j, polygon)) => {
                     self.facets[k].polygon = polygon;
                     self.facets.swap_remove(j);
-                    // What did not fit before may fit now.
+                    // Pieces that could not be merged before may be merged now.
                     k = 0;
                 }
                 None => k += 1,
@@ -183,7 +183,7 @@ fn moved_over(polygon: &[DVec2], sliver: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DV
         let (from, to) = (polygon[k], polygon[(k + 1) % n]);
         let along = (to - from).try_normalize()?;
         let out = |p: DVec2| -along.perp_dot(p - from);
-        // What of the sliver lies in front of this side.
+        // The part of the sliver in front of this side.
         let part = clip(&clip(sliver, |p| along.dot(p - from)), |p| along.dot(to - p));
         let (least, most) = part
             .iter()
@@ -237,7 +237,7 @@ fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
         }
         let corner = from + u * ((to - from).perp_dot(v) / turn);
         let beyond = -along.perp_dot(corner - from);
-        // Needles are cut where they are: their point would lie far away.
+        // A needle is cut, not extended: the corner of its sides would lie far away.
         let near = corner.distance(from).min(corner.distance(to)) <= NARROW;
         (near && beyond <= NARROW).then_some((beyond.max(0.0), k, corner))
     };
@@ -346,7 +346,7 @@ mod tests {
         let low = facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.1, 0.0]);
         let wall = facet([1.0, 0.0], [1.0 + lean, 1.0], 0.0, [0.5 / lean, 0.0]);
         let high = facet([1.0 + lean, 0.0], [2.0, 1.0], 0.5, [0.0, 0.0]);
-        // At the rim nothing is left of it, between two pieces the upper one reaches over it.
+        // At the rim the wall vanishes; between two pieces the upper piece extends over it.
         let rim = tidied(&[low.clone(), wall.clone()]);
         assert_eq!(rim.facets, vec![low.clone()]);
         let found = tidied(&[low.clone(), wall.clone(), high]);
@@ -366,7 +366,7 @@ mod tests {
         let polygon = corners.map(|(x, y)| DVec2::new(x, y)).to_vec();
         let piece = HeightFacet { polygon, offset: 0.0, gradient: DVec2::ZERO };
         assert_eq!(tidied(std::slice::from_ref(&piece)).facets[0].polygon.len(), 4);
-        // A groove 1e-4 wide between two pieces of one plane is one.
+        // A groove 1e-4 wide between two coplanar pieces remains a groove.
         let groove = [
             facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
             facet([1.0, 0.0], [1.0001, 1.0], 0.1, [0.0, 0.0]),

@@ -73,7 +73,7 @@ fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Resul
     if lo.x >= hi.x {
         return Err(FigureError::Empty { what: "no height is wanted at y = 0" });
     }
-    // Of the heights that are reached, those over the offsets that are asked for.
+    // The reached heights within the range of the wanted offsets.
     for end in reached.iter().flatten().filter(|end| (lo.x..=hi.x).contains(&end.x)) {
         (lo.y, hi.y) = (lo.y.min(end.y), hi.y.max(end.y));
     }

@@ -252,7 +252,8 @@ pub fn invert(
         let turn = rotation(*roll, *pitch, *yaw);
         let there = heights_of(design, turned, turn, exec)?;
         if let Some((fixed, body)) = turns::asked(&connector.fixed, &there, turn, floor) {
-            // One rotation after the other: what one asks for is mostly hidden by the others.
+            // Rotations in sequence: the heights that a rotation requires are mostly hidden by those of the
+            // others.
             asked.facets.extend(over_plan(&fixed, &body)?);
             asked = Heights { facets: highest(asked.facets, &ZraaSettings::default(), exec)? }.merged();
         }

@@ -36,7 +36,7 @@ fn rows(text: &str, found: &mut DiagnosticCollector) -> (Vec<(DVec3, Range<usize
     for line in text.split_inclusive('\n') {
         let span = start..start + line.trim_end().len();
         start += line.len();
-        // One more than there should be shows that there are too many.
+        // An extra field shows that there are too many.
         let fields: Vec<&str> = line.trim().splitn(COLUMNS.len() + 1, ',').map(str::trim).collect();
         if line.trim().is_empty() || line.starts_with('#') {
             continue;

@@ -110,7 +110,8 @@ fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
                 }
             }
         }
-        // The moving half gave way, so heights beside the dent are missed, and by what the dent is deep at most.
+        // The moving half receded at the dent, so heights beside it are missed, by at most the depth of the
+        // dent.
         let worst = found.shortfalls.first().unwrap_or_else(|| panic!("{name}: all reached"));
         assert!(worst.most > 0.01 && worst.most < 10.0 * lowered, "{name}: {}", worst.most);
         let short = found.reached.at(worst.at).unwrap();
@@ -150,8 +151,8 @@ fn outside(polygon: &[DVec2], region: &[DVec2]) -> Vec<Vec<DVec2>> {
 
 #[test]
 fn a_flat_wish_over_a_flat_plate_is_a_plate() {
-    // Over the pyramid's socket, whose rim is at H/2 = 0.25, a wish of one height: a moving half that touches with its deepest
-    // point alone. g(u) = max f − h* wherever the rim can come over u: a plate.
+    // Over the pyramid's socket, whose rim is at H/2 = 0.25, constant wanted heights: the moving half makes
+    // contact with its deepest point only. g(u) = max f − h* wherever the rim can come over u: a plate.
     let problem = family("pyramid");
     let table = "x,y,height\n-2,-2,1\n2,-2,1\n-2,2,1\n2,2,1\n";
     let wanted = wanted_from_table(SourceText::new("w.csv", table)).unwrap();
@@ -167,7 +168,8 @@ fn turns_that_the_half_keeps_ask_for_nothing_more() {
     let plain = inverted(&problem, own_heights(&problem), &InvertSettings::default());
     let settings = InvertSettings { yaw: vec![-0.3, 0.3], ..InvertSettings::default() };
     let turned = inverted(&problem, own_heights(&problem), &settings);
-    // The pair's own moving half keeps its own heights at every turn, so nothing more is asked of it.
+    // The pair's own moving half keeps its own heights at each rotation, so the rotations require nothing
+    // more.
     for facet in &turned.moving.facets {
         for p in &facet.polygon {
             let before = plain.moving.at(*p).unwrap();

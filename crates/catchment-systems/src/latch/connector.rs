@@ -35,7 +35,8 @@ fn cells(geometry: &Geometry, facets: u32) -> Vec<Vec<DVec2>> {
         let x = middle * f64::from(k) / f64::from(facets);
         DVec2::new(x - middle, geometry.profile.height(x) - down)
     };
-    // The hill without the middle, where its last facet and the first of the valley are one.
+    // The hill without the middle corner: there its last facet and the first facet of the valley are
+    // coplanar.
     let hill: Vec<DVec2> = (0..facets).map(corner).collect();
     let floor = -hill[0].y - BODY * geometry.width;
     let mut cells: Vec<Vec<DVec2>> = Vec::new();

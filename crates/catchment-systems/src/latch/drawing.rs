@@ -230,7 +230,7 @@ mod tests {
                 assert!((numbers(hole, 10)[0] - middle.x).abs() < 1e-9);
                 assert!(hole.contains(&(8, PART)));
             }
-            // Handles are unique, and the head says the next free one.
+            // Handles are unique, and the header contains the next free handle.
             let handles: Vec<usize> =
                 found.iter().map(|one| usize::from_str_radix(one[1].1, 16).unwrap()).collect();
             assert_eq!(handles, [0x11, 0x12, 0x13]);

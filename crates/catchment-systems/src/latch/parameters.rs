@@ -268,7 +268,7 @@ mod tests {
         assert_eq!(read("[latch]\nsides = 3\n").unwrap().base, 47.5);
         let inches = read("[latch]\nsheet = '0.125 in'\nkerf = 0.2\n").unwrap();
         assert!((inches.sheet - 3.175).abs() < 1e-12 && inches.separator == inches.sheet);
-        // Two kerfs, unless that is too wide, and never less than one.
+        // Two kerfs, unless that is too wide, and at least a single kerf.
         assert_eq!(inches.slit_gap, 0.36);
         assert_eq!(read("[latch]\nkerf = 0.1\n").unwrap().slit_gap, 0.2);
     }

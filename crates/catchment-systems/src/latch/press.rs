@@ -187,7 +187,8 @@ impl Layer<'_> {
         let (contact, swing) = if self.seen(middle, wall).y <= profile.hook {
             (LayerContact::Wall, wall)
         } else {
-            // Newton's steps for C on the profile, kept between a swing that is too small and one that is too large.
+            // Newton steps for C on the profile, bracketed by a swing that is too small and a swing that is
+            // too large.
             let (mut inside, mut outside) = (0.0, wall);
             let mut swing = wall;
             for _ in 0..TRIES {
@@ -239,7 +240,7 @@ pub fn record(latch: &LatchDesign, geometry: &Geometry) -> Result<Record, Jammed
         offset: sign * press.offset,
     };
     let layers: Vec<Layer<'_>> = [1.0, -1.0].into_iter().take(latch.layers as usize).map(layer).collect();
-    // A tilt out of the layers' plane lifts one and lowers the other.
+    // A tilt out of the plane of the layers raises one layer and lowers the other.
     let ahead =
         if latch.layers == 2 { 0.5 * (latch.sheet + latch.separator) * press.tilt.tan() } else { 0.0 };
     let lift = |k: usize| if k == 0 { -ahead } else { ahead };
@@ -317,7 +318,8 @@ mod tests {
             work += 0.5 * (pair[0].force + pair[1].force) * (pair[0].above - pair[1].above);
             let stored = stiffness::torsional(&latch) * pair[1].layers[0].swing.powi(2);
             most = most.max(stored);
-            // The trapezium rule over steps of 0.06 mm; within one of them, at the corner, the force falls by some 1.4 N.
+            // The trapezium rule over steps of 0.06 mm; within one of them, at the corner, the force falls by
+            // some 1.4 N.
             assert!((work - stored).abs() < 0.05, "{work} {stored} at {}", pair[1].above);
         }
         assert!(most > 15.0, "{most} N·mm");
@@ -378,7 +380,7 @@ mod tests {
         let tilted = dips(Press::default());
         assert_eq!(tilted.dips.len(), 2);
         let [first, second] = tilted.dips[..] else { panic!() };
-        // A lever of 12.7 mm and two degrees: 0.44 mm from one snap to the other.
+        // A lever of 12.7 mm and two degrees: 0.44 mm between the snaps.
         assert!((first.above - second.above - 12.7 * 2f64.to_radians().tan()).abs() < 1e-12);
         assert!(first.to > 0.0 && first.to < first.from && second.to == 0.0);
         let level = dips(Press { tilt: 0.0, ..Press::default() });

@@ -213,7 +213,7 @@ mod tests {
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         assert!(text.contains("213.6 N/mm") && text.contains("38.2·o^0.11·t^0.80") && text.contains("nine"));
         assert_eq!(report.records().len(), 10);
-        // Each left-out prediction is what the fit's own figure was made of.
+        // The cross-validation error of the fit follows from the left-out predictions.
         let logs =
             report.rows.iter().map(|r| (r.measured.latching_force_n / r.latching_left_out_n).ln().powi(2));
         assert!(((logs.sum::<f64>() / 9.0).sqrt() - report.fits[0].left_out_rms).abs() < 1e-12);

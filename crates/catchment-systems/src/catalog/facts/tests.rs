@@ -67,7 +67,7 @@ fn circles_and_squares_of_the_printed_areas() {
         let catalog = Catalog::published().unwrap();
         let numbers = numbers(catalog.find(name).unwrap());
         let value = |wanted: &str| numbers.iter().find(|n| n.name == wanted).unwrap().value;
-        // Half a unit of the last digit of the coarser ones.
+        // Half a unit in the last digit of the coarser numbers.
         assert!((value("radius") - radius).abs() < 5.1e-5, "{name}: {}", value("radius"));
         assert!((value("edge") - edge).abs() < 5.1e-5, "{name}: {}", value("edge"));
     }
@@ -99,7 +99,7 @@ fn closed_forms_are_what_the_program_computes() {
     assert!((square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
     let (_, zraa, square) = computed(FamilySpec::new(Family::Pyramid));
     assert!((area(&zraa) - 1.0).abs() < 1e-9 && (square.edge - 1.0).abs() < AcceptedSquare::TOLERANCE);
-    // The cone has width 1; the one around the unit square is √2 as wide.
+    // The cone has width 1; the cone around the unit square is √2 as wide.
     for chord_error in [0.004, 0.001] {
         let (design, zraa, square) = computed(FamilySpec::new(Family::Cone).with_chord_error(chord_error));
         let [low, high] = circle_bounds(&design, &zraa).unwrap();

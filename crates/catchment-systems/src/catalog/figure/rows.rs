@@ -130,7 +130,7 @@ fn of_family(
         (Zraa::Interval { from, to, .. }, _) => {
             vec![format!("{} D long", trimmed(to - from, 4)), words.to_owned()]
         }
-        // What is printed is the circle's.
+        // The printed values are those of the circle.
         (Zraa::Region { .. }, Family::Cone) => {
             let shape = AcceptanceShape::Disc(0.5 * width);
             let area = if width > 1.0 { "π/2, as amour is published" } else { "π/4" };

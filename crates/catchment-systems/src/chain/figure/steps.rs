@@ -29,7 +29,7 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     let cell = (WIDTH - 2.0 * SIDE) / ACROSS as f64;
     let [left, right] = bounds(&folding.steps, body).map(|corner| corner.x);
     let scale = (cell - 16.0) / (right - left);
-    // Rows are as high as what they show.
+    // The height of a row fits its content.
     let rows: Vec<(&[FoldStepReport], [f64; 2])> =
         folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
     let height = |[low, high]: [f64; 2]| scale * (high - low);

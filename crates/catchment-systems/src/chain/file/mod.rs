@@ -230,7 +230,7 @@ fn folding(
     modules: usize,
 ) -> Option<Folding> {
     let (steps, places) = steps(form, root, modules);
-    // Asked for here, so that the key is known even where it does not count.
+    // Read here, so that the key is known even if it does not apply.
     let pairs = form.word(named, "latches");
     if let (Some(_), Some(pairs)) = (shape, &pairs) {
         form.refuse(
@@ -345,7 +345,7 @@ fn steps(form: &mut Form<'_>, root: &FormTable<'_>, modules: usize) -> (Vec<Comm
 /// An angle, or `"slack"`.
 fn command(form: &mut Form<'_>, entry: &FormTable<'_>) -> Option<Command> {
     if !entry.has("command") {
-        // Says that it is missing.
+        // Reports that the key is missing.
         form.angle(entry, "command", -PI..=PI, None);
         return None;
     }

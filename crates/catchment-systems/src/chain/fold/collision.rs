@@ -107,7 +107,7 @@ mod tests {
             in_one_cell(&ModuleDimensions::default(), &rotors(&ModuleDimensions::default(), angles), &[])
         };
         assert_eq!((cell(&[0.0, q, q, q, q]), cell(&[0.0, 0.0, 2.6, 0.0])), (Some((1, 5)), None));
-        // A fold of 150° lays a module on the one before it.
+        // A fold of 150° lays a module onto the previous module.
         assert!(collides(&[0.0, 0.0, 2.6, 0.0]).is_some());
     }
 

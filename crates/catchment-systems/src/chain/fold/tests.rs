@@ -29,8 +29,9 @@ fn table_6_2_latches_one_layer_after_the_other_and_ends_on_the_lattice() {
     told(&found);
     let events: Vec<_> = found.events.iter().map(|e| (e.from, e.to, e.layers, e.time_s.floor())).collect();
     assert_eq!(events, [(3, 6, 1, 3.0), (3, 6, 2, 5.0)]);
-    // The first meets off-centre, by the 9.41 mm of the commanded pose less what the servo of joint 4 yields, 9.61 N · 95 mm / 200 N·m
-    // times a lever of 95 mm: 0.43 mm. It snaps at its force, to the hundredth that events are found to.
+    // The first contact is off-centre, by the 9.41 mm of the commanded pose minus the deflection of the servo
+    // of joint 4: 9.61 N · 95 mm / 200 N·m times a lever of 95 mm, 0.43 mm. It snaps at its force, to the
+    // hundredth to which events are located.
     let first = found.events[0];
     assert!((first.lateral_mm.abs() - 9.41 + 0.43).abs() < 0.15, "{first:?}");
     assert!((9.61..9.61 * 1.02).contains(&first.force_n), "{first:?}");

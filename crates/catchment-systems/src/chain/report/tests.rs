@@ -73,7 +73,7 @@ fn the_reach_is_the_last_row_before_the_first_that_fails() {
     assert_eq!((reach(&rows, &[])[0].modules, reach(&rows, &[])[0].surely), (Some(3), Some(2)));
     assert_eq!(reach(&rows, &["probability>0.999".parse().unwrap()])[0].modules, Some(2));
     assert_eq!(reach(&rows[2..3], &["probability>0.999".parse().unwrap()])[0].modules, None);
-    // A requirement about something else leaves the usual one.
+    // A requirement on another quantity leaves the default requirement.
     assert_eq!(
         reach(&rows, &["modules>3".parse().unwrap()])[0].requirement.to_string(),
         "probability >= 0.99"

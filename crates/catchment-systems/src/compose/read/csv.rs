@@ -31,7 +31,7 @@ fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
     for record in reader.records().take(MOST_CORNERS + 2) {
         let record = record.map_err(|error| Diagnostic::new(error.to_string(), None))?;
         let start = record.position().map_or(0, |p| p.byte() as usize);
-        // The reader may say where the line before ended.
+        // The reader may report the end of the previous line.
         let start = start + text[start..].len() - text[start..].trim_start_matches(['\r', '\n']).len();
         let end = text[start..].find(['\r', '\n']).map_or(text.len(), |length| start + length);
         let mut from = start;
@@ -39,7 +39,7 @@ fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
             .iter()
             .take(MOST_COLUMNS)
             .map(|field| {
-                // A field with quotes in it is written otherwise than it reads: its place is that of the record.
+                // A quoted field differs from its text in the file; its position is then that of the record.
                 let place =
                     text[from..end].find(field).map(|offset| from + offset..from + offset + field.len());
                 from = place.as_ref().map_or(from, |place| place.end);

@@ -196,7 +196,7 @@ fn path_rings(
             }
             PathEl::LineTo(p) => {
                 spent = spent.and_then(|()| corners.spend(1));
-                // What is refused is not kept.
+                // Corners beyond the limit are not stored.
                 if spent.is_ok() {
                     ring.corners.push(corner(p));
                 }

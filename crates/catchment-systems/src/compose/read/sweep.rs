@@ -78,7 +78,7 @@ pub(super) fn fill(form: &mut Form<'_>, root: &FormTable<'_>, stem: &str) -> Swe
         form.refuse(table.span(), "`sweep.shape` is missing", Some(&help));
     }
     if form.is_refused() {
-        // What else there is depends on the shape.
+        // The remaining keys depend on the shape.
         return Swept {
             name,
             shape: SweptShape::Disc { radius: 1.0 },

@@ -102,7 +102,8 @@ fn what_is_wanted_at_rotations_is_kept_there_and_not_elsewhere() {
             (above, closest, compared) = (above.max(high - limit), closest.min(limit - got), compared + 1);
         }
     }
-    // Without the rotations it stops higher; with them it reaches what is wanted somewhere, so nothing lower would do.
+    // Without the rotations the half stops higher. With them it reaches a wanted height at some point, so it
+    // cannot be lower.
     assert!(compared > 200 && above > 0.05 && closest < 1e-3, "{compared} {above} {closest}");
 }
 
@@ -127,7 +128,7 @@ fn between_the_rotations_the_excess_is_bounded() {
         (worst, compared) = (worst.max(got - limit), compared + 1);
     }
     assert!(compared > 100 && worst <= between.bound_d, "{compared} {worst} {between:?}");
-    // What was found midway is what the definition says there.
+    // The bound between the rotations agrees with the definition there.
     let at = DVec2::from_array(between.at_d);
     let pull = |p: DVec2| p * (1.0 - 1e-7);
     let there = turned(pull(at), between.angles_rad);

@@ -61,7 +61,7 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&La
         r##"stroke="#1f2933" stroke-width="1.2" stroke-dasharray="5 4""##,
     );
     svg.text([x + 5.0, rect.y + 14.0], TICK, Anchor::Start, INK, "1.27 mm: did not latch");
-    // The model grows towards the smallest of both, where nothing was measured.
+    // The model has its maximum at the smallest values of both, beyond the measurements.
     for (k, words) in ["maximum:", "extrapolated"].into_iter().enumerate() {
         svg.text([x + 5.0, rect.y + rect.h - 20.0 + 13.0 * k as f64], TICK, Anchor::Start, INK, words);
     }

@@ -120,7 +120,7 @@ mod tests {
             assert!(picture.png(0.5).unwrap().len() > 2000, "{name}");
         }
         assert!(drawn.overview().svg().contains("snapped") && drawn.overview().svg().contains("79.1"));
-        // The record lies below what was measured, and the picture shows how far.
+        // The computed force lies below the measured force, and the figure shows the difference.
         assert!(drawn.press().svg().contains("fitted to measurements: 13.4 N"));
     }
 }

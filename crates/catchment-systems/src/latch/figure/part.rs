@@ -44,7 +44,7 @@ pub(super) fn outline(svg: &mut Svg, rect: Rect, latch: &LatchDesign, geometry: 
         svg.circle(view.at(*middle), 0.5 * diameter * scale, &style);
     }
     let face: Vec<[f64; 2]> = geometry.face().iter().map(|p| view.at(geometry.turned(*p))).collect();
-    // The partner's face is the same line: its hook is told by the dotted plane.
+    // The partner's face is the same line; the dotted plane shows its hook.
     let style = format!(r#"fill="none" stroke="{}" stroke-width="2.4" {JOIN}"#, hex(MOVING_EDGE));
     svg.path(&polyline(face, false), &style);
     let width = geometry.width;
@@ -167,7 +167,7 @@ pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>) {
         // The other layer's faces, dashed, as long as its arms are at rest.
         let behind: Polygon = geometry.face().iter().map(|p| DVec2::new(geometry.width - p.x, p.y)).collect();
         let partner: Polygon = behind.iter().map(|p| 2.0 * middle - *p).collect();
-        // Once both are one line, two dashed ones would make it solid.
+        // Once both faces coincide, two dashed lines would look solid.
         let dashed = [(behind, FIXED_EDGE), (partner, MOVING_EDGE)];
         let shown = if swing > 0.0 { 0 } else { 1 + usize::from(above > 0.0) };
         for (face, colour) in dashed.into_iter().take(shown) {

@@ -48,7 +48,7 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record, latching: f64) {
     for (k, dip) in record.dips.iter().enumerate() {
         let [x, y] = frame.at([way(dip.above), dip.from]);
         svg.circle([x, y], 3.0, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(CURVES[0])));
-        // Above the curve for the first, below it for what follows, clear of the drop.
+        // Above the curve for the first snap, below it for the next, clear of the drop.
         let level = if k == 0 { y - 10.0 } else { y + 18.0 };
         svg.text([x - 24.0, level], TICK, Anchor::End, INK, &format!("layer {} snaps", dip.layer));
     }

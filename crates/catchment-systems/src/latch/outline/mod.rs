@@ -225,7 +225,7 @@ impl Geometry {
     pub fn layer(&self) -> Polygon {
         let [near, far] = self.slit;
         let neck = near - self.neck;
-        // The slit's upper corners are knots of the face: what lies between them is cut away.
+        // The upper corners of the slit are knots of the face; the part of the face between them is cut away.
         let face = self.face();
         let left = face.iter().filter(|p| p.y >= 0.0 || p.x < near + SAME);
         let right = face.iter().filter(|p| p.y < 0.0 && p.x > far - SAME);

@@ -61,7 +61,7 @@ fn halves_mate_without_gap_or_overlap() {
         let geometry = Geometry::of(&latch).unwrap();
         let (solid, layer) = (geometry.solid(), geometry.layer());
         let full = latch.width * latch.base;
-        // The turned half fills what is missing of the box, so that each is a half of it.
+        // The turned half fills the rest of the box, so each half has half of the area.
         assert!((area(&solid) - full).abs() < 1e-9);
         let partner = turned(&geometry, &solid);
         assert!(combined(&solid, &partner, OverlayRule::Intersect) < 1e-4);
@@ -83,7 +83,7 @@ fn outlines_are_closed_simple_and_made_of_their_parts() {
     assert!(is_simple(&layer) && is_simple(&geometry.separator()) && area(&layer) > 0.0);
     let neck = geometry.neck * (geometry.cutout[1] - geometry.cutout[0]);
     let parts = area(&geometry.arm()) + area(&geometry.body()) + neck;
-    // The body of the picture goes straight across where the slit ends a little deeper.
+    // The drawn body has a straight edge, but the slit ends slightly deeper.
     let deeper = (geometry.slit[1] - geometry.slit[0]) * (geometry.cutout[0] - geometry.slit_end);
     assert!((parts - area(&layer) - deeper).abs() < 1e-6);
     let mirrored = geometry.mirrored(&layer);
@@ -106,7 +106,7 @@ fn separators_do_not_meet() {
         (both - area(&separator)).abs()
             < geometry.overhang * 2.0 * geometry.profile.height(geometry.width / 2.0)
     );
-    // The union stands above the plane where the partner's hangs below it.
+    // The union extends above the plane into the space of the partner's lower part.
     let union: Vec<Vec<[f64; 2]>> = {
         let flat = |polygon: &Polygon| polygon.iter().map(|p| [p.x, p.y]).collect::<Vec<[f64; 2]>>();
         let shapes = flat(&front).overlay_as::<i64>(
