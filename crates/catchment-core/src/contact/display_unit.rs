@@ -1,7 +1,7 @@
 //! Lengths and pose errors in the design's own unit and degrees.
 //!
 //! ```text
-//!   0.2 D, 0.1 rad   ──▶   "10 mm", "5.73 deg"     where the design has a unit and D is 50 mm; "0.2 D" where it has none
+//!   0.2 D, 0.1 rad   ──▶   "10 mm", "5.73 deg"     if the design has a unit and D is 50 mm; "0.2 D" without a unit
 //! ```
 
 use crate::design::Design;

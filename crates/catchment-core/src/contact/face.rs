@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!        ┌───────┐  moving                         z   top of the fixed half          ─┐
-//!        │  ┌──┐ │                                     ·  face centre                  │ what they share
+//!        │  ┌──┐ │                                     ·  face centre                  │ common heights
 //!      ──┘╲╱    └┘                                     bottom of the moving half, mated ─┘
 //!   ────╲    ╱───── fixed
 //! ```

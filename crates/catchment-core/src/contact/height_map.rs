@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!     fixed  F(p) = highest z over p          h(o) = max over p of  F(p) + M(p − o)
-//!     moving M(p) = −lowest z over p          where both have something over p; none where they share too little
+//!     moving M(p) = −lowest z over p          over common points p; undefined if the common area is too small
 //! ```
 //!
 //! The maps are sampled at points, so a peg that fits its hole collides with the rim if the rim lies between

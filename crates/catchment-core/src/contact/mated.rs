@@ -210,7 +210,7 @@ fn direction(way: DVec2) -> String {
 /// A rest below the seat, to which a half comes that is a little off: the aligned pose is level about it, or falls off close by.
 ///
 /// ```text
-///     ╲   ___●___   ╱     level within the probes; what is a little off tips, and goes on to the bottom
+///     ╲   ___●___   ╱     level within the probes; a half slightly off tips, and slides to the bottom
 ///      ╲_╱       ╲_╱
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,11 @@
 //! Overlap of the halves: whether some point lies inside both.
 //!
 //! ```text
-//!      B ┌───────────────┐            the overlap of two solids has a corner that lies on a convex edge of one of them, A;
-//!        │      A        │            from there on that edge runs inside the other, B, or along its surface with
+//!      B ┌───────────────┐            the overlap of two solids has a corner on a convex edge of one of them, A;
+//!        │      A        │            from this corner the edge runs inside the other, B, or along its surface with
 //!   ●────┼──●────────┼───●            the material of A on the inner side
 //!        └──┼────────┼───┘
-//!           cuts: where the edge meets facets of B      witness: the middle of a part, moved by MARGIN into A
+//!           cuts: crossings of the edge and B's facets      witness: the middle of a part, moved by MARGIN into A
 //! ```
 //!
 //! Both solids are *open*: surfaces that only touch, or that lie in one plane with the material on opposite

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //!    ┌───────────────┐   moving, as mated
-//!    └──┐  ╲  ╱  ┌───┘   of it what faces down, below the top of the fixed half      ─┐
-//!   ────┴╲  ╲╱  ╱┴────── of the fixed half what faces up, above the moving bottom     │ the boxes around both, in plan view
+//!    └──┐  ╲  ╱  ┌───┘   its downward faces below the top of the fixed half          ─┐
+//!   ────┴╲  ╲╱  ╱┴────── upward faces of the fixed half above the moving bottom       │ the boxes around both, in plan view
 //!   ──────╲____╱───────                                                              ─┘
-//!       ├── D ──┤        the larger side, along x or y, of what both boxes share
+//!       ├── D ──┤        the larger side, along x or y, of their common rectangle
 //! ```
 //!
 //! Facets that face sideways or away cannot be first contacts. The measure uses boxes, not outlines: for a

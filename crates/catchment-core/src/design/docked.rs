@@ -3,7 +3,7 @@
 //! ```text
 //!   [docked]
 //!   depth = "0.1 mm"      the seat: poses at most this much above the mated height, connected with the mated pose
-//!   x = "0.3 mm"          the largest offset at rest that still counts: what pins or latches behind the face need
+//!   x = "0.3 mm"          the largest residual offset that counts as docked: the limit of the pins or latches behind the face
 //! ```
 
 use crate::pose::Dof;

@@ -2,10 +2,10 @@
 //! panics if the system refuses threads.
 //!
 //! ```text
-//!   with_threads(n)   a pool of n threads of its own, or an error
-//!   otherwise         one pool for all runs that do not ask: a thread per core (or as many as RAYON_NUM_THREADS says), half as
-//!                     many while the system refuses, and at last none: the caller's own thread does everything
-//!   each              pieces of work side by side, every one on a thread that works for it alone
+//!   with_threads(n)   a separate pool of n threads, or an error
+//!   default           a shared pool for all other runs: a thread per core (or RAYON_NUM_THREADS threads), half as
+//!                     many while the system refuses, and at last no pool: the caller's own thread does everything
+//!   each              items of work in parallel, each on a thread that works for it alone
 //! ```
 //!
 //! A thread that has its stack but finds no memory for its further startup ends the process. Therefore the

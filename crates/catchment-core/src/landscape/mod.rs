@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   h │ ╲       ╱╲          one height per cell of the error box: z of the centre of rotation
-//!     │  ╲     ╱  ╲         when the moving half, lowered with that pose error, first touches;
-//!     │   ╲   ╱    ╲        −∞ where it passes by
+//!     │  ╲     ╱  ╲         at first contact of the moving half, lowered with that pose error;
+//!     │   ╲   ╱    ╲        −∞ if it passes by
 //!     │    ╲_╱
 //!     └─────┴────────▶ x, y, roll, pitch, yaw
 //!         mated

@@ -2,10 +2,10 @@
 //! of the differences from the border of the first.
 //!
 //! ```text
-//!        first ┌───────┐              Jaccard     = ■ / (▒ + ■ + ░)      1 where neither accepts anything
-//!              │▒▒┌────┼──┐ second    agreement   = share of the poses on which both accept or both reject
+//!        first ┌───────┐              Jaccard     = ■ / (▒ + ■ + ░)      1 if both are empty
+//!              │▒▒┌────┼──┐ second    agreement   = share of the poses that both accept or both reject
 //!              │▒▒│■■■■│░░│           sum ratio   = (■ + ░) / (▒ + ■)
-//!              └──┼────┘░░│           confusion   = how many poses have outcome i by the first and j by the second
+//!              └──┼────┘░░│           confusion   = number of poses with outcome i in the first and j in the second
 //!                 └───────┘
 //! ```
 //!

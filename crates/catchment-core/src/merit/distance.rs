@@ -1,8 +1,8 @@
 //! Exact distance from every cell of a grid to the nearest marked cell.
 //!
 //! ```text
-//!   d²(p) = min over marked q of Σ (wₖ (pₖ − qₖ))²     one axis after another: along a line, the lower envelope of
-//!                                                     the parabolas that stand on what the axes before have left
+//!   d²(p) = min over marked q of Σ (wₖ (pₖ − qₖ))²     axis by axis: along a line, the lower envelope of
+//!                                                     the parabolas based on the values of the previous axes
 //! ```
 //!
 //! O(cells · axes), after Felzenszwalb and Huttenlocher (Theory of Computing 8, 2012). Distances are between

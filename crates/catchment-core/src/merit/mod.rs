@@ -1,10 +1,10 @@
-//! Figures of merit: what one set of accepted pose errors is worth. One file each.
+//! Figures of merit: numbers that describe a set of accepted pose errors. Each has its own file.
 //!
 //! ```text
 //!   pitch ▲            ░ accepted            Sum        measure of ░
 //!         │   ░░░░░    □ ONAA                ONAA       edge of the largest cube in ░ (axes scaled to [0,1])
 //!         │ ░░┌───┐░   ▪ centred             centred    largest box in ░ with its centre at zero
-//!         │ ░░│ ▪ │░░                        tolerance  how far one error alone may go
+//!         │ ░░│ ▪ │░░                        tolerance  largest single error, all others zero
 //!         │  ░└───┘░   ─▶ x                  success    probability that a given error lies in ░
 //! ```
 //!

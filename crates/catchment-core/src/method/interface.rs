@@ -1,8 +1,8 @@
 //! The common interface of all methods.
 //!
 //! ```text
-//!                 ┌ info       name, what it does, where it belongs
-//!   Method ───────┤ settings   what changes its answer: read, changed and stored as JSON
+//!                 ┌ info       name, description, category
+//!   Method ───────┤ settings   values that change its result: read, changed and stored as JSON
 //!  (any of the    ├ applies_to, cost, defaults            before anything is computed
 //!   registry)     ├ decide(problem, domain) ──▶ MethodOutput   outcomes · doubts · by-products · settings as used
 //!                 └ follow(problem, poses)  ──▶ ends      only methods that decide each pose by itself

@@ -1,7 +1,7 @@
 //! Convex polytopes in one to six dimensions, and finite unions of them.
 //!
 //! ```text
-//!   V-form: the hull of its vertices          H-form: what lies behind all its facets
+//!   V-form: the hull of its vertices          H-form: the points behind all its facets
 //!
 //!        •─────────•                                ╲___________╱       normal · x ≤ offset
 //!       ╱           ╲            =                  ╱           ╲
@@ -44,7 +44,7 @@
 //! let tip = Polytope::hull(2, &corners)?;
 //! assert!(square.overlaps(&tip));
 //!
-//! // What the tip leaves of the square, in convex pieces.
+//! // The rest of the square without the tip, in convex pieces.
 //! let left = Collection { polytopes: square.difference(&tip) };
 //! assert!((left.volume() - 0.875).abs() < 1e-9);
 //!

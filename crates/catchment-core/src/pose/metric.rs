@@ -11,9 +11,9 @@
 //! ```text
 //!   v  = −(∂h/∂x, ∂h/∂y)      of the centre of rotation, D
 //!   ω  = −ρ⁻² ∂h/∂ω            world axes; with all three rotations free any axis is as good as another,
-//!                              otherwise only turns about the axes of the free angles are possible
+//!                              with fewer, only rotations about the axes of the free angles are possible
 //!   ẋ_face = v + ω × (R ẑ·cor)  the error is that of the face centre
-//!   (roll, pitch, yaw)˙         those whose axes make up ω
+//!   (roll, pitch, yaw)˙         the rates of the angles that compose ω
 //! ```
 //!
 //! Not promised: results at the pole of the Euler angles, pitch = ±90°, at which the axes of roll and yaw

@@ -6,16 +6,16 @@
 //!   part, x_mm, pitch_deg    a table: x, y, roll, pitch, yaw,   PoseTable::parse    ──▶ PoseError per row,
 //!   A17,   2.5,        10    other columns carried through                              columns carried through
 //!
-//!   trial, x_mm, outcome     what a robot saw             TriedTable::parse   ──▶ Tried per row
+//!   trial, x_mm, outcome     results of robot trials      TriedTable::parse   ──▶ Tried per row
 //!
-//!   x=5,y=5  0..45:2.25 deg  how many, which angles       parse_counts, parse_angles
+//!   x=5,y=5  0..45:2.25 deg  counts, angles               parse_counts, parse_angles
 //!
-//!   x=1 mm,yaw=2 deg         how large errors are expected      Distribution::normal, Distribution::uniform
+//!   x=1 mm,yaw=2 deg         expected errors                    Distribution::normal, Distribution::uniform
 //!
-//!   [[robot]] sigma = { … }  robots, and how their errors       read_robots         ──▶ Robot { name, errors: Spread }
-//!                            spread: a TOML file
+//!   [[robot]] sigma = { … }  robots, and the distributions      read_robots         ──▶ Robot { name, errors: Spread }
+//!                            of their errors: a TOML file
 //!
-//!   [dynamics] speed = …     how fast, heavy, slippery: laws    read_dynamics       ──▶ Dynamics
+//!   [dynamics] speed = …     distributions of speed, mass, …    read_dynamics       ──▶ Dynamics
 //! ```
 //!
 //! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`]

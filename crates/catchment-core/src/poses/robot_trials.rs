@@ -1,7 +1,7 @@
 //! A table of robot trials: a table of pose errors with a column of observed outcomes.
 //!
 //! ```text
-//!   trial, line, x_mm, yaw_deg, predicted, …, outcome           aligned, jammed, missed, aligned-elsewhere, or nothing where
+//!   trial, line, x_mm, yaw_deg, predicted, …, outcome           aligned, jammed, missed, aligned-elsewhere, or empty if
 //!   17,    3,    12.5, 6,       aligned,   …, jammed            the trial was not made
 //! ```
 //!

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   text ──read, lengths in the unit──▶ halves, mated ──width──▶ D ──read again──▶ the design, as if D were written
-//!              └── once more with D about known, where parts are round: how finely they are drawn depends on it
+//!              └── again with D approximately known, for round parts: their facets depend on D
 //! ```
 //!
 //! D is the larger lateral extent of the facets that can touch when the halves are at first contact at zero

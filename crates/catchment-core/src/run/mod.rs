@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!   Run ──plan──▶ decide ──▶ correct ──▶ settle ──▶ merits ──▶ Answer
-//!        grid,     every     random      cells in    Sum, ONAA,   everything that was found:
-//!        costs,    cell by   poses,      doubt,      tolerances,  whoever prints, draws or
-//!        refusals  the       followed    followed    success      stores it decides nothing
+//!        grid,     every     sampled     uncertain   Sum, ONAA,   all results; the code that
+//!        costs,    cell by   poses,      cells,      tolerances,  prints, draws or stores
+//!        refusals  the       followed    followed    success      them decides nothing
 //!                  method    exactly     exactly
 //! ```
 //!

@@ -1,11 +1,11 @@
 //! A requirement on a report: `onaa.edge >= 0.3`.
 //!
 //! ```text
-//!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; lists by number from 0, or by the name of
-//!                            the axis or robot where they have one: tolerances.x.plus, robots.arm A.probability,
+//!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; list items by number from 0, or by the name of
+//!                            the axis or robot, if they have names: tolerances.x.plus, robots.arm A.probability,
 //!                            acceptance.sum_ci95.0
 //!                      OP    >=  <=  >  <  ==
-//!                      NUMBER  in D and radians as the report has it; at an error also with a unit: window.yaw >= 5 deg
+//!                      NUMBER  in D and radians as in the report; for an error also with a unit: window.yaw >= 5 deg
 //! ```
 
 use super::report_schema::ReportSchema;

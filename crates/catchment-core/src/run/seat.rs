@@ -1,8 +1,8 @@
 //! The seat, and the residual misalignment of docked halves: the repeatability of the connector.
 //!
 //! ```text
-//!   play       how far off a half may rest and lie as deep, per error      [`crate::contact::play`]
-//!   residual   how far off accepted poses do come to rest, per error       random accepted poses, followed to their end
+//!   play       offsets at which a half lies as deep as the seat            [`crate::contact::play`]
+//!   residual   residual misalignment of accepted poses, per error          sampled accepted poses, followed to their end
 //! ```
 //!
 //! Not promised: the poses are sampled uniformly from the accepted set, not from the errors of a robot.

@@ -2,7 +2,7 @@
 //! attributes, its `style`, and the rules of `<style>` elements.
 //!
 //! ```text
-//! attribute < rules, by specificity and order < style="…"        of an element; what is inherited comes from the element around it
+//! attribute < rules, by specificity and order < style="…"        of an element; inherited values come from the surrounding element
 //! ```
 //!
 //! Selectors are lists of a name, `*`, `.class` and `#id`, joined as in `path.hole`. A rule with another

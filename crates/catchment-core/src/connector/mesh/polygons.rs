@@ -3,9 +3,9 @@
 //!
 //! ```text
 //!   ┌────┬───┐        ┌────────┐
-//!   │ ╲  │  ╱│        │        │      an edge goes where both its sides lie in one plane and what is left
+//!   │ ╲  │  ╱│        │        │      an edge is removed if both its sides are coplanar and the result
 //!   │  ╲ │ ╱ │   ──▶  │        │      is convex at both of its ends, the longest first;
-//!   │   ╲│╱  │        │        │      then corners go that only two facets have, on the line between their neighbours
+//!   │   ╲│╱  │        │        │      then corners of only two facets are removed, on the line between their neighbours
 //!   └────┴───┘        └────────┘
 //! ```
 //!

@@ -1,8 +1,8 @@
 //! Simplification of a closed mesh to fewer triangles.
 //!
 //! ```text
-//!   mesh ──2ᵏ──▶ ──2ᵏ⁺¹──▶ ──2ᵏ⁺²──▶ … ──▶ 2ⁿ ≤ what was asked     each from the one before: the whole is looked at once or twice
-//!                                 └── the last that lies near enough to the mesh, both ways ──2ᵏ⁺²·√2──▶ if that does, too
+//!   mesh ──2ᵏ──▶ ──2ᵏ⁺¹──▶ ──2ᵏ⁺²──▶ … ──▶ 2ⁿ ≤ limit     each from the previous mesh; the full mesh is simplified once or twice
+//!                                 └── the last within the limit, in both directions ──2ᵏ⁺²·√2──▶ used if it is, too
 //! ```
 //!
 //! `manifold-rust` collapses edges whose removal moves the surface by less than a tolerance. Its result is

@@ -3,7 +3,7 @@
 //! ```text
 //!   0            a group code and a value, a line each
 //! LINE
-//!  10            10, 20: where it begins; 11, 21: where it ends
+//!  10            10, 20: start; 11, 21: end
 //! 0.0
 //! ```
 //!

@@ -1,7 +1,7 @@
 //! Sources of a half: a family, convex pieces, the bytes of a mesh file, parts, or triangles in memory.
 //!
 //! ```text
-//! HalfSpec ──of, reading files──▶ Source ──build──▶ Half, and what the mesh held
+//! HalfSpec ──of, reading files──▶ Source ──build──▶ Half, and the mesh contents
 //!                                   ▲
 //!            a program's own triangles, no file
 //! ```

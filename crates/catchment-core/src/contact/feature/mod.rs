@@ -4,7 +4,7 @@
 //! ```text
 //!   face     facets that meet at less than 30°                           the wall of a hole, a ball, a floor cut into triangles
 //!   edge     convex edges, end to end, between the same two faces        the rim of a hole
-//!   corner   where different edges meet, and points without any          the tip of a cone
+//!   corner   ends of different edges, and points without edges           the tip of a cone
 //! ```
 //!
 //! A contact is between two features, one of each half. It is described by the largest features that touch

@@ -5,7 +5,7 @@
 //!        │    ╭───────╮     │
 //!        │    │ ╭─╮   │     │  list 1: pairs within 0.08 D at (R₁, c₁), from list 0; and so on down to 0.004 D
 //!        │    │ ╰─╯ · │     │
-//!        │    ╰───────╯     │  moved = |c − c₀| + radius·|R − R₀|     how far any point of the moving half is from where it was
+//!        │    ╰───────╯     │  moved = |c − c₀| + radius·|R − R₀|     bounds the displacement of each point of the moving half
 //!        ╰──────────────────╯
 //! ```
 //!

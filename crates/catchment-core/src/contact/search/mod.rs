@@ -1,7 +1,7 @@
 //! Heights and contacts of halves with many facets, by their trees.
 //!
 //! ```text
-//!   height     the pair of parts that may carry highest first; what cannot rise above the best so far is left out
+//!   height     pairs of parts in the order of their highest possible height; pairs that cannot exceed the best are skipped
 //!   contacts   pairs of parts that are near each other
 //! ```
 //!

@@ -1,9 +1,9 @@
 //! Memory information from Linux, in files.
 //!
 //! ```text
-//!   /proc/meminfo               what is free on the machine
-//!   /proc/self/limits, status   the limit of the address space (`ulimit -v`), and how much of it is taken
-//!   /proc/self/cgroup           which control groups this process is in; of each and all above it:
+//!   /proc/meminfo               free memory of the machine
+//!   /proc/self/limits, status   the limit of the address space (`ulimit -v`), and its current use
+//!   /proc/self/cgroup           control groups of this process; for each and its ancestors:
 //!     /sys/fs/cgroup/…            memory.max, memory.current, memory.stat                              (version 2)
 //!     /sys/fs/cgroup/memory/…     memory.limit_in_bytes, memory.usage_in_bytes, memory.stat            (version 1)
 //! ```

@@ -2,10 +2,10 @@
 //! of the fixed ridge.
 //!
 //! ```text
-//!      s₂ ╲   ╱ s₁      the moving ridge, its facets lead away along s₁, s₂
+//!      s₂ ╲   ╱ s₁      the moving ridge; its facets lead away along s₁, s₂
 //!          ╲ ╱
 //!     n₁ ◝  ●  ◜ n₂     n(φ) = cos φ·n₁ + sin φ·e₂     0 ≤ φ ≤ Φ,  n(Φ) = n₂
-//!         ╱   ╲         supported where  n·s₁ ≥ 0  and  n·s₂ ≥ 0
+//!         ╱   ╲         supported if      n·s₁ ≥ 0  and  n·s₂ ≥ 0
 //! ```
 //!
 //! If the ridges are nearly parallel their cross product may have any direction, while the range that the

@@ -1,10 +1,10 @@
 //! Bearings: directions in the space of the errors along which motions never go back.
 //!
 //! ```text
-//!      │ ↗ ╲ ↗ │     from q nothing leads below the line ╲ through q while the motion is in boxes all of whose pushes go beyond it:
+//!      │ ↗ ╲ ↗ │     from q no motion goes below the line ╲ through q while all pushes in its boxes point beyond the line:
 //!      ├──┄──╲─┤     ℓ(q) = d·q does not fall
-//!      │  seat  ╲    so what cannot be ruled out by faces alone, as they say nothing of how far along them a motion went,
-//!      └────────┘    may be ruled out by where it would have to be
+//!      │  seat  ╲    faces alone do not bound how far along them a motion went; a path that they permit
+//!      └────────┘    may be excluded by the position that it needs
 //! ```
 //!
 //! d runs through the directions to all neighbours of a pose in a lattice of the free errors, in the

@@ -1,10 +1,10 @@
 //! Labels that follow from heights alone: a motion cannot climb.
 //!
 //! ```text
-//!   h │      pass ╲ exit        from the seat, boxes are taken in the order of the lowest way to them by floors:
-//!     │ ╲     ╱‾‾‾╲╱            level   the first box that may let a motion out or let it rest ends it
-//!     │  ╲╱╲ ╱                  yes     taken before, roof below the level
-//!     │   seat                  no      roof below the lowest way to the seat, or to what is not known
+//!   h │      pass ╲ exit        from the seat, boxes are visited in the order of the lowest path to them by floors:
+//!     │ ╲     ╱‾‾‾╲╱            level   the search ends at the first box that may let a motion leave or rest
+//!     │  ╲╱╲ ╱                  yes     visited before, roof below the level
+//!     │   seat                  no      roof below the lowest path to the seat, or to unknown boxes
 //! ```
 //!
 //! *Yes*: during its descent such a motion stays in boxes taken before. None of these lets it rest outside

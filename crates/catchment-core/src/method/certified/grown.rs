@@ -2,9 +2,9 @@
 //! between successive boxes contains no rest.
 //!
 //! ```text
-//!   ┌─────────────┐   shell    cut into pieces over each of which one direction opens all that may touch: nothing rests there
-//!   │ ┌─────────┐ │   level    the least floor on the outer border: what begins below it never comes out, and docks
-//!   │ │  home   │ │   window   the largest box about zero, in the proportions of the error box, whose roof is below the level
+//!   ┌─────────────┐   shell    divided into pieces; over each, one direction opens all possible contacts: nothing rests there
+//!   │ ┌─────────┐ │   level    the least floor on the outer border: a motion that starts below it never leaves, and docks
+//!   │ │  home   │ │   window   the largest box about zero, in the proportions of the error box, with a roof below the level
 //!   │ └─────────┘ │
 //!   └─────────────┘
 //! ```

@@ -2,11 +2,11 @@
 //! place of arbitrarily small boxes.
 //!
 //! ```text
-//!     h │ ╲         ╱      what carries at q has a plane, whose height f is h(q) at q and no more than h₀ at the mated pose 0
-//!       │  ╲       ╱       towards 0 it falls by h(q) − h₀ at least, but for what its slope changes by on the way: Σ W|q|
-//!       │   ╲     ╱        points of either half that lie over facets of the other for certain say  h(q) ≥ h₀ + max Gⱼ·q
-//!    ───┼────╲___╱────     where  max Gⱼ·q > Σ W|q|  everything that carries opens towards 0: nothing rests
-//!       └─────0───── q     below the least h on its border nothing leaves: level
+//!     h │ ╲         ╱      an active contact at q has a plane, whose height f is h(q) at q and at most h₀ at the mated pose 0
+//!       │  ╲       ╱       towards 0 it falls by at least h(q) − h₀, minus the change of its slope on the path: Σ W|q|
+//!       │   ╲     ╱        points of either half that are certainly over facets of the other:  h(q) ≥ h₀ + max Gⱼ·q
+//!    ───┼────╲___╱────     if  max Gⱼ·q > Σ W|q|  every active contact opens towards 0: nothing rests
+//!       └─────0───── q     below the least h on the border nothing leaves: level
 //! ```
 //!
 //! Gⱼ and W are bounds over the whole neighbourhood, so the last line must be shown only on its border; it

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!   bodies ──▶ survey of a box ──▶ tree of boxes ──▶ flood   a motion cannot climb          ──▶ yes · no · undecided
-//!   (features)  floor ≤ h ≤ roof    halved where      spread  which faces of boxes it can cross  volumes, retention
-//!               all contacts, jumps  undecided        tube    where motions of a box can go
-//!                                                     home    what is certain about the seat at once
+//!   (features)  floor ≤ h ≤ roof    halved if         spread  faces that a motion can cross      volumes, retention
+//!               all contacts, jumps  undecided        tube    region that motions of a box can reach
+//!                                                     home    bounds about the seat, found directly
 //! ```
 //!
 //! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`,

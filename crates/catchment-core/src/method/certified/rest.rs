@@ -2,9 +2,9 @@
 //! rest elsewhere.
 //!
 //! ```text
-//!     h │ ╲    ╱ exit      boxes are taken in the order of the lowest way to them by floors, from those about the rest:
-//!       │  ╲  ╱            the first that may let a motion out, or let it rest, ends it
-//!       │   ╲╱  rest       lifted by less, a half stays among those before it, and so it ends within CORE of where it rested
+//!     h │ ╲    ╱ exit      boxes are visited in the order of the lowest path to them by floors, from those about the rest:
+//!       │  ╲  ╱            the search ends at the first box that may let a motion leave or rest
+//!       │   ╲╱  rest       lifted by less, a half stays in the boxes visited before, so it ends within CORE of its rest
 //! ```
 //!
 //! The walk is that of [`super::flood`], with the boxes around the rest in place of the seat. An almost level

@@ -1,9 +1,9 @@
 //! Propagation of labels from box to box by the direction of motion through their faces.
 //!
 //! ```text
-//!      │ ↗ ↗ │            through   a face lets motion through one way or both, as what touches on it may push; bounds hold for the whole face
-//!      ├──┄──┤  seat      yes       boxes that nothing leaves but into boxes of their own, nothing rests in, and no motion ends in
-//!      │ ↗ ↗ →  boxes     no        boxes from which no chain of faces leads to the seat or to what is not known
+//!      │ ↗ ↗ │            through   a face passes motions in one direction or both, by the pushes of its contacts; bounds hold for the whole face
+//!      ├──┄──┤  seat      yes       boxes that motions leave only into other such boxes, and in which no motion rests or ends
+//!      │ ↗ ↗ →  boxes     no        boxes without a chain of faces to the seat or to unknown boxes
 //! ```
 //!
 //! The height decreases along a motion. A motion that stays in boxes without rests outside the seat therefore

@@ -1,10 +1,10 @@
 //! A bundle around all motions of a box, followed until it lies in labelled boxes.
 //!
 //! ```text
-//!        c₁ ▲     ┌──────┐         c₀  along the descent in the middle: every touch of the slab pushes that way
-//!           │  ┌──┤ slab ├──┐      upper face   rises by at most the steepest c₁ per c₀ of what touches near it
+//!        c₁ ▲     ┌──────┐         c₀  along the descent in the middle: every contact of the slab pushes in this direction
+//!           │  ┌──┤ slab ├──┐      upper face   rises by at most the steepest c₁ per c₀ of the contacts near it
 //!           │  │  │      │  │      lower face   falls likewise
-//!      box ▪│──┤  │      │  │      so no motion leaves by the sides, all pass the end
+//!      box ▪│──┤  │      │  │      so no motion leaves through the sides; all pass the end
 //!           │  └──┤      ├──┘
 //!           └─────└──────┘──▶ c₀
 //! ```

@@ -1,9 +1,9 @@
 //! Labels the kept cells of a gradient field in order of rising height.
 //!
 //! ```text
-//!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by height; a batch reads what earlier batches found, and nothing of its own
+//!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by height; a batch reads the results of earlier batches only
 //!           ├──┼──┼──┼──┼──┤
-//!   then    thin jams mended, some of what joined others followed to its end
+//!   then    thin jams mended, some inherited cells followed to their end
 //! ```
 
 use super::label::Label;

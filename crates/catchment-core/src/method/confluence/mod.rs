@@ -2,11 +2,11 @@
 //! cells that are already decided.
 //!
 //! ```text
-//!   ·   ·   ·   ·   ·        cells by rising height. From the centre of a cell
-//!         ╲                    1  the 2ⁿ centres towards which the exact direction of descent leads: known, and alike? Then it
-//!   ·   ·  ╲·   ·   ·             is one of them, and nothing is followed
-//!           ╰─╮                2  else its exact motion, until it comes among centres that are
-//!   a   a   a ▼ j   j          3  at last what touches thin jams, where it joined others, to its end: what jams
+//!   ·   ·   ·   ·   ·        cells by rising height. For each cell:
+//!         ╲                    1  if the 2ⁿ centres ahead along the exact direction of descent are known and agree,
+//!   ·   ·  ╲·   ·   ·             the cell inherits their outcome without a motion
+//!           ╰─╮                2  if not, its exact motion, until it is among centres that agree
+//!   a   a   a ▼ j   j          3  last, cells next to thin jams that inherited are followed to their end: a jam
 //!   a   a   a   j   j             may be thinner than a cell
 //! ```
 //!

@@ -44,7 +44,7 @@ pub use schedule::{Batch, allot, next};
 use serde::{Deserialize, Serialize};
 use strata::Strata;
 
-/// What changes the answer.
+/// Settings that change the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CorrectionSettings {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   batch   1        2     3       4            …   the last
-//!   poses   8 per    half of what went before,      cut to what was asked for
+//!   poses   8 per    half of all before,            cut to the requested number
 //!           stratum  at most 8192
 //! ```
 //!

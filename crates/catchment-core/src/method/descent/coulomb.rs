@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   u = p + Σ (λᵢ aᵢ + τᵢ·bᵢ)                    p push, aᵢ row of the gap of contact i, bᵢ the two rows of its slip
-//!   0 ≤ λᵢ  ⟂  aᵢ·u + gᵢ ≥ 0                     pressed where it touches
-//!   |τᵢ| ≤ μ λᵢ,   = μ λᵢ against bᵢ·u ≠ 0        sticks, or slips against all the friction there is
+//!   0 ≤ λᵢ  ⟂  aᵢ·u + gᵢ ≥ 0                     pressed if it touches
+//!   |τᵢ| ≤ μ λᵢ,   = μ λᵢ against bᵢ·u ≠ 0        sticks, or slips against the full friction
 //! ```
 //!
 //! De Saxcé and Feng (*Math. Comput. Modelling* 28, 1998) combine the last two lines into one cone: with sᵢ =

@@ -3,8 +3,8 @@
 //! order.
 //!
 //! ```text
-//!     ╲   ___●___   ╱    let go: without error; 0.01 D or 1° off, each free error both ways, and all of them together
-//!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose does not hold
+//!     ╲   ___●___   ╱    released: without error; 0.01 D or 1° off, each free error both ways, and all of them together
+//!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose is not stable
 //! ```
 //!
 //! For halves of many facets the same motions, followed to their ends, also show whether all poses slightly

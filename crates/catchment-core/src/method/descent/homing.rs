@@ -3,7 +3,7 @@
 //! ```text
 //!     ╲         ╱      near: face centres within 0.02 D and rotation within 0.02 rad
 //!      ╲·     ·╱       poses all over it, each followed into the seat, once per pair:
-//!       ╲· · ·╱        all dock → what comes near docks, and is called;  one does not → nothing is
+//!       ╲· · ·╱        all dock → a motion ends as docked when it is near;  if not → no motion ends early
 //!        ╲_●_╱
 //! ```
 //!

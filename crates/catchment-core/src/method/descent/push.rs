@@ -3,7 +3,7 @@
 //! ```text
 //!        push(s) = −∇ energy(s)         in coordinates (x, y, z, ρ·roll, ρ·pitch, ρ·yaw) of the COR
 //!
-//!          │ push                        energy falls along a motion; where no displacement that the contacts admit
+//!          │ push                        energy falls along a motion; if no displacement that the contacts admit
 //!          ▼                             lowers it, the half rests
 //!       ╲  ○  ╱
 //!        ╲___╱                           constant push: energy is the height of the COR

@@ -1,8 +1,8 @@
 //! Constraint rows of the projection: the contacts that a step may meet.
 //!
 //! ```text
-//!   a·u ≥ −g      a   what a displacement u does to the gap: (n, (p − c) × n / ρ)
-//!                 g   the gap, less the clearance that is kept from walls
+//!   a·u ≥ −g      a   effect of a displacement u on the gap: (n, (p − c) × n / ρ)
+//!                 g   the gap, less the clearance kept from walls
 //! ```
 //!
 //! with n the normal of a contact, p its point on the moving half and c the COR; with friction, two more rows

@@ -4,7 +4,7 @@
 //! ```text
 //!   ╲                        ╲
 //!    ╲__ knots on the line    ╲
-//!       ╲__            ──▶     ╲       one facet where several lie in one plane and are convex together,
+//!       ╲__            ──▶     ╲       a single facet for several that are coplanar and together convex,
 //!          ╲__                  ╲      without the corners on the line between their neighbours
 //!             ╲                  ╲
 //! ```

@@ -1,8 +1,8 @@
 //! The cell to which every cell drains: the basins before any merging.
 //!
 //! ```text
-//!   lowest     to the lowest cell of the 3ⁿ − 1 around it, the first in memory among equals
-//!   steepest   to where the height falls most per distance (see `steepest`)
+//!   lowest     to the lowest of the 3ⁿ − 1 neighbours, the first in memory among equals
+//!   steepest   to the neighbour with the largest fall per distance (see `steepest`)
 //! ```
 //!
 //! A cell without a lower neighbour is *flat*. On a plateau that drains, flat cells lead to its rim by the

@@ -2,7 +2,7 @@
 //! and the tree of their merging.
 //!
 //! ```text
-//!    ╲               ╱      every cell drains to its lowest neighbour; a basin is what drains to one minimum.
+//!    ╲               ╱      every cell drains to its lowest neighbour; a basin is the set that drains to one minimum.
 //!     ╲    ╱╲       ╱       Basins shallower than a tolerance are merged across their lowest pass; the area
 //!      ╲__╱  ╲_____╱        of acceptance is the basin of the mated pose.
 //!      jam    mated

@@ -7,8 +7,8 @@
 //! 1)/2 neighbours.
 //!
 //! ```text
-//!   3 ─ 7      games: 3–7, 5–4, then 3–4, where 7, 5 and 4 lose: passes of height 7, 5 and 4.
-//!   5 ─ 4      The neighbours 7 and 5 are connected at height 7 all the same: 7 ▸ 3 ▸ 4 ◂ 5.
+//!   3 ─ 7      games: 3–7, 5–4, then 3–4, in which 7, 5 and 4 lose: passes of height 7, 5 and 4.
+//!   5 ─ 4      The neighbours 7 and 5 are connected at height 7 nevertheless: 7 ▸ 3 ▸ 4 ◂ 5.
 //! ```
 //!
 //! Of all games between different basins only those in the minimum spanning tree (Kruskal 1956) are kept:

@@ -6,7 +6,7 @@
 //!    │   ╱│╲  │
 //!    │  ╱ │ ╲ │               hull(P_i ∪ v_j(i+1)),   hull(P_i+1 ∪ v_j(i)),   j = 1 … k
 //!    │ ┌──┴┐ ╲│
-//!    │ └───┘  slice i         2k polytopes for k vertices: their union keeps what is hollow
+//!    │ └───┘  slice i         2k polytopes for k vertices: their union keeps hollows
 //! ```
 //!
 //! The composition is repeated for roll, pitch and yaw, in the order of `R = Rz(yaw)·Ry(pitch)·Rx(roll)`. The

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!   slices ──▶ composites ──▶ Minkowski sum ──▶ contact space ──▶ gates ──▶ watersheds ──▶ area of acceptance
-//!   of the     (compose)      with the flat     (space: what      (cells)   (split along    (polytopes over the
-//!   moving                    fixed half         faces up and                steepest       pose errors)
-//!   half                                         is met first)               ascent)
+//!   of the     (compose)      with the flat     (space: upward    (cells)   (split along    (polytopes over the
+//!   moving                    fixed half         facets in first             steepest       pose errors)
+//!   half                                         contact)                    ascent)
 //! ```
 //!
 //! No grid is involved: the area of acceptance is a P-collection, a finite union of convex polytopes, with an exact

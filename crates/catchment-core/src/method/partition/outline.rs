@@ -1,8 +1,8 @@
 //! The partition of two errors as polygons, and the exact outline of the accepted set.
 //!
 //! ```text
-//!    ┌──┬─────╱╲      edges of accepted parts, without what another accepted part shares:
-//!    │  │   ╱    ╲    what remains is the border of the area of acceptance
+//!    ┌──┬─────╱╲      edges of accepted parts, without edges that two accepted parts share:
+//!    │  │   ╱    ╲    the rest is the border of the area of acceptance
 //!    └──┴─╱───────
 //! ```
 

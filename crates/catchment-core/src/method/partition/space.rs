@@ -3,7 +3,7 @@
 //! ```text
 //!   z ▲      ╱╲  roof of one polytope of the sum: the lowest of its upward facets' planes, over its shadow
 //!     │  ╱╲ ╱  ╲
-//!     │ ╱  ╳    ╲      a facet keeps what no other roof covers:
+//!     │ ╱  ╳    ╲      a facet keeps the area that no other roof covers:
 //!     │╱  ╱ ╲    ╲
 //!     └──────────────▶ q     facet ∖ ⋃ { q in a shadow : every plane of that roof lies above the facet }
 //! ```

@@ -2,9 +2,9 @@
 //! forest, and the root of each tree is a rest, or the outside.
 //!
 //! ```text
-//!       ┌────┬────┐        A cell whose gates all lead to the same watershed belongs to it whole. Otherwise the
-//!       │ a  │ b  │        parts below its gates are swept back up along its own motion (the split along steepest
-//!       │    │    │        ascent): each part of it drains to exactly one.
+//!       ┌────┬────┐        A cell whose gates all lead to the same watershed belongs to it entirely. If not, the
+//!       │ a  │ b  │        parts below its gates are swept back up along the cell's motion (the split along steepest
+//!       │    │    │        ascent): each part then drains to exactly one watershed.
 //!       └─╱──┴──╲─┘
 //!     ┌──╱─┐  ┌──╲─┐
 //!     │ a  │  │ b  │

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   ·──────·──────·      Freudenthal's (Kuhn's) simplices: with the axes in the order of |v|, the corners are
-//!   │      │    ╱ │      c + e₁, c + e₁ + e₂, …; the point where the ray from c leaves the cube of its
+//!   │      │    ╱ │      c + e₁, c + e₁ + e₂, …; the point at which the ray from c leaves the cube of its
 //!   ·──────c──╱───·      neighbours is their mean with weights (|v₁| − |v₂|, |v₂| − |v₃|, …, |vₙ|) / |v₁|
 //!   │      │      │
 //!   ·──────·──────·      (Freudenthal 1942; Kuhn 1960)

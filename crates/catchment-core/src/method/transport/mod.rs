@@ -3,7 +3,7 @@
 //! ```text
 //!   u = 1  ·  1  ·  .9 ·  .4 ·  0        every cell takes the mean of the cells that its *exact* direction of
 //!          ╲     ╲     ╲     │           steepest descent (ρ-metric, contact of the cell's centre) points at;
-//!   u = 1  ·  1  ·  1  ·  .7 ·  0        where the grid has no direction left, exact descent decides
+//!   u = 1  ·  1  ·  1  ·  .7 ·  0        if the grid has no direction left, exact descent decides
 //!              mated       border        accepted: u > ½
 //! ```
 //!

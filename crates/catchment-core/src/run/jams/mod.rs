@@ -1,10 +1,10 @@
 //! Jams: all rests outside the seat, and the features that hold the half there.
 //!
 //! ```text
-//!   follow      N random poses of the error box, each by exact motion            aligned, missed, or a place of rest
+//!   follow      N sampled poses of the error box, each by exact motion           aligned, missed, or a rest
 //!   gather      rests on the same features, near each other, up to the symmetries of the halves: a jam
-//!   rank        by the share of random poses that end there
-//!   examine     how firmly it holds, how far it must be lifted to get out, whether it comes back when it is pushed
+//!   rank        by the share of sampled poses that end there
+//!   examine     stability class, escape height, and whether it returns after a push
 //! ```
 //!
 //! A jam is represented by its central rest. Its contacts are named by the features of both halves

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!      h
-//!      │ ╲        ╱╲      depth: how far it must be lifted to leave = energy per unit of weight
+//!      │ ╲        ╱╲      depth: escape height = energy per unit of weight
 //!      │  ╲  ╱╲__╱  ╲ ↕
-//!      │   ╲╱        ╲    basin share: how many random poses end there
+//!      │   ╲╱        ╲    basin share: share of sampled poses that end there
 //!      └──────────────── q
 //! ```
 //!

@@ -4,8 +4,8 @@
 //! ```text
 //!      cells            motions
 //!    ┌─┬─┬─┬─┬─┐
-//!    │ │░│░│░│ │        ┌─────┐          the cells say where the middle is; how large the cube is, the search of a window
-//!    │ │░│░│░│ │   ──▶  │  ·  │          says, about that middle, until random poses all over it dock
+//!    │ │░│░│░│ │        ┌─────┐          the cells give the centre; the window search gives the size of the cube
+//!    │ │░│░│░│ │   ──▶  │  ·  │          about this centre, until all sampled poses in it dock
 //!    │ │ │ │ │ │        └─────●
 //!    └─┴─┴─┴─┴─┘
 //! ```

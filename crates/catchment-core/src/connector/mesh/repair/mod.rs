@@ -1,9 +1,9 @@
 //! Repair of a mesh that does not bound a solid as written, if the intended solid is unambiguous.
 //!
 //! ```text
-//! weld, divide ─▶ what is wrong? ─▶ nothing: as it is
+//! weld, divide ─▶ defects? ─▶ none: unchanged
 //!                       │
-//!                       └▶ doubled ─▶ flat ─▶ divide ─▶ lids ─▶ winding ─▶ crowded ─▶ what is wrong? ─▶ crossings: unite, and again
+//!                       └▶ doubled ─▶ flat ─▶ divide ─▶ lids ─▶ winding ─▶ crowded ─▶ defects? ─▶ crossings: unite, and repeat
 //! ```
 //!
 //! Each step has its own file, which describes its changes. Corners do not move, except for those that

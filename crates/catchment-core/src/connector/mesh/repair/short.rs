@@ -1,9 +1,9 @@
 //! Edges shorter than the welding tolerance, as they arise at crossings of surfaces under small angles.
 //!
 //! ```text
-//!      c               c            The edge from a to b goes, and with it the two triangles beside it; what met at b
-//!     ╱ ╲              │            meets at a. It may go where a and b have no neighbours in common but c and d, so that
-//!    a───b     ──▶     a            the surface stays what it is, and where no other triangle is turned over.
+//!      c               c            The edge from a to b is removed, with the two triangles next to it; triangles at b
+//!     ╱ ╲              │            move to a. This requires that a and b have no common neighbours except c and d, so that
+//!    a───b     ──▶     a            the topology is unchanged, and that no other triangle is turned over.
 //!     ╲ ╱              │
 //!      d               d
 //! ```

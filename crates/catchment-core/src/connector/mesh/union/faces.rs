@@ -1,8 +1,8 @@
 //! Triangulation of faces: loops from their borders, holes cut open, ears clipped, all in integer arithmetic.
 //!
 //! ```text
-//!   ┌───────────┐      at a point where borders touch a loop takes the leftmost way, so that it goes around the same
-//!   │  ┌──┐     │      inside; a hole is joined to the outline by the shortest bridge that meets nothing; an ear is a
+//!   ┌───────────┐      at a point at which borders touch, a loop takes the leftmost path, so that it stays around the
+//!   │  ┌──┐     │      same area; the shortest bridge that crosses nothing joins a hole to the outline; an ear is a
 //!   ├ ─┤  │     │      corner whose triangle has no other corner in it or near it, the fattest first
 //!   │  └──┘     │
 //!   └───────────┘

@@ -1,15 +1,15 @@
 //! The union of closed surfaces as one closed, oriented surface: no inner walls, no T-junctions.
 //!
 //! ```text
-//!   ┌─────┬───┐        ┌─────────┐      On the plane of every facet, its solid apart: the facet minus what the other
-//!   │  A  │ B │        │         │      solids fill just above it, minus what an earlier solid has of the same face.
+//!   ┌─────┬───┐        ┌─────────┐      In the plane of each facet, per solid: the facet minus the area that the other
+//!   │  A  │ B │        │         │      solids fill just above it, minus the area of an earlier solid in the same face.
 //!   │  ┌──┼─┐ │  ──▶   │         │
 //!   └──┼──┘ ├─┘        └──┐   ┌──┘      ∂(A ∪ B ∪ …) = ⋃ facets F:  F \ ⋃ₜ (T ∩ plane of F, seen from above)
 //!      └────┘             └───┘
 //! ```
 //!
 //! ```text
-//! corners ──weld──▶ planes ──section, overlay──▶ what is left of every facet ──stitch──▶ faces ──triangles──▶ polygons ──verify──▶ Surface
+//! corners ──weld──▶ planes ──section, overlay──▶ rest of each facet ──stitch──▶ faces ──triangles──▶ polygons ──verify──▶ Surface
 //! ```
 //!
 //! Coordinates written with a few decimals abut only to rounding, and planes through rounded corners meet in

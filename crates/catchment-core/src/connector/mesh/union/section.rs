@@ -1,9 +1,9 @@
 //! Section of a solid just above a plane, or just below it.
 //!
 //! ```text
-//!        ╱╲             corners above the plane are above, corners in it are not: every facet with corners of both kinds
-//!       ╱  ╲            comes up through the plane on one edge and goes down on another, and these join to closed loops
-//!   ───×────×──── plane around what is filled
+//!        ╱╲             corners in the plane do not count as above it. A facet with corners of both kinds
+//!       ╱  ╲            rises through the plane at one edge and descends at another; these crossings form closed loops
+//!   ───×────×──── plane    around the filled area
 //!     ╱______╲
 //! ```
 //!

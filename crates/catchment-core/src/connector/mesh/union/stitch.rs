@@ -2,9 +2,9 @@
 //! edges.
 //!
 //! ```text
-//!      ┌──────┐                    the border of a face is a sum of directed edges: what two of its facets
-//!      │  F   │                    have in opposite senses is no border, and a sliver whose sides fall
-//!   a──┴──m───┴──b   a→m, m→b      together is none at all
+//!      ┌──────┐                    the border of a face is a sum of directed edges: edges of two of its facets
+//!      │  F   │                    in opposite directions cancel, and a sliver with coinciding sides
+//!   a──┴──m───┴──b   a→m, m→b      has no border
 //!      │  G   │
 //! ```
 //!

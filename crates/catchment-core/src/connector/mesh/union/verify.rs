@@ -1,8 +1,8 @@
 //! Verifies that a surface separates inside from outside as the given solids do.
 //!
 //! ```text
-//!   · outside of all solids            a little to either side of the middle of every facet of the union, and of every
-//!   ───×───  facet of the union        given facet: the union winds once around a point exactly where some solid does
+//!   · outside of all solids            test points on both sides of the middle of each facet of the union, and of each
+//!   ───×───  facet of the union        given facet: its winding number is 1 exactly at points inside some solid
 //!   · inside of one of them
 //! ```
 //!

@@ -1,11 +1,11 @@
 //! A tree of boxes of pose errors; a box is halved along its widest errors if it needs refinement.
 //!
 //! ```text
-//!   ┌───────────────┐   root: the error box, or what motions may come to from it: a whole turn, and as far as the halves
-//!   │   ┌───┬─┬─┐   │         reach; the error box is then half of its places per error, and its border one of boxes
-//!   │   │   ├─┤ │   │   leaf: a box without parts, with what is certain over it
-//!   │   ├───┼─┴─┤   │   places are whole numbers in units of the smallest box, half open: [corner, corner + size)
-//!   │   └───┴───┘   │         in the error box all are of one width, and so they are on either side of it
+//!   ┌───────────────┐   root: the error box, or the range that its motions may reach: a whole turn, and as far as the halves
+//!   │   ┌───┬─┬─┐   │         reach; the error box then has half of the positions per error, and its border is a border of boxes
+//!   │   │   ├─┤ │   │   leaf: a box without parts, with its certain bounds
+//!   │   ├───┼─┴─┤   │   positions are integers in units of the smallest box, half open: [corner, corner + size)
+//!   │   └───┴───┘   │         all have the same width within the error box, and on either side of it
 //!   └───────────────┘
 //! ```
 //!

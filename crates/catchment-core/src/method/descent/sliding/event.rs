@@ -1,10 +1,10 @@
 //! The first event within a step.
 //!
 //! ```text
-//!   f(s)   gap of what is met, or hold of what carries
+//!   f(s)   gap of a contact that closes, or hold of an active contact
 //!     │╲
 //!     │  ╲            clear        false position between the last clear length and the first that
-//!   0 ┼────╲×──────── s            passes an event, until the event is landed on
+//!   0 ┼────╲×──────── s            passes an event, until the event is located
 //!     │      ╲        passed
 //! ```
 //!

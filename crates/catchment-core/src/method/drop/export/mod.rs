@@ -3,7 +3,7 @@
 //! ```text
 //!   Scene ──▶ mjcf::write   one XML file: convex pieces as vertex lists inside
 //!     │  └──▶ sdf::write    an SDF world, and the STL files that it names
-//!     └ pieces, mass, inertia, damping, friction, force, start, free errors: what `run` would use for its first trial,
+//!     └ pieces, mass, inertia, damping, friction, force, start, free errors: the values of `run` for its first trial,
 //!       unperturbed
 //! ```
 //!
