@@ -2,8 +2,8 @@
 //! division of its faces into facets.
 //!
 //! ```text
-//!   ┌───────┬───┐       the square has four creases: its diagonal is none, because both sides lie in one plane, and the
-//!   │     ╱ │   │       upper one is whole, although a facet ends in its middle
+//!   ┌───────┬───┐       the square has four creases: its diagonal is not a crease, because both sides are coplanar, and the
+//!   │     ╱ │   │       upper crease is whole, although a facet ends in its middle
 //!   │   ╱   │   │
 //!   └───────┴───┘
 //! ```

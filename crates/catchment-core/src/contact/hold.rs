@@ -3,9 +3,9 @@
 //! ```text
 //!       foot                       support
 //!    ┌───────────┐                   ↑ n
-//!    │      ×←d─→│              ─────×─────       a corner or an edge holds as long as its spokes s
-//!    └───────────┘                  ╱ ╲           keep to one side of the plane across n:
-//!    d: distance to the border     ╱   ╲ s        −n·s of the spoke that comes closest
+//!    │      ×←d─→│              ─────×─────       a corner or an edge is supported while its spokes s
+//!    └───────────┘                  ╱ ╲           stay on one side of the plane across n:
+//!    d: distance to the border     ╱   ╲ s        −n·s of the closest spoke
 //! ```
 //!
 //! Both pass continuously through zero at the end of the contact, so the instant of its end follows by

@@ -5,7 +5,7 @@
 //!        ╭───────────╮              valid while   |R − R₀| ≤ skin                        (chord)
 //!        │   · ·     │                            |c − c₀| + radius·|R − R₀| ≤ shift     (any point of the half)
 //!        │  ·   R,c  │
-//!        ╰───────────╯              else collected anew about (R, c)
+//!        ╰───────────╯              if not, collected again about (R, c)
 //! ```
 //!
 //! The results are bit for bit those of a list that is collected anew at every pose: see

@@ -1,8 +1,8 @@
 //! Bounds in plan view, and a tree over many of them.
 //!
 //! ```text
-//!            whole                a box holds the boxes below it; halves of the features by the middle of their
-//!          ╱       ╲              boxes, along the longer side; the features of a leaf are tried one by one
+//!            whole                a box contains the boxes below it; the features are halved by the middle of their
+//!          ╱       ╲              boxes, along the longer side; the features of a leaf are tested singly
 //!      left         right
 //!     ╱    ╲       ╱     ╲
 //! ```

@@ -3,7 +3,7 @@
 //! ```text
 //!      h │ ╲             ╱      along a direction d of pose errors:   largest t with h(s·d) ≤ h₀ for all s ≤ t
 //!        │  ╲_____●_____╱       per error: the largest |t·d| of all directions
-//!        └────├──play──┤── q    sharp seats have none
+//!        └────├──play──┤── q    a sharp seat has no play
 //! ```
 //!
 //! Directions are the combinations of signs of the free errors, with radians converted by ρ. Single errors

@@ -1,10 +1,10 @@
 //! The seat: the region of poses that count as docked.
 //!
 //! ```text
-//!     h │╲   rim    ╱‾‾‾‾    S = { q : h(q) ≤ h₀ + depth }, of that the part connected with the mated pose.
-//!       │ ╲___    __╱         A half that came down to h₀ + depth in S stays in it as long as the force lasts.
-//!       │     ╲__╱            On the rim it lies deeper than it began, and is not docked; in a hole beside the
-//!       │      S ╎            mated one it is as deep, and not docked either.
+//!     h │╲   rim    ╱‾‾‾‾    S: the part of { q : h(q) ≤ h₀ + depth } that is connected with the mated pose.
+//!       │ ╲___    __╱         A half that has reached h₀ + depth in S stays in S as long as the force lasts.
+//!       │     ╲__╱            On the rim it lies deeper than at its start, and is not docked; in a hole beside the
+//!       │      S ╎            mated hole it is as deep, and not docked either.
 //!       └──────┴─┴───── q
 //! ```
 //!

@@ -1,8 +1,8 @@
 //! Detects halves that are mated side by side: they share a vertical plane and no area in plan view.
 //!
 //! ```text
-//!   plan view    ┌─────────┬─────────┐       first contact at no error is along the plane between them: pushed together
-//!                │  fixed  │  moving │       nothing carries, and the least offset apart they pass each other by
+//!   plan view    ┌─────────┬─────────┐       first contact without pose error is along the plane between them: pushed together
+//!                │  fixed  │  moving │       no contact carries, and at the least offset apart they pass each other by
 //!                └─────────┴─────────┘
 //! ```
 //!

@@ -1,10 +1,10 @@
 //! The convex hull of lattice points as simplices, with every decision exact.
 //!
 //! ```text
-//!        p                     Every point outside waits above one facet that it sees. The highest one, p, is taken:
-//!      ╱ : ╲                   the facets it sees (dotted) go, and each ridge between a facet that it sees and one
-//!    ╱···:···╲                 that it does not is joined to p. Points that waited above facets now gone wait
-//!   ╱_________╲                above new ones, or are inside.
+//!        p                     Each outer point waits at a facet that it sees. The highest point, p, is processed:
+//!      ╱ : ╲                   the facets it sees (dotted) are removed, and each ridge between a visible and a
+//!    ╱···:···╲                 hidden facet is joined to p. Points that waited at removed facets wait
+//!   ╱_________╲                at new facets, or are inside.
 //! ```
 //!
 //! "Sees" is strict: a facet whose plane contains p stays, and the new simplices beside it are coplanar with

@@ -1,7 +1,7 @@
 //! Covariances of the five errors: their square roots and principal directions.
 //!
 //! ```text
-//!   covariance = L·Lᵀ          L lower triangular (Cholesky); semidefinite ones too, with rows that are 0
+//!   covariance = L·Lᵀ          L lower triangular (Cholesky); also semidefinite, with rows of 0
 //!   covariance = V·Λ·Vᵀ        Λ the variances along the principal directions, columns of V (Jacobi's rotations)
 //! ```
 //!

@@ -1,9 +1,9 @@
 //! Interpretation of the column names of a table.
 //!
 //! ```text
-//!   x   x_mm   x [mm]   x (mm)     an error, in D and radians or in the unit that is named
-//!   part   time   id               none: carried through
-//!   dx   X_mm   x mm   rol         nearly an error: refused, because carrying it through would make the error 0
+//!   x   x_mm   x [mm]   x (mm)     an error, in D and radians or in the named unit
+//!   part   time   id               not an error: carried through
+//!   dx   X_mm   x mm   rol         nearly an error: rejected, because carrying it through would make the error 0
 //! ```
 //!
 //! A name is *near* an error if one of its words is the error's. Words end at non-letters, between letters

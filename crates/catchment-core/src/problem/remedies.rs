@@ -2,7 +2,7 @@
 //! whether a mirror image would fit.
 //!
 //! ```text
-//!      ┌─────┐            first contact of the halves without any error: a web in the way, a rim beside its hole
+//!      ┌─────┐            first contact without pose error: a web in the way, a rim beside its hole
 //!      │   ┌─┘ ●──┐
 //!   ───┘   └─     └───
 //! ```

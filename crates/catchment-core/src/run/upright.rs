@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   all five errors free          roll and pitch locked
-//!        ╱▔▔╱                          ▔▔▔▔            a mount that yields in tilt forgives more of x and y:
+//!        ╱▔▔╱                          ▔▔▔▔            a mount compliant in tilt accepts more x and y:
 //!     ──┘  ╱ ┌──                    ──┐    ┌──          the half tips into its seat
 //!        ╲╱  │                        └────┘
 //! ```

@@ -1,7 +1,7 @@
 //! The separate bodies of a file: sets of connected triangles.
 //!
 //! ```text
-//!   corners that a triangle joins ──▶ pieces ──▶ a piece whose box lies in another's is of that body ──▶ bodies, the largest box first
+//!   corners joined by triangles ──▶ pieces ──▶ a piece with its box inside another's belongs to that body ──▶ bodies, largest box first
 //! ```
 //!
 //! Not guaranteed: pieces that touch at a corner are not separated, nor is a body inside the bounding box of

@@ -1,9 +1,9 @@
 //! Triangulation of a face with many corners by ear clipping.
 //!
 //! ```text
-//!      c ────── b            an ear at b: left of its way from a to c, and no other corner in it.
-//!      │      ╱              The one whose smallest angle is largest is taken first, so that corners
-//!      e ·  ╱                on a straight edge (e) keep triangles of some area.
+//!      c ────── b            an ear at b: left of its path from a to c, without another corner in it.
+//!      │      ╱              The ear with the largest smallest angle is removed first, so that corners
+//!      e ·  ╱                on a straight edge (e) keep triangles with an area.
 //!      │  ╱
 //!      a
 //! ```

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!    ┌────────────┐        a hole is cut open along a bridge, so that the cap is one border that ear
-//!    │   ┌──┐     │        clipping takes; the walls know nothing of it
+//!    │   ┌──┐     │        clipping can process; the walls are not affected
 //!    ├ ─ ┤  │     │
 //!    │   └──┘     │
 //!    └────────────┘

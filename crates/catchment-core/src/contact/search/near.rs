@@ -1,8 +1,8 @@
 //! Nearby features of halves with many facets.
 //!
 //! ```text
-//!        ╲ moving        gap > 0: in front; parts wholly in front of the plane that all of the other lies behind
-//!      ───╳────── fixed                     are apart by as much, whatever features of them meet
+//!        ╲ moving        gap > 0: in front; parts on opposite sides of a plane
+//!      ───╳────── fixed                     are apart by at least their distances from it
 //!          ╲             gap < 0: overlaps, at most `deep`
 //! ```
 

@@ -1,11 +1,11 @@
 //! Bounds on the height over a box of poses.
 //!
 //! ```text
-//!     h │    ╱‾‾ roof          touches    all that may carry somewhere in the box
-//!       │  ╱╲│╱                floor      no pose of it that touches at all is lower: h(m) and the slopes of all touches,
-//!       │ ╱  m                            mean value, or the lowest touch
+//!     h │    ╱‾‾ roof          touches    all contacts that may carry somewhere in the box
+//!       │  ╱╲│╱                floor      no pose in contact is lower: h(m) and the slopes of all contacts,
+//!       │ ╱  m                            mean value, or the lowest contact
 //!       │╱‾‾ floor             sudden     h may jump: the rims of both halves may meet from outside, at the floor or above
-//!       └──[────]──── q        restless   one direction opens all touches at once: nothing rests in the box
+//!       └──[────]──── q        restless   one direction opens all contacts at once: nothing rests in the box
 //! ```
 //!
 //! h jumps only if, in plan view, a corner of the rim of one half reaches the rim of the other from outside.

@@ -1,10 +1,10 @@
 //! The centres of the cells around a pose error, and whether those that are decided agree.
 //!
 //! ```text
-//!   ·  ·  ·  ·   │       2ⁿ centres: the two nearest along every axis; beyond the last ones, up to half a cell
-//!   ·  a──a  ·   │       outside the box, there is one
+//!   ·  ·  ·  ·   │       2ⁿ centres: the two nearest along each axis; beyond the last centres, up to half a cell
+//!   ·  a──a  ·   │       outside the box, a single centre
 //!   ·  │q │  b   │
-//!   ·  a──?  ·  q│       three of four are known, and alike: a
+//!   ·  a──?  ·  q│       three of four are known, and equal: a
 //!   ·  ·  ·  b   │
 //! ```
 

@@ -3,8 +3,8 @@
 //! ```text
 //!   batch b of N_b poses, n_sb of them in stratum s, k_sb aligned; stratum s holds the share p_s of the box
 //!
-//!   a_s  = Σ_b N_b·(k_sb/n_sb) / Σ_b N_b          share of stratum s that aligns
-//!   n_s' = (Σ_b N_b)² / Σ_b N_b²/n_sb             poses drawn at one go that would know it as well
+//!   a_s  = Σ_b N_b·(k_sb/n_sb) / Σ_b N_b          aligned share of stratum s
+//!   n_s' = (Σ_b N_b)² / Σ_b N_b²/n_sb             equivalent number of poses in a single batch
 //!   sum  = Σ_s p_s·a_s
 //!   lo   = sum − √Σ_s p_s²(a_s − l_s)²            [l_s, u_s]  Wilson's interval of a_s from n_s' poses
 //!   hi   = sum + √Σ_s p_s²(u_s − a_s)²

@@ -4,8 +4,8 @@
 //! ```text
 //!   lowest z  subject to  gapᵢ(q, z) ≥ 0        at a rest    −load = Σ μᵢ aᵢ,  μᵢ ≥ 0        aᵢ the row of contact i, μᵢ its force
 //!
-//!   first order    the load lies inside of the cone of all aᵢ: whichever way it is pushed, it rises in proportion to the push
-//!   second order   it may move to first order, by d with aᵢ·d = 0:  rise = ½ κ s²,  κ(d) = max over all μ of  −Σ μᵢ gapᵢ″(d)
+//!   first order    the load lies inside the cone of all aᵢ: pushed in any direction, the half rises in proportion to the push
+//!   second order   free to first order along d with aᵢ·d = 0:  rise = ½ κ s²,  κ(d) = max over all μ of  −Σ μᵢ gapᵢ″(d)
 //! ```
 //!
 //! E. Rimon and J. Burdick (*Mobility of bodies in contact I and II*, IEEE Trans. Robotics and Automation 14,

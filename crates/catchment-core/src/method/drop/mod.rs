@@ -2,11 +2,11 @@
 //! neglects.
 //!
 //! ```text
-//!       │ F      let go above first contact, pushed along the approach through the COR (or falling by gravity)
+//!       │ F      released above first contact, pushed along the approach through the COR (or falling by gravity)
 //!     ╲_▼_╱      friction with the surroundings −c·(v, ρ²ω) at the COR, Coulomb friction μ and bounce e in contact
 //!     ╲   ╱      aligned   in the seat (crate::contact::Seat), and it stays there
 //!      ╲_╱       jammed    at rest in contact elsewhere       missed   the face centres are too far apart
-//!                undecided still moving when the time is up
+//!                undecided still moving at the end of the time
 //! ```
 //!
 //! Three trials with perturbed starts decide by majority; equal poses receive equal perturbations at any

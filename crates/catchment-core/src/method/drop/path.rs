@@ -1,7 +1,7 @@
 //! Record of a trial: position, time, speed and contacts of the half.
 //!
 //! ```text
-//!   let go ──▶ · · · falling · · · ▼ first contact ── · bounces, slides · ──▶ end
+//!   released ──▶ · · · falling · · · ▼ first contact ── · bounces, slides · ──▶ end
 //!   0 D                                                                       path length in the ρ-metric
 //! ```
 //!

@@ -1,8 +1,8 @@
 //! The halves in the form that an engine accepts: convex pieces if they are exact, else oriented triangles.
 //!
 //! ```text
-//!      ╱╲      every facet that faces the other half carries a column of       the columns make up the solid
-//!     ╱││╲     material down to the flat back of the half                      if nothing else faces back
+//!      ╱╲      every facet that faces the other half carries a column of       the columns form the solid
+//!     ╱││╲     material down to the flat back of the half                      if no other facet faces back
 //!    ╱_││_╲
 //! ```
 //!

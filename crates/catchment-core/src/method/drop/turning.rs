@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   R = Rz(yaw)·Ry(pitch)·Rx(roll)     hinges one inside the other: z outermost, x innermost
-//!   ω = Σ axisₖ(angles)·ȧₖ             over the free ones
+//!   ω = Σ axisₖ(angles)·ȧₖ             over the free angles
 //! ```
 //!
 //! An engine's locked axes are fixed in the world, which is correct for one free rotation and wrong for two:

@@ -4,7 +4,7 @@
 //!   ╲        ╱╲      ╱          a minimum is as deep as the water must rise in it to reach a lower one:
 //!    ╲  ╱╲  ╱  ╲    ╱           B by its pass to A, A by its pass to C, C never (depth ∞). Basins shallower
 //!     ╲╱  ╲╱ A  ╲  ╱            than a tolerance are merged across that pass; a higher tolerance merges more,
-//!      B         ╲╱ C           and the tree knows them all.
+//!      B         ╲╱ C           and the tree contains all merges.
 //! ```
 //!
 //! The tree is exact: it is that of the sets of cells below every height, connected in the full

@@ -1,7 +1,7 @@
 //! The labels of flooding: the watershed of every cell before any merging, and after it.
 //!
 //! ```text
-//!   first labels      1 1 2 2 2 ▒ 3 3        ▒ a dam, which belongs to none yet (Meyer's flooding alone)
+//!   first labels      1 1 2 2 2 ▒ 3 3        ▒ a dam, which belongs to no basin yet (Meyer's flooding alone)
 //!   into              1→1  2→1  3→3          2 was shallower than the tolerance
 //!   after merging     1 1 1 1 1   3 3
 //! ```

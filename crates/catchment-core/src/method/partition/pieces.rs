@@ -1,8 +1,8 @@
 //! The halves as P-collections: convex pieces whose union is the half, exactly.
 //!
 //! ```text
-//!   ┌────╲    ╱────┐      a surface that is hollow is its convex hull, cut by the planes of the facets that meet
-//!   │     ╲  ╱     │      along reflex edges until every part lies wholly inside or outside; the parts outside go
+//!   ┌────╲    ╱────┐      a non-convex surface is its convex hull, cut by the planes of the facets that meet
+//!   │     ╲  ╱     │      along reflex edges until every part is entirely inside or outside; outer parts are removed
 //!   └──────╲╱──────┘
 //! ```
 //!

@@ -1,8 +1,8 @@
 //! The arrival fractions of all cells: one value per cell, a pure function of the values of lower cells.
 //!
 //! ```text
-//!   u(c) = Σ w u(link)      solved depth first: a cell whose links are not all known waits for them;
-//!                           links lead downwards, so nothing waits for itself
+//!   u(c) = Σ w u(link)      solved depth first: a cell with unsolved links waits for them;
+//!                           links lead downwards, so no cell waits for itself
 //! ```
 //!
 //! No sorting is needed, and the order has no effect: every cell's value is the same whichever thread

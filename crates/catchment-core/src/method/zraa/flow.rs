@@ -8,7 +8,7 @@
 //!   drop       the neighbour lies lower               → likewise, or along the foot of the wall
 //!   valley     the neighbour's flow leads back        → down the border to its lower end
 //!   wall       the neighbour lies higher              → likewise
-//!   level      a valley or wall without slope         → at rest: in the seat, all of it, or not
+//!   level      a valley or wall without slope         → at rest: entirely in the seat, or not
 //!   nothing    no contact across the border           → missed
 //! ```
 //!

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!      q ╲        ╱             offset s: the moving half's minimum p slides home as long as
-//!         ╲  ▼p  ╱              it lies short of the fixed half's maximum q:   s < q − p
+//!         ╲  ▼p  ╱              it has not passed the fixed half's maximum q:   s < q − p
 //!          ╲    ╱
 //!           ╲╱╲╱       climb(s) = max { f(u) − f(v) : u − v = s }   = the height of first contact
 //! ```

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //!   ┌───────────────┐
-//!   │ ·       ·     │     as many places in every box, each of half the width of the one around it
+//!   │ ·       ·     │     the same number of places in each box; a box has half the width of the box around it
 //!   │   ┌───────┐ · │
 //!   │ · │·┌───┐ │   │
 //!   │   │ │·:·│·│   │

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!        ╭─╮
-//!   ╲   ╱   ╲        climb: the highest point of the way above the rest; beyond it exact motion leads lower, to the mated
+//!   ╲   ╱   ╲        climb: the highest point of the path above the rest; beyond it exact motion leads lower, to the mated
 //!    ╲_╱     ╲       pose, or off
 //!     ↑ rest  ▼
 //! ```

@@ -1,10 +1,10 @@
 //! Stability of a rest: the rise of the half when it is displaced.
 //!
 //! ```text
-//!   sharp      ╲  ╱     it rises in proportion to the push           held by contacts on all sides
-//!   rounded    ╰──╯     with the square of the push                  held by curvature: turning lifts it
-//!   level     ──────    hardly at all                                nothing but friction holds it
-//!   ridge      ╱  ╲     it falls                                     motion ended there by chance
+//!   sharp      ╲  ╱     it rises in proportion to the push           contacts on all sides
+//!   rounded    ╰──╯     with the square of the push                  curvature: rotation lifts it
+//!   level     ──────    hardly at all                                only friction holds it
+//!   ridge      ╱  ╲     it falls                                     the motion ended there by chance
 //! ```
 //!
 //! The smallest rise over all directions is found by search: random directions, then variations of the best.

@@ -3,9 +3,9 @@
 //!
 //! ```text
 //!        ░░░░░░░░░          1  search    exact motions on the surface of the box: all directions of {−1, 0, 1}ⁿ, then
-//!      ░░┌──────●░              moves about the worst pose ● found so far; every pose that does not dock makes the box
+//!      ░░┌──────●░              moves about the worst pose ● found so far; each pose that does not dock makes the box
 //!      ░░│  0   │░░             smaller, by bisection towards zero
-//!       ░└──────┘░          2  certify   N random poses all over the box; one that does not dock goes back to 1
+//!       ░└──────┘░          2  certify   N sampled poses all over the box; a failure returns to 1
 //!          ░░░░░
 //! ```
 //!

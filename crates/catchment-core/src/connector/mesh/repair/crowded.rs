@@ -4,7 +4,7 @@
 //!          D                       Seen along the edge a → b, by angle, counter-clockwise. U runs along it from a to b and has
 //!      air │ ░ solid               its solid on the clockwise side, D runs back and has it on the other: solid lies from each D
 //!     U ───●─── U                  to the next U. Each such wedge becomes a sheet of its own: its two triangles are neighbours,
-//!    solid ░ │ air                 and the corners are given once for each fan of triangles around them.
+//!    solid ░ │ air                 and each fan of triangles gets its own copy of the corners.
 //!            D
 //! ```
 //!

@@ -1,8 +1,8 @@
 //! Correction back to contact, by Newton's method.
 //!
 //! ```text
-//!   δ = argmin |δ|²    subject to   aᵢ·δ  = −gᵢ   for contacts that are held
-//!                                   aᵢ·δ ≥ −gᵢ   for the other active ones
+//!   δ = argmin |δ|²    subject to   aᵢ·δ  = −gᵢ   for contacts that are kept
+//!                                   aᵢ·δ ≥ −gᵢ   for the other active contacts
 //! ```
 //!
 //! with gaps g and rows a of the features treated as planes and lines without borders. Convergence is

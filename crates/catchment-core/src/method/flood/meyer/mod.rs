@@ -1,8 +1,8 @@
 //! Meyer's flooding with a priority queue, as in the dissertation (Meyer 1994; the dissertation's chapter 5).
 //!
 //! ```text
-//!    ╲      dam       ╱     water rises from every minimum at once; a cell that two waters reach
-//!     ╲    ╱│╲       ╱      is a dam; a basin shallower than the tolerance joins the one across
+//!    ╲      dam       ╱     water rises from every minimum at once; a cell that water reaches from two basins
+//!     ╲    ╱│╲       ╱      is a dam; a basin shallower than the tolerance is merged across
 //!      ╲~~╱ │ ╲~~~~~╱       its lowest dam
 //!       ╲╱  │  ╲___╱
 //! ```
