@@ -2,18 +2,18 @@
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
-//!   planes       the same through zero alone, beside a grid      one design, what pictures show at zero
-//!   agreement    every method on one grid                        one design, how each two agree
+//!   planes       the same through zero only, beside a grid       one design, the planes of figures at zero
+//!   agreement    every method on one grid                        one design, agreement of each pair
 //!   convergence  finer and finer grids until stable               one design, every method
-//!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
+//!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses for each value
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
-//!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
-//!   friction     what docks at each friction, what sticks first  one design, the same poses at every friction
-//!   hold         what a docked half withstands                   one design, contact forces alone
-//!   chance       how likely drop tests dock, under declared laws  one design, trials in a rigid-body engine
-//!   plan         at which poses a robot should try it            one design, exact motions at every pose
-//!   validate     what a robot's trials say of the prediction     one design, exact motions and the trials
-//!   proposal     all ways in which two parts may dock           two files, the design that docks them
+//!   success      probability that robot errors are corrected     one design, stratified exact motions
+//!   friction     docking and sticking at each friction           one design, the same poses at every friction
+//!   hold         forces and torques that a docked half resists   one design, contact forces alone
+//!   chance       probability of docking in drop tests             one design, declared laws, trials in a rigid-body engine
+//!   plan         test poses for a robot                          one design, exact motions at every pose
+//!   validate     test of the prediction by a robot's trials      one design, exact motions and the trials
+//!   proposal     all orientations in which two parts may dock   two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 

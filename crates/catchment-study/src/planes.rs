@@ -2,7 +2,7 @@
 //! pictures and pages.
 //!
 //! ```text
-//!   grid, 30 cells per axis:   no cell is centred on 0     ──▶  the plane of the grid "at 0" is half a cell beside it
+//!   grid, 30 cells per axis:   no cell is centred on 0     ──▶  the plane of the grid "at 0" is half a cell off
 //!   plane, yaw = 0 exactly:    each (x, pitch) is followed ──▶  symmetric halves give a symmetric plane
 //! ```
 //!

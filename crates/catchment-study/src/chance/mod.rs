@@ -2,12 +2,12 @@
 //! are sampled from declared distributions.
 //!
 //! ```text
-//!   [dynamics]            one trial                                   asked
-//!   speed 50 ± 10 mm/s    draw ──▶ settings ──▶ engine ──▶ aligned?   of poses: share of N trials, Wilson's interval
-//!   friction 0.1..0.3                                                 of cells over two errors: a map of the same
-//!                                                                     of errors as they are expected: P by double sampling,
-//!                                                                     the trials where the quasi-static border runs
-//!                                                                     P with every velocity times t, t → 0: quasi-static
+//!   [dynamics]            one trial                                   questions
+//!   speed 50 ± 10 mm/s    draw ──▶ settings ──▶ engine ──▶ aligned?   poses: aligned share of N trials, Wilson's interval
+//!   friction 0.1..0.3                                                 cells over two errors: a map of this share
+//!                                                                     expected errors: P by double sampling,
+//!                                                                     most trials near the quasi-static border
+//!                                                                     speed: P with every velocity times t, t → 0: quasi-static
 //! ```
 //!
 //! **Drive.** With *held* speed the half is released at its approach speed v, and pushed with the force that

@@ -1,7 +1,7 @@
 //! The probability under the expected errors, and its curve over speed.
 //!
 //! ```text
-//!   errors drawn, none tried ──▶ strata by a quasi-static grid ──▶ one trial each of some of them, most where there is doubt
+//!   errors drawn, no trials  ──▶ strata by a quasi-static grid ──▶ one trial each of some of them, most near the border
 //!                                ░░░▒▓█  near its border           P = Σ W_s·p_s with the interval of both samplings
 //! ```
 //!

@@ -4,7 +4,7 @@
 //!   Sum ▲   ○                       cells per axis n, n·√2, n·2, … (odd: a cell is centred on the mated pose)
 //!       │      ○──○──○  stable      stop when the last two refinements changed the Sum by less than the
 //!       │  ●──●──●──●──●            tolerance of itself, and the ONAA edge by less than the tolerance of the box
-//!       └──────────────▶ n          or when the next one would not fit into the time or the memory allowed
+//!       └──────────────▶ n          or if the next refinement would exceed the permitted time or memory
 //! ```
 //!
 //! Not promised: that a stable result is correct. Flooding becomes stable at a wrong value: each finest Sum

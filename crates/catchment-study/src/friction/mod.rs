@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!   docks │▔▔▔▔▔╲
-//!         │      ╲___        the same random poses of the error box at every friction, each by exact motion
-//!         └───┬───┬──▶ μ     between two frictions of the ladder, where a pose is lost is found by bisection
+//!         │      ╲___        the same sampled poses of the error box at every friction, each by exact motion
+//!         └───┬───┬──▶ μ     between two frictions of the ladder, bisection locates the loss of a pose
 //! ```
 //!
 //! Friction changes the path of a half and may even help, so poses are lost and gained, and the outcomes at

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!          │ preload                        y  ╭───╮
-//!          ▼                                 ╭─╯   ╰─╮   how hard it may be pushed sideways until it leaves,
-//!    ───╲─────╱─── ◀── sideways          ───┤   ·   ├─ x      over the direction; and how hard it may be
-//!        ╲___╱    ⤺ torque                  ╰─╮   ╭─╯        twisted about each free axis, either way
+//!          ▼                                 ╭─╯   ╰─╮   largest sideways force before it leaves the seat,
+//!    ───╲─────╱─── ◀── sideways          ───┤   ·   ├─ x      over the direction; and the largest torque
+//!        ╲___╱    ⤺ torque                  ╰─╮   ╭─╯        about each free axis, in either sense
 //!                                              ╰───╯
 //! ```
 //!

@@ -1,9 +1,9 @@
 //! Distance of a pose from the border of the accepted set, by exact motions.
 //!
 //! ```text
-//!     docks  ░░░░│                1  towards the nearest known pose that fares otherwise, along ± every error, along random directions:
-//!      ●─────────○ border            the first look that fares otherwise, then bisection
-//!       ╲    ░░░░│                2  directions beside the best one, each only where it would be nearer
+//!     docks  ░░░░│                1  towards the nearest known pose with another outcome, along ± every error, along random directions:
+//!      ●─────────○ border            the first tested pose with another outcome, then bisection
+//!       ╲    ░░░░│                2  directions near the best, each only within the distance of the best
 //! ```
 //!
 //! Distances are in standard deviations per error: √Σ(Δₖ/σₖ)². Errors without a standard deviation are exact

@@ -1,10 +1,10 @@
 //! Plans of bench tests: poses at which a robot should try a connector, so that the trials are decisive.
 //!
 //! ```text
-//!   pattern  ──▶  poses  ──▶  what becomes of each, exactly  ──▶  trials in random order, in blocks, repeated
-//!   grid          x, yaw      how far it is from the border
+//!   pattern  ──▶  poses  ──▶  exact outcome of each          ──▶  trials in random order, in blocks, repeated
+//!   grid          x, yaw      and distance from the border
 //!   lattice                   in units of the robot's accuracy:
-//!   arc                       below 1 it may go either way
+//!   arc                       below 1 both outcomes are possible
 //!   bracket
 //! ```
 //!

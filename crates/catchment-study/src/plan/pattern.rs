@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   grid            lattice, along the border      arc, about a joint        bracket
-//!   · · · · ·            · ·                        ●╮  ╲ lever L               ·      border ± what can be told apart,
+//!   · · · · ·            · ·                        ●╮  ╲ lever L               ·      border ± distinguishable distance,
 //!   · · · · ·            ○ · ·                      │ ╲  ╲                   ·──┼─·    along lines from zero
 //!   · · · · ·              ○ · ·                    │  ╰──● x = −L·sin pitch     ·
 //! ```

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   6 approaches, and common diagonals ──▶ a lattice near the drawn pose ──▶ exact contact of those that hold
-//!                                                                       └─▶ drawn apart: let down to first contact
+//!                                                                       └─▶ drawn apart: lowered to first contact
 //! ```
 
 use super::layout::{AxisDirection, PartLayout};

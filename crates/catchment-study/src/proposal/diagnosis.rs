@@ -2,9 +2,9 @@
 //! files.
 //!
 //! ```text
-//!   meets nothing            ──▶ passes through: a stop is missing
-//!   meets, and slides off    ──▶ flat: magnets or pins are missing
-//!   blocked all ways         ──▶ interlock: a thread of this lead; a snap, an undercut or an interference of so many mm; something else
+//!   no contact               ──▶ passes through: a stop is missing
+//!   contact, and slides off  ──▶ flat: magnets or pins are missing
+//!   blocked everywhere       ──▶ interlock: a thread of this lead; a snap, an undercut or an interference of so many mm; something else
 //! ```
 //!
 //! Not promised: that the cause is unique.

@@ -4,7 +4,7 @@
 //! ```text
 //!   two files ──▶ drawn docked, in one frame?   6 approaches on a lattice near the drawn pose ──▶ exact contact of those that hold
 //!             └─▶ each in its own frame?        6 × 24 views, all lateral offsets on a lattice ──▶ exact contact of the steepest places
-//!                        └──▶ ranked by how steep the seat is ──▶ a design file
+//!                        └──▶ ranked by the steepness of the seat ──▶ a design file
 //! ```
 //!
 //! steep = climb / (e + play): how high the moving half climbs before it leaves the seat, relative to its

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   no seat ──▶ the moving part reflected: does it seat?  ──▶ "was one of the two exported mirrored?"
-//!          └──▶ what is narrower than three cells left out, of one part, then of the other: does one sink in?  ──▶ "in the way: at (…)"
+//!          └──▶ features narrower than three cells removed, from one part, then from the other: does it sink in?  ──▶ "in the way: at (…)"
 //! ```
 //!
 //! Not promised: that parts which dock mirrored were meant to be mirrored, or that the reported obstacle is

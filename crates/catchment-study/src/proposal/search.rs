@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   6 × 6 facings × 4 quarter turns ──▶ heights over all offsets ──▶ hollows: offsets around which the heights rise
-//!        the best of them on finer and finer lattices ──▶ places, for exact heights to judge
+//!        the best of them on finer and finer lattices ──▶ places, evaluated by exact heights
 //! ```
 //!
 //! A hollow is scored by the height that the half must climb to leave it, and by the overlap of the parts in

@@ -2,8 +2,8 @@
 //! constrains.
 //!
 //! ```text
-//!   place ──▶ D ──▶ moved to where it lies deepest, in the middle of its play ──▶ which errors it holds ──▶ settled, if it must be
-//!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
+//!   place ──▶ D ──▶ moved to its deepest position, in the middle of its play ──▶ constrained errors ──▶ settled, if necessary
+//!                                                                    └ climb: the rise at offsets of 0.1 D and 0.3 D, in all directions
 //! ```
 //!
 //! Errors that the seat leaves free (along a groove, the yaw of a round part) are removed from the free

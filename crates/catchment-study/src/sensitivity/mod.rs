@@ -1,7 +1,7 @@
 //! Sensitivity of the Sum to the parameters of a design: ρ, the centre of rotation, the aspect ratio.
 //!
 //! ```text
-//!   the same N random poses, followed exactly at p − h and at p + h
+//!   the same N sampled poses, followed exactly at p − h and at p + h
 //!
 //!   dSum     V   gained − lost          gained: poses aligned only at p + h
 //!   ──── ≈  ── · ─────────────          lost:   poses aligned only at p − h

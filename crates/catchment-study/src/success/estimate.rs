@@ -1,13 +1,13 @@
 //! The probability of docking, its interval, and its slopes, from a stratified sample of exact motions.
 //!
 //! ```text
-//!   1  N errors drawn, none followed        W_s = N_s/N     their shares of the strata
-//!   2  n ≪ N of them followed exactly       p_s             share of stratum s that docks; most where there is doubt
+//!   1  N errors drawn, no motions           W_s = N_s/N     their shares of the strata
+//!   2  n ≪ N of them followed exactly       p_s             share of stratum s that docks; most motions near the border
 //!
 //!   P = Σ_s W_s·p_s                                     double sampling for stratification (Cochran, Sampling Techniques, ch. 12)
 //!   P − lo = √(Σ_s W_s²(p_s − l_s)² + (P − l)²)         [l_s, u_s]  Wilson's interval of p_s,  [l, u]  that of P from N errors
 //!
-//!   dP/dσ_k = E[(1_docks − P)·s_k]                      s_k  d log(density)/dσ_k: the same motions, no more of them
+//!   dP/dσ_k = E[(1_docks − P)·s_k]                      s_k  d log(density)/dσ_k: from the same motions
 //! ```
 //!
 //! The interval of the strata is that of [`catchment_core::method::correction`], which draws batches in the

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //!   shares       of the failures, jammed and missed; weighted as the sample is
-//!   along        mean |error| in σ of what fails over that of what docks, by error: where failures lie
-//!   first        the failing error nearest to the mean, in σ: the likeliest one
+//!   along        mean |error| in σ of failures over that of successes, by error: the direction of failures
+//!   first        the failing error nearest to the mean, in σ: the most likely failure
 //!
 //!        ·  ·  ✕
 //!      ·  μ──✕   ✕       from the nearest failures of the sample bisection towards the mean,
-//!        ·  ·  ✕         then moves about the nearest of all; each nearer one is bisected again
+//!        ·  ·  ✕         then moves about the nearest of all; each nearer failure is bisected again
 //! ```
 //!
 //! Without a failure in the sample the search goes farther out, up to 8 σ (3 half-widths): such an error

@@ -4,7 +4,7 @@
 //!   each error    Anderson and Darling   A² = −n − (1/n)·Σ (2i − 1)·(ln Φ(yᵢ) + ln(1 − Φ(yₙ₊₁₋ᵢ)))    y standardised and sorted
 //!                 with mean and σ from the same rows: A²·(1 + 0.75/n + 2.25/n²), Stephens' case 3
 //!   all together  Mardia's kurtosis      b = mean of d⁴, d Mahalanobis' distance: near p(p + 2), variance 8·p(p + 2)/n
-//!   one by one    neighbouring rows      their correlation r: near 0, variance 1/n, where rows are independent
+//!   sequence      neighbouring rows      their correlation r: near 0, variance 1/n, if rows are independent
 //! ```
 //!
 //! Sources: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730; p-values of D'Agostino and Stephens,

@@ -2,13 +2,13 @@
 //! the error to improve first.
 //!
 //! ```text
-//!   robot  ──▶  random errors, none followed   ──▶  n of them followed exactly, most where there is doubt
+//!   robot  ──▶  errors drawn, no motions       ──▶  n of them followed exactly, most near the border
 //!   normal,     ░░░░░░░░░░░░░░░░░░░░░░░░░░░░░       · · ·· ·::·· ·
 //!   uniform,    strata by a grid over them               │
-//!   measured                                             ├─▶  P with its interval              what fails, what fails first
+//!   measured                                             ├─▶  P with its interval              failures, and the most likely failure
 //!                                                        ├─▶  dP/dσ of every σ                 the same motions
-//!                                                        ├─▶  P with σ halved, one by one      which to improve first
-//!                                                        └─▶  P(t), every σ times t            how large they may be
+//!                                                        ├─▶  P with each σ halved             the best improvement
+//!                                                        └─▶  P(t), every σ times t            the largest tolerable errors
 //! ```
 //!
 //! - The *probability* is that of exact quasi-static motions, not of cells: the grid only allocates the

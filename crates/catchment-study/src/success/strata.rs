@@ -1,11 +1,11 @@
 //! Strata of errors, by a grid that was decided in advance; they guide the sampling.
 //!
 //! ```text
-//!   grid over μ ± 3.5 σ               share of a pose: what its surrounding centres say, weighted by nearness
+//!   grid over μ ± 3.5 σ               share of a pose: outcomes of the surrounding centres, weighted by nearness
 //!   ┌───────────────┐
 //!   │ ░ ░ ░ ░ ░ ░ ░ │                 0     .1   .3   .5   .7   .9     1
-//!   │ ░ ░ █ █ █ ░ ░ │     ──▶         ├─────┼────┼────┼────┼────┼─────┤      eight strata: both ends, and what lies between;
-//!   │ ░ ░ █ ● █ ░ ░ │                 ░░░░░░      near the border       █████      three more outside of the grid, by its nearest cell
+//!   │ ░ ░ █ █ █ ░ ░ │     ──▶         ├─────┼────┼────┼────┼────┼─────┤      eight strata: both ends, and the range between;
+//!   │ ░ ░ █ ● █ ░ ░ │                 ░░░░░░      near the border       █████      three more outside the grid, by the nearest cell
 //!   └───────────────┘
 //! ```
 //!

@@ -1,10 +1,10 @@
 //! Largest factor on all errors, or on one of them, with the required success.
 //!
 //! ```text
-//!   P ▲──╲_                    P(t): every σ multiplied by t; the same random errors at every t
-//!     │    ╲ ┬                 the factors tried: powers of √2 until P and its interval have crossed what is required,
-//!   R ┼─ ─ ─┼●┼─ ─             then the middle between the two that it lies between, again and again
-//!     │       ┴╲_              ● the factor; its interval: where the ends of the interval of P cross R
+//!   P ▲──╲_                    P(t): every σ multiplied by t; the same sampled errors at every t
+//!     │    ╲ ┬                 tested factors: powers of √2 until P and its interval have crossed the required R,
+//!   R ┼─ ─ ─┼●┼─ ─             then bisection between the two factors around it
+//!     │       ┴╲_              ● the factor; its interval: the crossings of the ends of the interval of P with R
 //!     └──────────────▶ t
 //! ```
 //!

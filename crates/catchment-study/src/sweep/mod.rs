@@ -1,11 +1,11 @@
 //! A sweep: a design with keys of its file replaced, every combination computed by the same run.
 //!
 //! ```text
-//!   aspect_ratio=0.25,0.5,1  ×  cor=-1..1/5        axes, the last one fastest
+//!   aspect_ratio=0.25,0.5,1  ×  cor=-1..1/5        axes, the last axis fastest
 //!        │ one design file per combination
 //!        ▼
 //!   Problem ──Run──▶ Sum, ONAA, tolerances …       figures, with the slice of the accepted set through zero
-//!        │ kept under a digest of all that they depend on: what was computed before is not computed again
+//!        │ kept under a digest of all inputs: earlier results are not computed again
 //!        ▼
 //!   Sweep: the figures of every design, the largest and the smallest Sum
 //! ```

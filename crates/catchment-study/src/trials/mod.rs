@@ -4,8 +4,8 @@
 //! ```text
 //!   exact (zraa)          trials, one per cell, anywhere in it      disagreeing area = share of trials that
 //!      ╱╲                 ○ ○ ○ ● ○ ○                               lie on the wrong side × the error box
-//!     ╱  ╲                ○ ○ ● ● ● ○                               95 % interval: Wilson's, which a stratified
-//!     ╲  ╱                ○ ○ ○ ● ○ ○                               sample keeps and does not fill
+//!     ╱  ╲                ○ ○ ● ● ● ○                               95 % interval: Wilson's, conservative for a
+//!     ╲  ╱                ○ ○ ○ ● ○ ○                               stratified sample
 //!      ╲╱
 //! ```
 //!

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //!   disagreements beyond k accuracies
-//!      │╲                       ╱      every trial is followed again with each μ; of those that fare otherwise than was seen, those count whose
+//!      │╲                       ╱      every trial is followed again with each μ; a trial that disagrees with the observed outcome counts if its
 //!      │ ╲___               ___╱       border at that μ is farther than k accuracies
 //!      └─────╲_____________╱───▶ μ
-//!             [ interval  ]            the coefficients with the fewest, its ends bisected
+//!             [ interval  ]            the coefficients with the fewest disagreements, its ends bisected
 //! ```
 //!
 //! Coefficients are tried from 0 upwards, until one leaves clearly more disagreements than the best before

@@ -1,14 +1,14 @@
 //! Verdicts on a prediction: the trials of a robot at the poses of a plan, compared with exact motions.
 //!
 //! ```text
-//!                      observed                     how far each disagreement is from the predicted border,
+//!                      observed                     distance of each disagreement from the predicted border,
 //!   predicted     docks     fails                   in units of the robot's accuracy
 //!     docks        96         0      ──▶            ─────────┬─────────┬──────────────────▶
 //!     fails         1        53                        either │ noise   │ beyond k: counts
 //!                                                      0      1         k
 //!   verdict       consistent     none beyond k, or no more than the robot's own errors explain
-//!                 inconsistent   more, farther, or more on one side: by chance less than once in twenty
-//!                 undecided      too few trials are beyond k to decide anything
+//!                 inconsistent   more, farther, or more on one side: probability by chance below 5 %
+//!                 undecided      too few trials beyond k for a decision
 //! ```
 //!
 //! The robot's error alone changes the outcome of a trial m standard deviations from the border with a

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   Clopper and Pearson   [p: P(X ≥ k | p) = 2.5 %,  p: P(X ≤ k | p) = 2.5 %]      X binomial
-//!   Poisson's binomial    P(so many or more of these fail), each by a chance of its own
-//!   chance(m)             that a normal error carries a pose m accuracies over a flat border on either side of it: 2·Φ(−m), at most ½
+//!   Poisson's binomial    P(this many or more of these fail), each with its own probability
+//!   chance(m)             that a normal error moves a pose m accuracies across a flat border on either side of it: 2·Φ(−m), at most ½
 //! ```
 //!
 //! Sources: C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404; L. Le Cam, Pac. J. Math. 10 (1960) 1181 for the sum of unlike trials.

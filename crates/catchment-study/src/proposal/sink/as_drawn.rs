@@ -2,8 +2,8 @@
 //! are drawn.
 //!
 //! ```text
-//!   h near no offset ──▶ nothing to meet: passes through      h(0) far above or below: blocked, apart
-//!                   └──▶ the lowest offset near, how far it climbs from there: holds, or flat
+//!   h near offset 0  ──▶ no contact: passes through      h(0) far above or below: blocked, apart
+//!                   └──▶ the lowest offset nearby, and the climb from it: holds, or flat
 //! ```
 
 use super::height::{NOTHING, PartHeights};

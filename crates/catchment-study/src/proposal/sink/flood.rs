@@ -1,7 +1,7 @@
 //! Basins of heights over a lattice, with the climb needed to leave each.
 //!
 //! ```text
-//!      ────┐        ┌──── pass           climb of A = pass − height of A: out, or into what is deeper
+//!      ────┐        ┌──── pass           climb of A = pass − height of A: to the outside, or to a deeper basin
 //!          │  ┌──┐  │
 //!          └──┘B └A─┘
 //! ```

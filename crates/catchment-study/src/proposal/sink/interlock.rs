@@ -2,13 +2,13 @@
 //! would have to yield.
 //!
 //! ```text
-//!   thread   turned by ±90° about the approach, the moving part fits where it is raised by ±lead / 4, and nowhere else
+//!   thread   turned by ±90° about the approach, the moving part fits if raised by ±lead / 4, and at no other height
 //!
 //!        ┌──┐          overlap(90°, z)   ▒▒▒▒╲    ╱▒▒▒▒        overlap(0, z)   ▒▒▒▒▒╲╱▒▒▒▒▒
 //!      ╱╱│╱╱│                                 ╲__╱                                  z = 0
 //!      ╱╱│╱╱│                               z = lead / 4
 //!
-//!   snap     the fixed part worn by w on every side lets the moving one in as far as it is drawn; w is the undercut
+//!   snap     the fixed part eroded by w on every side admits the moving part as far as drawn; w is the undercut
 //! ```
 //!
 //! Not guaranteed: detection of threads whose axis is not the middle of the moving part, or whose lead is

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   fixed   F(p)  highest z over p            h(o) = max over p of F(p + o) + M(p)     height of first contact at the lateral offset o
-//!   moving  M(p)  −lowest z over p            F worn by half a cell: h bounds the heights of the whole cell of o from below
+//!   moving  M(p)  −lowest z over p            F eroded by half a cell: h bounds the heights of the whole cell of o from below
 //!
 //!   6 × 24 views ──▶ h over all offsets ──▶ basins ──▶ again on a fine lattice ──▶ steep = climb / (e + play at half the climb)
 //!   as drawn, 6 approaches ──▶ h near the origin ──▶ holds, passes through, flat, blocked or apart
