@@ -1,9 +1,9 @@
 //! The common head of every JSON report, printed or stored.
 //!
 //! ```text
-//!   { "schema": 3, "catchment": "0.1.0", "kind": "run",     which layout, who wrote it, what it tells
+//!   { "schema": 3, "catchment": "0.1.0", "kind": "run",     version of the layout, program, kind of result
 //!     … fields of the kind, at the top level …
-//!     "warnings": […], "timing": … }                        doubts; the only part that differs between equal runs
+//!     "warnings": […], "timing": … }                        timing: the only part that differs between equal runs
 //! ```
 //!
 //! [`SCHEMA`] increases if a field changes its meaning or is removed, for all kinds together. New fields and

@@ -3,8 +3,8 @@
 //! ```text
 //!   scene ── docking, z of glTF's y ─┬─ fixed half      mesh
 //!                                    ├─ moving half     mesh, moved by the animation from first contact to its end
-//!                                    ├─ way             line: the way of the moving half's face centre
-//!                                    └─ contacts        points that touch at the end
+//!                                    ├─ way             line: the path of the moving half's face centre
+//!                                    └─ contacts        contact points at the end
 //! ```
 //!
 //! Lengths are in metres, as glTF requires; for a design without a unit, D is one metre. Quasi-static motions

@@ -4,14 +4,14 @@
 //!                  ┌─ envelope    versioned JSON; json_schema has its schema, derived from the types
 //!   result ────────┼─ document    one description: text, CSV, Markdown, HTML
 //!   (a Subject)    ├─ figure      PNG and SVG (feature `figure`), with the numbers of the report
-//!                  ├─ page        one offline file to click (feature `page`)
+//!                  ├─ page        an interactive offline file (feature `page`)
 //!                  ├─ zarr        the whole grid, for xarray (feature `zarr`)
 //!                  └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                        └──▶  write: complete or not at all
 //!
 //!   subjects       the results of a design that are reported, a line each; they describe themselves beside their types
 //!   run · check · trajectory · lever · zraa · faces · export · solids · slices · comparison
-//!                  what has a report of its own: its JSON and its document
+//!                  results with reports of their own: JSON and document
 //! ```
 //!
 //! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians

@@ -2,9 +2,9 @@
 //! tolerance.
 //!
 //! ```text
-//!   accepted │   ┌─────────┐               both frames have one scale of depths, logarithmic between a place for 0 and one for ∞: above, the
-//!            │ ┌─┘   │ gap │ └───          staircase of the accepted share; below, one dot per minimum. What lies left of the tolerance
-//!            └─┴─────┴──▲──┴───── τ        is merged.
+//!   accepted │   ┌─────────┐               both frames share a depth scale, logarithmic between the places of 0 and ∞: above, the
+//!            │ ┌─┘   │ gap │ └───          staircase of the accepted share; below, one dot per minimum. Minima left of the tolerance
+//!            └─┴─────┴──▲──┴───── τ        are merged.
 //!   share    │ ◦  ◦◦        ●   ●
 //!             ≈0   …            ∞
 //! ```

@@ -4,30 +4,30 @@
 //!   slices      outcomes over pairs of errors, the border of the accepted set, the ONAA cube
 //!   matrix      slices of all pairs of errors, in a triangle with shared axes
 //!   convergence Sum and ONAA against resolution and time, every method
-//!   difference  where two acceptances differ, and the border of the first
-//!   agreement   how each two methods of a design agree
+//!   difference  cells at which two acceptances differ, and the border of the first
+//!   agreement   agreement of each pair of methods of a design
 //!   number_maps tables of numbers in colours, side by side
 //!   curves      any curves over a logarithmic scale, side by side
 //!   sensitivity the Sum against rho
 //!   success     the success of robots over the factor of their errors, and what each error gains
-//!   chance      how likely trials dock over two errors, and against speed
-//!   sweep       the Sum of many designs in colours, and what each accepts
+//!   chance      probability that trials dock over two errors, and against speed
+//!   sweep       the Sum of many designs in colours, and the accepted set of each
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
-//!   pair        both halves as they were understood: apart in space, mated in section
-//!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
+//!   pair        both halves as read from the design: apart in space, mated in section
+//!   lever       the first contact with its lever arms and angles, as in the kinematic method
 //!   faces       designs side by side, mated and at the largest offset that still slides home
-//!   bodies      convex pieces of the halves, what they sweep, and where they overlap
-//!   hold        how hard a docked half may be pushed, over the direction, and twisted
-//!   jams        where halves rest that do not dock, cut through what touches, and in space; rests likewise
-//!   trajectory  the moving half along its path, and the errors it still has
+//!   bodies      convex pieces of the halves, their swept volumes and overlaps
+//!   hold        largest sideways force on a docked half, over the direction, and largest torques
+//!   jams        rests of halves that do not dock, cut through their contacts, and in space; rests likewise
+//!   trajectory  the moving half along its path, and its remaining errors
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   trials      the exact region beside the outcomes of single trials
-//!   bench       trials of a plan over what docks: where, and what was seen of them
+//!   bench       trials of a plan over the accepted set: their poses and observed outcomes
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   watersheds  halves, heights, the labels of flooding before and after merging
-//!   partition   the contact space as polygons, and the exact outline of what is accepted
+//!   partition   the contact space as polygons, and the exact outline of the accepted set
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!

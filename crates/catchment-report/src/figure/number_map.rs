@@ -3,7 +3,7 @@
 //! ```text
 //!            a     b                      a     b
 //!         ┌─────┬─────┐                ┌─────┬─────┐
-//!   row 1 │ 0.5 │ 1.2 │          row 1 │  1  │ 0.9 │      maps side by side, cells of one size
+//!   row 1 │ 0.5 │ 1.2 │          row 1 │  1  │ 0.9 │      maps side by side, cells of equal size
 //!   row 2 │ 0.7 │     │          row 2 │ 1.1 │     │      NaN leaves a cell empty
 //!         └─────┴─────┘                └─────┴─────┘
 //! ```

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   seen from above        ↑ normals of the contacts      the plane holds the main direction of their horizontal parts,
-//!        ●─────────●──── u                                or where they carry straight up the way from where the half should touch;
-//!                                                         it passes through as many contacts as it can
+//!        ●─────────●──── u                                or, if they carry straight up, the direction from the expected contact;
+//!                                                         it passes through as many contacts as possible
 //! ```
 
 use super::section::{MovingHalfPose, cut};

@@ -1,7 +1,7 @@
 //! Outcomes packed for a page.
 //!
 //! ```text
-//!   cells, the first axis fastest ──▶ chunks of whole leading axes ──▶ each cell ⊕ the one a row before ──▶ deflate
+//!   cells, the first axis fastest ──▶ chunks of whole leading axes ──▶ each cell ⊕ the cell a row before ──▶ deflate
 //! ```
 //!
 //! A row is a line along the first axis. If outcomes do not change from row to row, the differences are

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   acceptance ──▶ View (up to three of the axes, the others at a value) ──▶ image    .vti, every cell with its outcome
-//!                                                                       └──▶ border   .vtp, the faces between accepted and not
-//!   trace, halves ──▶ motion   .vtp, the way, the contacts along it, both halves
+//!                                                                       └──▶ border   .vtp, the faces between accepted and rejected cells
+//!   trace, halves ──▶ motion   .vtp, the path, the contacts along it, both halves
 //! ```
 //!
 //! Lengths are in D and angles in radians, as in every machine format. An image holds cells, not points: the

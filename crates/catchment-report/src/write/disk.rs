@@ -1,7 +1,7 @@
 //! The few calls that change files, behind a common gate; tests can inject a fault into any of them.
 //!
 //! ```text
-//!   permit() ──▶ step, step, …      none begins after abandon(); those that have begun end first
+//!   permit() ──▶ step, step, …      no step begins after abandon(); steps that have begun end first
 //! ```
 //!
 //! [`abandon`] does not separate several steps under the same permit, such as an exchange and its follow-up.

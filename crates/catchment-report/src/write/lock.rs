@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   claim ──try──▶ free: ours until it is dropped
-//!           taken ─┬─ by a process that started this one ──▶ refused at once: each would wait for the other
+//!           taken ─┬─ by a parent of this process        ──▶ refused at once: each would wait for the other
 //!                  ├─ a stop is requested                ──▶ cancelled
 //!                  └─ tried again until patience is over  ──▶ refused, with the number of the process that holds it
 //! ```

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   .NAME.PID.MARK.tmp   new, not complete; after an exchange: old, to be removed
-//!   .NAME.PID.MARK.old   old, stepped aside where the system cannot exchange
+//!   .NAME.PID.MARK.old   old, moved aside if the system cannot exchange
 //! ```
 //!
 //! MARK is a digest of the text before it, which cannot occur by chance: a name with a valid mark is ours,

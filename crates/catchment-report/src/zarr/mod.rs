@@ -3,8 +3,8 @@
 //! ```text
 //!   out.zarr/          attributes: catchment (layout version), report (the JSON report)
 //!   ├── outcome        u8, 0 none · 1 aligned · 2 jammed · 3 missed · 4 undecided; (yaw, pitch, roll, y, x)
-//!   ├── height         f32, z of the COR at first contact in D, NaN without contact; same shape, where known
-//!   ├── watershed      u32, number of the watershed before merging; 4294967295 for a dam cell; where flooding decided
+//!   ├── height         f32, z of the COR at first contact in D, NaN without contact; same shape, if known
+//!   ├── watershed      u32, number of the watershed before merging; 4294967295 for a dam cell; by flooding methods
 //!   ├── watershed_merged   u32, the same after merging
 //!   └── x, y, …        f64, centres of the cells, in D and rad
 //! ```

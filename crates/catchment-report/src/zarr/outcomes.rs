@@ -2,8 +2,8 @@
 //! report announces.
 //!
 //! ```text
-//!   outcome/zarr.json   must be what is written: u8 (heights: f32) over the report's cells, its chunks, gzip
-//!   outcome/c/i/j/…     one chunk after the other: whole rows, so each goes on where the one before it ended
+//!   outcome/zarr.json   must match the written metadata: u8 (heights: f32) over the report's cells, its chunks, gzip
+//!   outcome/c/i/j/…     chunks in sequence: whole rows, so each chunk continues the previous one
 //! ```
 //!
 //! A chunk that unpacks to more than its expected size is rejected at the first excess byte.

@@ -2,11 +2,11 @@
 //!
 //! ```text
 //!   sweep.zarr/                     attributes: catchment, report (settings, largest, smallest)
-//!   ├── sum, sum_lo, sum_hi         f64, NaN where a design was refused; (axis, axis, …)
+//!   ├── sum, sum_lo, sum_hi         f64, NaN for rejected designs; (axis, axis, …)
 //!   ├── fraction, onaa_edge, …      f64
-//!   ├── x_minus, x_plus, …          f64, how far each error may go alone, in D and rad
-//!   ├── outcome                     u8, the slice through zero; (axis, …, pitch, x), where all designs have the same error box
-//!   └── aspect_ratio, …, x, pitch   f64, the values of the axes (numbers from 0 where they are words: attribute `values`)
+//!   ├── x_minus, x_plus, …          f64, single-axis limits, in D and rad
+//!   ├── outcome                     u8, the slice through zero; (axis, …, pitch, x), if all designs have the same error box
+//!   └── aspect_ratio, …, x, pitch   f64, the values of the axes (numbers from 0 if they are words: attribute `values`)
 //! ```
 
 use super::{Plan, ZarrError, coordinate, finish, outcome_attributes, storage};
