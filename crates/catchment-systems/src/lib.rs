@@ -4,10 +4,10 @@
 //! adds systems that engineers build with such a pair:
 //!
 //! ```text
-//!   catalog   published docking systems, their areas of acceptance, and where a design stands among them
+//!   catalog   published docking systems, their areas of acceptance, and the rank of a design among them
 //!   compose   two halves that both move: the region over which they meet
 //!   latch     the latching X-Face: geometry, stiffness, forces, drawings for the laser cutter
-//!   chain     chains of modules: where their last face ends up, and whether it docks
+//!   chain     chains of modules: the pose of their last face, and whether it docks
 //!   invert    wanted heights and one half give the other
 //! ```
 //!

@@ -3,7 +3,7 @@
 //! ```text
 //!            y
 //!            │ ░░░
-//!      ──────╎░0░░░╎───── x      extent along x: how far the region reaches through zero without a gap
+//!      ──────╎░0░░░╎───── x      extent along x: length of the region through zero without a gap
 //!            ░░│
 //!             ░
 //!   High  more than 0.20 D along the better of x and y      Low  less, but something      None  nothing

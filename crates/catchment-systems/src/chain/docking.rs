@@ -1,7 +1,7 @@
 //! Probability that the errors of a chain lie in a connector's area of acceptance, by exact motions.
 //!
 //! ```text
-//!   x = −lateral / D,  pitch = angle          the arriving half seen by the one that waits
+//!   x = −lateral / D,  pitch = angle          the arriving half relative to the waiting half
 //!   center_of_rotation = −b / D               the last rotor, behind the face
 //! ```
 //!

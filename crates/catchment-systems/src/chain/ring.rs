@@ -1,9 +1,9 @@
 //! The corners of the O, ranked by their effect on the closing link: error and pressing force.
 //!
 //! ```text
-//!   push  = torque / distance of the nearest corner from the docking face     a short lever, but across the approach where
+//!   push  = torque / distance of the nearest corner from the docking face     a short lever, but across the approach if
 //!                                                                             the corner lies on the face's axis
-//!   press = torque / longest lever along the normal                           what every joint can hold against a pressing force
+//!   press = torque / longest lever along the normal                           the pressing force that every joint can resist
 //! ```
 //!
 //! The dissertation selects a "kinematic arrangement" for a large torque at the connection, without further

@@ -1,7 +1,7 @@
 //! Two moving halves: the approach region, over which they meet.
 //!
 //! ```text
-//!      B's reach, turned to face A              A ⊕ B: where B's robot may be
+//!      B's reach, turned to face A              A ⊕ B: positions of B's robot
 //!         ╭───╮                                   ╭───────────╮
 //!         ╰───╯    d: from A's robot to B's       │     ·     │ ← d
 //!           ·                                     ╰───────────╯

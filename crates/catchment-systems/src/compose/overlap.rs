@@ -4,10 +4,10 @@
 //! ```text
 //!   O(d) = Σ O_ij(d)        over pairs of convex polygons, O_ij = area of their intersection
 //!
-//!   √O_ij is concave where it is not 0 (Brunn and Minkowski), so with the gradient ∇ of O_ij at d, for every δ
+//!   √O_ij is concave on its support (Brunn and Minkowski), so with the gradient ∇ of O_ij at d, for every δ
 //!
 //!   O_ij(d + δ) ≤ (√O_ij + ∇·δ / 2√O_ij)² = O_ij + ∇·δ + (∇·δ)² / 4 O_ij
-//!   O_ij(d + δ) ≤ area of A_i ∩ (B_j + d, its sides moved outwards by what a square of side 2·max|δ| about any point needs)
+//!   O_ij(d + δ) ≤ area of A_i ∩ (B_j + d, its sides moved outwards for a square of side 2·max|δ| about any point)
 //! ```
 //!
 //! The gradient is the sum of the sides of the intersection that belong to the second polygon, each as its

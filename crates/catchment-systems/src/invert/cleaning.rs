@@ -1,8 +1,8 @@
 //! Removal of pieces caused by rounding.
 //!
 //! ```text
-//!   ┌───────┬┬──────┐        ┌────────┬──────┐      two contacts with nearly one plane cross where rounding says: what lies between
-//!   │   A   ││  B   │   ─▶   │   A    │  B   │      them is narrower than anything that can be told or made
+//!   ┌───────┬┬──────┐        ┌────────┬──────┐      two contacts with nearly the same plane cross at a place set by rounding: the strip
+//!   │   A   ││  B   │   ─▶   │   A    │  B   │      between them is narrower than any feature that can be made
 //!   └───────┴┴──────┘        └────────┴──────┘
 //! ```
 //!

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   ┌──────────┐   height │╲      ┄┄╱      wanted h* (dashed) and reached h (full) along x through y = 0;
-//!   │   ▼  ▼   │          │ ╲┄┄┄┄▒▒╱       shaded where h stays below h*
+//!   │   ▼  ▼   │          │ ╲┄┄┄┄▒▒╱       shaded: h below h*
 //!   └──────────┘          └──────────── x
 //! ```
 

@@ -1,8 +1,8 @@
 //! Drawings for a laser cutter: DXF and SVG of every sheet, true to scale, in mm.
 //!
 //! ```text
-//!   front, back      the two layers, mirror images          NAME.dxf       the part as it should come out
-//!   separator        the sheet between them                 NAME-cut.dxf   where the laser's middle runs
+//!   front, back      the two layers, mirror images          NAME.dxf       the nominal part
+//!   separator        the sheet between them                 NAME-cut.dxf   the path of the laser's centre
 //!                                                           NAME-cut.svg   the same as SVG
 //! ```
 //!

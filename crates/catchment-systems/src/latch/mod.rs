@@ -5,7 +5,7 @@
 //!   f(0) ●__                       one layer, seen from the side; x right, y up, mm
 //!        │  ‾‾‾──__                  y = 0   the plane of the overhang's underside
 //!        │         ‾‾─_    hook      o       overhang: the hook covers this much of the partner's
-//!        │   arm       ╲_●           t       compliance neck, all that holds the arm
+//!        │   arm       ╲_●           t       compliance neck, the only support of the arm
 //!        │             ┌─┘ y = 0     P       its middle, about which the arm turns
 //!        │             ●─o─          The partner is the same part, turned by 180° about (L/2, 0).
 //!        │              ╲            The second layer is the mirror image.

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   C = ((L + s)/2, d/2)             the middle between the halves: d above the seat, s off sideways
-//!   θ(d) = least swing with which C is outside the hook      both arms swing alike, about their own P
-//!   N = k·θ / (r × (−n + μ·τ))       r = C − P, n the outer normal of the arm at C, τ the way that the partner slides
+//!   θ(d) = least swing that puts C outside the hook      both arms swing alike, about their own P
+//!   N = k·θ / (r × (−n + μ·τ))       r = C − P, n the outer normal of the arm at C, τ the sliding direction of the partner
 //!   F = N·(n_y + μ·|τ_y|)            per layer
 //! ```
 //!

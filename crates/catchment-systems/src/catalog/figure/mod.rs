@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   comparison           a row per known region: the halves │ cross-section along the approach │ region, unit square, ONAA
-//!                        below: every published area on one scale; of most the shape is unknown
+//!                        below: every published area on one scale; the shape of most is unknown
 //!   cone_over_x_face     the cone's circle around and inside the unit square, over the diamond of the X-Face
 //! ```
 //!

@@ -1,7 +1,7 @@
 //! Accumulation of the errors of a chain at a face.
 //!
 //! ```text
-//!   (lateral, normal, angle) of the arriving face, seen from the face that waits:
+//!   (lateral, normal, angle) of the arriving face, relative to the waiting face:
 //!
 //!             n  normal: a gap, which is not in the area of acceptance; the chain must be able to reach
 //!             ▲
@@ -9,7 +9,7 @@
 //!        waiting face
 //!
 //!   first order   Σ over terms of gradient · gradientᵀ · variance
-//!   exactly       kinematics with the drawn errors in place
+//!   exactly       kinematics with the sampled errors
 //! ```
 //!
 //! Joint errors are independent and normal; an encoder's step is uniform; links and the base may have errors

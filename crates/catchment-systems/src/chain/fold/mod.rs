@@ -1,8 +1,8 @@
 //! A chain with springs that follows commands: contact, latches, collisions.
 //!
 //! ```text
-//!   joint      torque = clamp(stiffness · (command − angle), ± stall)          slack: none
-//!   contact    two springs a face, at its two edges, where the faces would overlap
+//!   joint      torque = clamp(stiffness · (command − angle), ± stall)          slack: no torque
+//!   contact    two springs a face, at its two edges, if the faces would overlap
 //!   latch      a layer snaps when the pressing force reaches its force; then springs hold the pair
 //!
 //!   open ──press──▶ one layer ──slack: realigned──▶ one layer, aligned ──press──▶ both layers

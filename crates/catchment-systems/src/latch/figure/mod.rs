@@ -4,7 +4,7 @@
 //!   latch      the outline with its names, the four steps, the record of the press, the chart of bonding ratios
 //!   outline    the outline alone
 //!   sequence   approach, align, arms pushed outward, snapped
-//!   press      force over the way of a pair
+//!   press      force over the travel of a pair
 //!   chart      bonding ratio over overhang and neck, with the nine measured designs
 //! ```
 
