@@ -241,7 +241,7 @@ pub enum DesignDefect {
     /// Two keys that cannot stand together.
     #[error("`{key}` and `{other}` exclude each other")]
     Contradiction {
-        /// The key complained about.
+        /// The rejected key.
         key: String,
         /// The conflicting key.
         other: String,

@@ -105,7 +105,7 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// Complains about a deflection of a file that holds triangles already.
+    /// Reports an error for a deflection of a file that contains triangles already.
     fn deflection_of(&mut self, section: &Section<'t>, key: &Key, file: Option<&FileSpec>) {
         if file.is_some_and(|file| !file.is_step()) {
             self.not_its_own(section, key, "a mesh file, which holds triangles already", "a STEP file");

@@ -109,7 +109,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Complains about a part that is nothing.
+    /// Reports an error for a part without a shape.
     pub(super) fn missing_shape(&mut self, section: &Section<'t>, advice: &'static str) {
         if self.broken.is_empty() {
             let defect = DesignDefect::NoShape { key: section.path.clone(), advice };
@@ -127,7 +127,7 @@ impl<'t> Reader<'t> {
         self.report(defect, span);
     }
 
-    /// Complains about every key that `table` does not have.
+    /// Reports an error for each key that `table` does not have.
     pub(super) fn refuse_unknown_keys(&mut self, section: &Section<'t>, table: DesignTable) {
         for (name, _) in section.table {
             let written: &str = name.get_ref();
@@ -338,7 +338,7 @@ impl<'t> Reader<'t> {
         self.name("way to draw halves", &DRAWN, written)
     }
 
-    /// Complains about a key of halves that are drawn the other way.
+    /// Reports an error for a key of halves that are drawn the other way.
     pub(super) fn not_drawn_so(&mut self, section: &Section<'t>, key: &Key, is_assembled: bool) {
         if let Some(span) = section.key_span(key) {
             let [facing, assembled] = ["halves that are drawn facing +z", "halves that are drawn assembled"];

@@ -214,7 +214,7 @@ pub(super) fn part(
     if problems.is_empty() { Ok(ready) } else { Err(problems) }
 }
 
-/// Complains about a half whose width in D can hardly be meant.
+/// Reports a half with an implausible width in D.
 pub(super) fn implausible_width(corners: impl Iterator<Item = DVec3>) -> Option<MeshProblem> {
     let (lo, hi) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
     let width = (hi - lo).truncate().max_element();
