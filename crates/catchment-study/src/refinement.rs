@@ -15,7 +15,7 @@ use catchment_core::problem::Problem;
 use catchment_core::run;
 use serde::Serialize;
 
-/// Result of a method at one resolution.
+/// Result of a method at a resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refinement {

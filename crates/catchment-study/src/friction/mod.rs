@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Friction changes the path of a half and may even help, so poses are lost and gained, and the outcomes at
-//! one coefficient do not determine those at another: every pose is followed at every coefficient. The
+//! a coefficient do not determine those at another: every pose is followed at every coefficient. The
 //! *critical friction* of a pose that docks without friction is the smallest coefficient at which it fails.
 //! For a design it is defined by a stated share: up to it 95 % of the poses that dock without friction still
 //! dock. (The minimum over all poses would be zero: arbitrarily close to the border any friction has an
@@ -22,7 +22,7 @@
 //! differ at some poses. Two kinds of such poses are counted: those that dock with a tenth less friction
 //! (`hardly_held`), and those that *wedge* in a jam ([`Doubt::wedges`]).
 //!
-//! Not promised: that a pose which is lost at one coefficient is lost at all larger ones; coefficients
+//! Not promised: that a pose lost at a coefficient is lost at all larger coefficients; coefficients
 //! between the given ones are not tested.
 
 mod may_stick;
@@ -94,11 +94,11 @@ pub struct Friction {
     pub kept: Vec<RetainedShare>,
     /// Contacts with stiction at the poses that are lost first.
     pub sticks_first: FirstSticking,
-    /// Poses that are lost at some friction coefficient and dock again at a larger one.
+    /// Poses that are lost at some friction coefficient and dock again at a larger coefficient.
     pub come_back: usize,
 }
 
-/// Outcomes of the poses at one friction coefficient.
+/// Outcomes of the poses at a friction coefficient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrictionLevel {
@@ -356,7 +356,7 @@ impl Way {
         self.critical.is_some_and(|[docks, _]| docks >= friction)
     }
 
-    /// Whether it is lost at some coefficient and docks at a larger one.
+    /// Whether it is lost at some coefficient and docks at a larger coefficient.
     fn comes_back(&self) -> bool {
         let docks = |(outcome, _): &&(Outcome, FrictionAmbiguity)| *outcome == Outcome::Aligned;
         self.without == Outcome::Aligned

@@ -40,7 +40,7 @@ pub enum Pattern {
         step: [Option<f64>; 5],
         /// Largest value; by default the half-ranges of the error box.
         max: [Option<f64>; 5],
-        /// Whether to keep only points within one step of the predicted border, on either side.
+        /// Whether to keep only points within a step of the predicted border, on either side.
         along_border: bool,
     },
     /// The face rotates about a joint of the robot, which couples x and pitch.
@@ -194,7 +194,7 @@ impl Maker<'_> {
         Ok(numbered((0..total).map(pose).collect()))
     }
 
-    /// Only points within one step of the border.
+    /// Only points within a step of the border.
     fn along_border(
         &self,
         poses: Vec<Placed>,

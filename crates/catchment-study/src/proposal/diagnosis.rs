@@ -20,7 +20,7 @@ use catchment_core::disjoint::DisjointSets;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Note about a seat at another place than the drawn one, for parts that may be assembled.
+/// Note about a seat at another place than the drawn place, for parts that may be assembled.
 pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
 
 /// An assembly shares no volume but for rounding and press fits, as a share of the smaller part's.

@@ -173,13 +173,13 @@ fn told(size: [f64; 3]) -> String {
 const LEAST: f64 = 0.02;
 /// A second best with this share of the score is nearly as good.
 const NEARLY: f64 = 0.8;
-/// Parts whose boxes are closer than this, in the smaller one's middle extent, may be drawn docked.
+/// Parts whose boxes are closer than this, in the smaller part's middle extent, may be drawn docked.
 const NEAR: f64 = 0.05;
 /// Number of places for exact contact, and the smallest steepness as a share of the largest.
 const JUDGED: usize = 5;
 const JUDGED_STEEP: f64 = 0.3;
 
-/// Both halves, for exact contact and for lattices. Lengths in the smaller one's middle extent.
+/// Both halves, for exact contact and for lattices. Lengths in the smaller half's middle extent.
 struct Parts<'a> {
     halves: [&'a Half; 2],
     triangles: [sink::Triangles; 2],
@@ -233,7 +233,7 @@ impl SeatSearch {
 /// Proposes a design for two parts, to be stored at `place`; paths of the parts are relative to its folder.
 ///
 /// # Errors
-/// An invalid part or one without a unit, parts that do not dock.
+/// An invalid part, a part without a unit, parts that do not dock.
 pub fn propose(
     parts: &[PartFile; 2],
     settings: &ProposalSettings,

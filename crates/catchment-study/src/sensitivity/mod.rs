@@ -112,7 +112,7 @@ pub struct Slope {
     pub lost: usize,
 }
 
-/// The Sum at one ρ.
+/// The Sum at a given ρ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtRho {

@@ -262,7 +262,7 @@ pub(super) fn as_expected(
     sample(problem, source, &SAME, strata, motions, exec)
 }
 
-/// Factors that change only one σ.
+/// Factors that change a single σ.
 pub(super) fn alone(axis: Dof, factor: f64) -> [f64; 5] {
     let mut factors = SAME;
     factors[axis.index()] = factor;

@@ -1,4 +1,4 @@
-//! Effect of an improvement of one error: the slope of the probability by its σ, and the probability with
+//! Effect of an improvement of a single error: the slope of the probability by its σ, and the probability with
 //! that σ halved.
 //!
 //! ```text

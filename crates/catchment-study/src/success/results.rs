@@ -124,7 +124,7 @@ pub struct Failures {
     pub missed: f64,
     /// Share of the failures that could not be followed to their end.
     pub undecided: f64,
-    /// Dominant error: the one whose mean distance in σ differs most between failures and successes; null
+    /// Dominant error: the error whose mean distance in σ differs most between failures and successes; null
     /// without failures.
     pub dominating: Option<Dof>,
     /// Statistics of the failures for each error.
@@ -175,7 +175,7 @@ pub(crate) struct Slope {
     pub ci95: [f64; 2],
 }
 
-/// Effect of an improvement of one error.
+/// Effect of an improvement of a single error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Improvement {
@@ -274,7 +274,7 @@ pub struct NormalFit {
     pub ci95: Option<[f64; 2]>,
 }
 
-/// Test of one error of a fit.
+/// Test of a single error of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AxisFit {

@@ -1,4 +1,4 @@
-//! Largest factor on all errors, or on one of them, with the required success.
+//! Largest factor on all errors, or on a single error, with the required success.
 //!
 //! ```text
 //!   P ▲──╲_                    P(t): every σ multiplied by t; the same sampled errors at every t
@@ -8,8 +8,8 @@
 //!     └──────────────▶ t
 //! ```
 //!
-//! The crossing is the first from below: with every smaller tried factor the success is at least the required
-//! one. Between the two last tried factors around it, some percent apart, log t is interpolated linearly in
+//! The crossing is the first from below: with every smaller tried factor the success is at least the
+//! required success. Between the two last tried factors around it, some percent apart, log t is interpolated linearly in
 //! P; the ends of the interval are tried factors.
 
 use super::estimate::{Sample, sample};
@@ -149,13 +149,13 @@ impl Crossing {
     }
 }
 
-/// The two factors between which a value first falls below the required one.
+/// The two factors between which a value first falls below the required value.
 fn bracket(points: &[AtFactor], required: f64, value: fn(&AtFactor) -> f64) -> Option<[AtFactor; 2]> {
     let after = points.iter().position(|point| value(point) < required)?;
     Some([*points.get(after.checked_sub(1)?)?, points[after]])
 }
 
-/// The factor at which a value first falls below the required one.
+/// The factor at which a value first falls below the required value.
 fn crossing(points: &[AtFactor], required: f64, value: impl Fn(&AtFactor) -> f64) -> Crossing {
     let Some(k) = points.iter().position(|point| value(point) < required) else { return Crossing::Beyond };
     if k == 0 {

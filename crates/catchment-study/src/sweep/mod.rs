@@ -42,7 +42,7 @@ const FIGURES_BYTES: u64 = 2048;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweepSettings {
-    /// The keys and their values; the last one changes fastest.
+    /// The keys and their values; the last axis changes fastest.
     pub axes: Vec<SweepAxis>,
     /// The run for every design.
     pub run: Run,

@@ -187,7 +187,7 @@ impl Sweep {
     }
 }
 
-/// `2.387 ± 0.021`, or without the interval if there is none.
+/// `2.387 ± 0.021`, or without the interval if it is missing.
 fn sum(figures: &Figures) -> String {
     figures.sum_ci95.map_or_else(|| significant(figures.sum), |ci95| with_error(figures.sum, ci95))
 }

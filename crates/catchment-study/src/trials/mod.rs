@@ -46,7 +46,7 @@ pub struct TrialsSettings {
     pub seed: u64,
 }
 
-/// Trials at one resolution and time step.
+/// Trials at a resolution and time step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Round {

@@ -6,7 +6,7 @@
 //!          └──┘B └A─┘
 //! ```
 //!
-//! Points are flooded from low to high. If two basins meet, the shallower one ends: its climb is the level of
+//! Points are flooded from low to high. If two basins meet, the shallower basin ends: its climb is the level of
 //! the meeting minus its lowest height. Points with nothing below, and points beyond the lattice, are
 //! outlets.
 

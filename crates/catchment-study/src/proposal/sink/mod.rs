@@ -16,7 +16,7 @@
 //! Diagonal directions are included if both parts have walls along them ([`diagonals`]).
 //!
 //! Not promised: seats narrower than the fine lattice, rotations other than quarter turns, and that a steep
-//! seat is the intended one.
+//! seat is the intended seat.
 
 mod as_drawn;
 mod classes;
