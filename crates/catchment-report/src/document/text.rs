@@ -201,7 +201,7 @@ impl Page {
     }
 }
 
-/// A text in lines of at most so many characters, broken between words; words that are longer stand alone.
+/// A text in lines of at most `width` characters, broken between words; a longer word has its own line.
 fn broken(text: &str, width: usize) -> Vec<String> {
     if text.chars().count() <= width {
         return vec![text.to_owned()];

@@ -23,9 +23,9 @@ use std::fmt::Write;
 const DECADES: f64 = 5.0;
 /// Room beyond the shallowest and the deepest, as a factor.
 const MARGIN: f64 = 1.6;
-/// Smallest minima are drawn first, and at most so many: more dots than this are a blot.
+/// Maximum number of dots: more dots merge into a blot. The smallest minima are drawn first.
 const DOTS: usize = 2000;
-/// Up to so many dots that stand for several minima have their number beside them.
+/// Maximum number of dots for several minima that are labelled with their number.
 const COUNTED: usize = 60;
 /// Width of the places for 0 and for ∞, in SVG units.
 const PLACE: f64 = 34.0;

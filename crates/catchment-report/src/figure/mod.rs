@@ -183,7 +183,7 @@ fn cube(report: &Report) -> &[Interval] {
 
 #[cfg(test)]
 pub(crate) mod testing {
-    //! A pair of halves to draw, and a look at what was drawn.
+    //! A pair of halves to draw, and checks of the picture.
 
     use super::Picture;
     use crate::Report;

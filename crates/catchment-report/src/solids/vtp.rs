@@ -3,10 +3,10 @@
 //! | array | of every face |
 //! |---|---|
 //! | `body` | number of its convex body |
-//! | `fixed_piece`, `moving_piece` | the convex pieces of the halves that made it; −1 for none |
-//! | `slice`, `angle` | number of the lower slice of its angle, and the middle between both slices in rad; −1 and 0 where nothing turns |
+//! | `fixed_piece`, `moving_piece` | numbers of the convex pieces of the halves from which it was made; −1 without a piece |
+//! | `slice`, `angle` | number of the lower slice of its angle, and the middle between both slices in rad; −1 and 0 without free rotations |
 //! | `height` | z of the middle of the face, in D |
-//! | `up` | z of its outward normal where it is part of a solid: above 0 it can be met from above |
+//! | `up` | z of its outward normal, if it is part of a solid: above 0 it can be met from above |
 //!
 //! Text keeps every digit: reading it back gives the computed numbers. Corners are not shared between bodies.
 

@@ -8,7 +8,7 @@
 //! | array | of every face |
 //! |---|---|
 //! | `beyond` | three axes: outcome of the cell outside, 2 jammed, 3 missed, 4 undecided; 0 at the border of the error box |
-//! | `height` | two axes: z of the centre of rotation at first contact, in D, where it is known |
+//! | `height` | two axes: z of the centre of rotation at first contact, in D, if it is known |
 
 use super::xml::File;
 use super::{View, ViewError};

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | `outcome` | 1 aligned, 2 jammed, 3 missed, 4 undecided |
 //! | `accepted` | 1 or 0 |
-//! | `share` | how much of the cells along the axes that are not shown is accepted, 0 to 1; `accepted` where all are shown |
-//! | `height` | z of the centre of rotation at first contact, in D; NaN without contact; where it is known |
+//! | `share` | accepted share of the cells along the axes that are not shown, 0 to 1; `accepted` if all are shown |
+//! | `height` | z of the centre of rotation at first contact, in D; NaN without contact; if it is known |
 
 use super::xml::File;
 use super::{View, ViewError};

@@ -1,9 +1,9 @@
 //! A motion as VTK's `PolyData`: the path of the face centre, the contacts along it, both halves.
 //!
-//! | `part` of a cell | what it is |
+//! | `part` of a cell | content |
 //! |---|---|
-//! | 0 | a point where the halves touch, of every waypoint; its normal points from the fixed half to the moving one |
-//! | 1 | the way of the moving half's face centre, one line |
+//! | 0 | a contact point of a waypoint; its normal points from the fixed half to the moving one |
+//! | 1 | the path of the moving half's face centre, as one line |
 //! | 2, 3, 4 | the fixed half; the moving half at first contact, and at the end |
 //!
 //! Every point carries its `waypoint` (−1 for the halves), the pose error there (`x`, `y` in D, `roll`,

@@ -47,7 +47,7 @@ pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> 
     found
 }
 
-/// The deepest of every place, in order, at most so many: polygons that meet at a corner name it once.
+/// The largest shortfall of each place, in order, at most `most`: a corner that polygons share is listed once.
 pub(super) fn places(shortfalls: &[Shortfall], most: usize) -> Vec<Shortfall> {
     let mut places: Vec<Shortfall> = Vec::new();
     for short in shortfalls {

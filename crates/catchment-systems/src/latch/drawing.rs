@@ -168,7 +168,7 @@ impl Entity {
     }
 }
 
-/// A whole number of two bytes as DXF has it.
+/// A two-byte integer in the format of DXF.
 fn short(value: usize) -> String {
     format!("{value:>6}")
 }

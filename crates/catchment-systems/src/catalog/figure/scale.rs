@@ -1,4 +1,4 @@
-//! Every published area on one logarithmic scale.
+//! Every published area on a logarithmic scale.
 
 use super::super::data::{Catalog, RowSource, System};
 use super::super::facts::{Fact, Provenance};

@@ -280,7 +280,7 @@ const fn source(source: &RowSource) -> &'static str {
     }
 }
 
-/// At most so many characters.
+/// The name, cut to at most `most` characters.
 fn cut(name: &str, most: usize) -> String {
     if name.chars().count() <= most {
         return name.to_owned();

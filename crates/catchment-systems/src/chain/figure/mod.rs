@@ -22,7 +22,7 @@ const SIDE: f64 = 24.0;
 /// Top of the drawing, below title and story.
 const TOP: f64 = 66.0;
 
-/// The picture of a study: its table if it has one, else its folding, else the errors of its last face.
+/// The picture of a study: its table if present, else its folding, else the errors of its last face.
 pub fn draw(report: &ChainReport, study: &Study) -> Picture {
     if !report.lengths.is_empty() {
         return lengths::draw(report);

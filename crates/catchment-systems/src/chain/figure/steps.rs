@@ -155,7 +155,7 @@ fn diamond(svg: &mut Svg, [x, y]: [f64; 2], full: bool) {
     );
 }
 
-/// The changes in a step, in one line of text or two.
+/// The changes in a step, in a line of text or two.
 fn words(
     svg: &mut Svg,
     step: &FoldStepReport,

@@ -1,6 +1,6 @@
 //! Text formats of regions.
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
 //! | `.csv` | corners: `x,y` or `x,y,ring`, in mm or with a unit in the names of the columns (`x [cm]`) |
 //! | `.svg` | all its paths; one user unit is a mm unless the picture has a width in a unit; y is turned up |
