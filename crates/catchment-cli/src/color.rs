@@ -9,6 +9,7 @@ use miette::MietteHandlerOpts;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU8, Ordering};
+use textwrap::WordSplitter;
 
 /// When output is coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -46,13 +47,17 @@ impl Color {
     pub(crate) fn choose(self) {
         CHOSEN.store(self as u8, Ordering::Relaxed);
         let is_coloured = match self {
-            Self::Auto => return,
-            Self::Always => true,
-            Self::Never => false,
+            Self::Auto => None,
+            Self::Always => Some(true),
+            Self::Never => Some(false),
         };
         // There is one already where this runs twice in a process.
         let _ = miette::set_hook(Box::new(move |_| {
-            Box::new(MietteHandlerOpts::new().color(is_coloured).build())
+            // An option that is broken at its hyphens cannot be copied.
+            let options = MietteHandlerOpts::new().word_splitter(WordSplitter::NoHyphenation);
+            Box::new(
+                is_coloured.map_or_else(|| options.clone(), |colour| options.clone().color(colour)).build(),
+            )
         }));
     }
 

@@ -302,11 +302,14 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
     }
     row(
         "centre of rotation",
-        &format!("{} in front of the face centre", length(alignment.center_of_rotation)),
+        &format!(
+            "{} from the face centre, positive towards the other half",
+            length(alignment.center_of_rotation)
+        ),
     );
     row(
         "rho",
-        &format!("{}: the mount damps a turn of 1 rad like a shift of it", length(alignment.rotation_length)),
+        &format!("{} = √(torsional / lateral damping of the mount)", length(alignment.rotation_length)),
     );
     if alignment.symmetry > 1 {
         row("symmetry", &format!("{}-fold", alignment.symmetry));

@@ -144,7 +144,7 @@ impl Printed for TraceBody {
         let mut document = Document::default();
         let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
         document.row("method", self.method);
-        document.row("outcome", format!("{}{reason}", self.outcome.name()));
+        document.row("outcome", format!("{}{reason}", self.outcome.word()));
         document.section(None);
         if self.waypoints.is_empty() {
             document.paragraph("The halves never meet.");
@@ -153,7 +153,7 @@ impl Printed for TraceBody {
             let counts = (shown.rows.len(), self.waypoints.len());
             document.table(shown);
             document.paragraph(format!(
-                "{} of {} waypoints; height is that of the centre of rotation",
+                "{} of {} waypoints; height: z of the centre of rotation; path: turns count ρ per radian",
                 counts.0, counts.1
             ));
         }
@@ -267,7 +267,7 @@ mod tests {
         };
         let traced = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
         let text = traced.table();
-        assert!(text.starts_with("a?[2Jb\n") && text.contains("  outcome        aligned\n"), "{text}");
+        assert!(text.starts_with("a?[2Jb\n") && text.contains("  outcome        docked\n"), "{text}");
         assert!(text.contains("    0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
         let records = traced.records();
         assert_eq!(records.len(), 1 + 2 + 1);

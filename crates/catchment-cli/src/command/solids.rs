@@ -55,7 +55,11 @@ fn shape_parser() -> ValueParser {
     let shapes = [
         ("halves", "both halves as convex pieces, docked", SolidShape::Halves),
         ("swept", "the moving half, reflected and turned through its slices", SolidShape::Swept),
-        ("collision", "positions of the centre of rotation at which the halves overlap", SolidShape::Collision),
+        (
+            "collision",
+            "positions of the centre of rotation at which the halves overlap",
+            SolidShape::Collision,
+        ),
     ];
     PossibleValuesParser::new(shapes.map(|(name, help, _)| PossibleValue::new(name).help(help)))
         .map(move |name| {

@@ -234,7 +234,7 @@ impl fmt::Display for Warning {
         match self {
             Self::TouchesBorder { axes } => write!(
                 f,
-                "the accepted set reaches the border of the error box along {}: enlarge [errors] to see all of it",
+                "poses at the end of the error box still dock, along {}: enlarge [errors] in the design to see all of them",
                 axes.join(", ")
             ),
             Self::Undecided { cells } => {

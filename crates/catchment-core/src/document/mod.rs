@@ -153,6 +153,15 @@ impl Document {
     }
 }
 
+/// A method of exact motions in words: `exact quasi-static motion (descent) of 4 000 random poses, without friction`.
+pub fn exact_motions(of: &str, friction: f64) -> String {
+    if friction > 0.0 {
+        format!("exact quasi-static motion (descent) of {of}, µ = {friction} between the halves (Coulomb)")
+    } else {
+        format!("exact quasi-static motion (descent) of {of}, without friction")
+    }
+}
+
 /// A count as a share of all, with its sampling uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

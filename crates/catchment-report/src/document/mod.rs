@@ -142,14 +142,16 @@ pub struct Described<'a> {
 pub fn heading(design: &Design, samples_errors: bool) -> Document {
     let kind = match &design.connector {
         ConnectorSpec::Family(f) => {
-            format!("{}, aspect ratio {}", f.family().name(), rounded(f.aspect_ratio()))
+            format!("{}, height / width {}", f.family().name(), rounded(f.aspect_ratio()))
         }
-        ConnectorSpec::Own(_) => "own halves".to_owned(),
+        ConnectorSpec::Own(_) => "your halves".to_owned(),
     };
-    let width =
-        design.unit.map_or_else(|| "D".to_owned(), |u| format!("D = {} {}", design.width, u.symbol()));
+    let width = design.unit.map_or_else(
+        || "lengths in D, its width".to_owned(),
+        |u| format!("its width D = {} {}", design.width, u.symbol()),
+    );
     let mut document = Document::default();
-    document.row("connector", format!("{kind}; its width is {width}"));
+    document.row("connector", format!("{kind}; {width}"));
     document.row("pose errors", pose_errors(design));
     if samples_errors {
         document.row("error box", format!("{} (shares are of this box)", error_box(design)));
@@ -157,7 +159,7 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
     document.row("COR", center_of_rotation(design));
     if samples_errors {
         let rho = own_length(design, design.alignment.rotation_length);
-        document.row("ρ", format!("{rho}: the mount damps a turn of 1 rad like a shift of {rho}"));
+        document.row("ρ", format!("{rho} = √(torsional / lateral damping of the mount), your input"));
     }
     document
 }
@@ -215,15 +217,15 @@ fn error_box(design: &Design) -> String {
     ranges.join("; ")
 }
 
-/// The centre of rotation: `0.5 D before the moving face: the mount pushes here along -z`.
+/// The centre of rotation: `0.5 D ahead of the moving face`.
 fn center_of_rotation(design: &Design) -> String {
     let cor = design.alignment.center_of_rotation;
     let place = match own_length(design, cor.abs()) {
         _ if cor == 0.0 => "at the moving face's centre".to_owned(),
-        length if cor > 0.0 => format!("{length} before the moving face"),
+        length if cor > 0.0 => format!("{length} ahead of the moving face"),
         length => format!("{length} behind the moving face"),
     };
-    format!("{place}: the mount pushes here along -z")
+    format!("centre of rotation, {place}; the mount pushes here along -z")
 }
 
 /// A length that is given in D, in the unit of the design.

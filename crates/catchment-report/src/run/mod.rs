@@ -65,9 +65,7 @@ impl RunBody {
         let o = &a.outcomes;
         let open =
             if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
-        let by = if self.axes.is_empty() { "" } else { ", by the grid" };
-        document
-            .row("not docked", format!("jammed {}, missed {}{open}{by}", share(o.jammed), share(o.missed)));
+        document.row("not docked", format!("jammed {}, missed {}{open}", share(o.jammed), share(o.missed)));
         document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
         if let Some(success) = &self.success {
             let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
@@ -84,7 +82,7 @@ impl RunBody {
 
     /// The method and what it did to the halves, below the heading.
     fn describe_method(&self, document: &mut Document) {
-        document.row("method", format!("{}, {}", self.method, self.domain()));
+        document.row("method", format!("{}, of a {}", self.method_in_words(), self.domain()));
         let friction = self.friction();
         if friction > 0.0 {
             document.row("friction", format!("µ = {friction} between the halves (Coulomb)"));
@@ -145,27 +143,30 @@ impl RunBody {
         }
     }
 
+    /// The two methods that follow exact motions say so; the name stands beside it.
+    fn method_in_words(&self) -> String {
+        match self.method.as_str() {
+            "descent" => "exact quasi-static motion (descent)".to_owned(),
+            "confluence" => "exact quasi-static motion, shared by neighbours (confluence)".to_owned(),
+            other => other.to_owned(),
+        }
+    }
+
     /// Its cells or poses.
     fn domain(&self) -> String {
         if self.axes.is_empty() {
-            return format!("{} random initial poses", grouped(self.acceptance.cells));
+            return format!("sample of {} random poses", grouped(self.acceptance.cells));
         }
         let cells: Vec<String> = self.axes.iter().map(|a| a.cells.to_string()).collect();
-        format!("grid of {} = {} initial poses", cells.join(" × "), grouped(self.acceptance.cells))
+        format!("grid of {} = {} poses", cells.join(" × "), grouped(self.acceptance.cells))
     }
 
     fn describe_acceptance(&self, document: &mut Document) {
         let a = &self.acceptance;
-        let share = match upper_end(a) {
-            Some(_) => "too few sampled poses docked for more".to_owned(),
-            None => format!("{} of the error box", percent(a.fraction)),
-        };
-        document.row("AA (Sum)", format!("{}   ({share})", sum(a)));
-        document.more("area of acceptance: the volume of all pose errors that dock");
-        if a.sum_ci95.is_some() {
-            let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
-            document.more(format!("95 % CI, {} poses sampled in the error box", grouped(poses)));
-        }
+        let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
+        let by = a.sum_ci95.map(|_| format!(" (95 % CI, {} sampled poses)", grouped(poses)));
+        document.row("AA (Sum)", format!("{}{}", sum(a), by.unwrap_or_default()));
+        document.more("area of acceptance: the measure of all pose errors that dock");
         let border = a.sum_bracket.map(|ends| ends.map(significant));
         match (&border, self.certificate.is_some(), a.sample.is_some()) {
             (Some([lo, hi]), true, _) => _ = document.more(format!("certified: {lo} … {hi}")),
@@ -209,12 +210,12 @@ impl RunBody {
                     |poses| format!("all of {} sampled poses dock", grouped(poses)),
                 );
                 document.paragraph(format!(
-                    "tolerance window: all errors at once; the error box shrunk until {all} in it"
+                    "tolerance window: all errors at once; the error box shrunk in proportion until {all} in it"
                 ));
             }
             Some(_) => {
                 document.paragraph(
-                    "tolerance window: all errors at once; the error box shrunk until all its cells dock",
+                    "tolerance window: all errors at once; the error box shrunk in proportion until all its cells dock",
                 );
             }
             None => {}

@@ -15,7 +15,7 @@ pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design
     let depth = if design.unit.is_some() { units.length(found.depth) } else { format!("{} D", found.depth) };
     let most = found.residual.iter().map(|residual| residual.most).fold(0.0, f64::max);
     if found.play.iter().all(|play| play.most() < NONE) && most < NONE {
-        document.row("seat", format!("no play; docked: at rest within {depth} of the mated depth"));
+        document.row("seat", format!("docked: at rest within {depth} of the mated depth; no play there"));
         return;
     }
     document.row(

@@ -47,15 +47,14 @@ impl Subject for Friction {
         document.row(
             "method",
             format!(
-                "descent, the same {} random poses at every friction coefficient µ",
+                "exact quasi-static motion (descent) of the same {} random poses at every µ",
                 grouped(self.motions)
             ),
         );
         document.section(None).table(self.table());
         document.paragraph(format!(
-            "µ: friction coefficient. Of {} poses: lost dock without friction and not at this µ, gained the other way round; may stick dock, but Coulomb's \
-             law also lets them stick; barely stuck are lost, but dock at 0.9 µ. static test: share that docks by a check of equilibrium along the \
-             frictionless motion; its errors: poses that it gets wrong.",
+            "µ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this µ; gained: the other way \
+             round; may stick: dock, but could also stick by Coulomb's law; barely stuck: lost, but dock at 0.9 µ.",
             grouped(self.motions)
         ));
         self.describe_kept(&mut document);
@@ -84,14 +83,13 @@ impl Friction {
             Column::new("may stick").key("may_stick"),
             Column::new("barely stuck").key("hardly_held"),
             Column::data("wedged"),
-            Column::new("static test").key("static_docks"),
-            Column::new("its errors").key("static_wrong"),
+            Column::data("static_docks"),
+            Column::data("static_wrong"),
         ]);
         for rung in &self.curve {
             // Without friction there is nothing to compare with.
             let against =
                 |count: usize| if rung.friction > 0.0 { count.into() } else { Cell::shown("", count) };
-            let by_statics = tenths(rung.static_docks as f64 / self.motions.max(1) as f64);
             table.push([
                 rung.friction.into(),
                 self.motions.into(),
@@ -104,8 +102,8 @@ impl Friction {
                 against(rung.may_stick),
                 against(rung.hardly_held),
                 rung.wedged.into(),
-                Cell::shown(if rung.friction > 0.0 { by_statics } else { String::new() }, rung.static_docks),
-                against(rung.static_wrong),
+                rung.static_docks.into(),
+                rung.static_wrong.into(),
             ]);
         }
         table
@@ -118,7 +116,8 @@ impl Friction {
                 .paragraph("No pose docks without friction, so friction cannot prevent docking.");
             return;
         }
-        document.section("of the poses that dock without friction, still docking");
+        let base = self.curve.first().map_or(0, |rung| rung.aligned.count);
+        document.titled(Some(format!("of the {} that dock without friction, still docking", poses(base))));
         for kept in &self.kept {
             let friction = if kept.is_top {
                 format!("beyond µ = {}, the largest that was tried", self.top())
@@ -135,14 +134,16 @@ impl Friction {
         if features.is_empty() {
             return;
         }
-        document
-            .titled(Some(format!("contacts that stick first: of the first {} to be lost", poses(*count))));
+        document.titled(Some(format!(
+            "contacts that stick first, of the first {} to be lost (shares overlap)",
+            poses(*count)
+        )));
         for pair in features.iter().take(SHOWN) {
             let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
             document.row(
                 tenths(pair.share),
                 format!(
-                    "{}: from µ = {least}, half of them by µ = {median}",
+                    "{}: from µ = {least}, half of these poses by µ = {median}",
                     contact_in_words(&pair.fixed, &pair.moving)
                 ),
             );

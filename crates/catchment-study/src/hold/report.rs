@@ -22,12 +22,12 @@ impl Subject for HoldingForces {
         let force = self.force_unit();
         if !self.sideways.is_empty() {
             document
-                .titled(Some(format!("sideways force that the contacts withstand, in {force}")))
+                .titled(Some(format!("sideways force before the half moves, in {force}")))
                 .table(self.forces());
         }
         if !self.torques.is_empty() {
             document
-                .titled(Some(format!("torque that the contacts withstand, in {force} {}", units.unit())))
+                .titled(Some(format!("torque before the half moves, in {force} {}", units.unit())))
                 .table(self.moments(units));
         }
         let at = if self.settings.lever == 0.0 {
@@ -36,8 +36,8 @@ impl Subject for HoldingForces {
             format!("{} above", units.length(self.settings.lever))
         };
         document.section(None).paragraph(format!(
-            "Forces act {at} the face centre of the moving half, torques about the COR. guided: the half can move along the load and up, as on \
-             a linear guide. free: it can move in all free errors."
+            "Forces act {at} the face centre of the moving half, torques about the COR. guided: the half can move only along this force or about this axis, and up. \
+             free: it can move in all free errors."
         ));
         if self.slides() {
             document.paragraph(
@@ -92,7 +92,7 @@ impl HoldingForces {
     }
 
     fn forces(&self) -> Table {
-        let mut table = self.table("direction");
+        let mut table = self.table("from +x");
         let step = self.sideways.len().div_ceil(SHOWN).max(1);
         let scale = self.preload_n.unwrap_or(1.0);
         for side in self.sideways.iter().step_by(step) {
@@ -166,6 +166,7 @@ impl HoldingForces {
 /// A direction in degrees, to a tenth if needed.
 fn degrees(direction: f64) -> String {
     let degrees = direction.to_degrees();
+    let degrees = if degrees > 359.95 { 0.0 } else { degrees };
     let whole = degrees.round();
     if (degrees - whole).abs() < 0.05 { format!("{}°", whole + 0.0) } else { format!("{degrees:.1}°") }
 }

@@ -139,7 +139,7 @@ impl Candidate {
         let Self { lie, score, climb, shared, seat, .. } = self;
         if let Some([deep, play]) = self.sunk {
             return format!(
-                "{score:.2}  {lie}{}: {} deep, play {} to each side, {seat}",
+                "{score:.2}  {lie}{}: {} deep, ±{} of play half-way in, {seat}",
                 self.place_among(all, unit),
                 shown_length(deep, unit),
                 shown_length(play, unit)

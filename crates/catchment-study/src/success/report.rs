@@ -4,7 +4,7 @@ use super::{Factor, NearestFailure, NormalFit, RobotDocking, Success};
 use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
 use catchment_core::document::{
-    Cell, Column, DesignUnits, Document, Subject, Table, grouped, percent, significant,
+    Cell, Column, DesignUnits, Document, Subject, Table, exact_motions, grouped, percent, significant,
 };
 use catchment_core::pose::{Dof, PoseError};
 
@@ -27,10 +27,10 @@ impl Subject for Success {
 
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", format!("descent, {} motions", grouped(self.motions)));
-        if self.settings.friction > 0.0 {
-            document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
-        }
+        document.row(
+            "method",
+            exact_motions(&format!("{} poses", grouped(self.motions)), self.settings.friction),
+        );
         document.table(self.records());
         for robot in &self.robots {
             robot.describe(design, &mut document);
@@ -193,7 +193,7 @@ impl RobotDocking {
             let along = failures.along.iter().find(|along| along.axis == axis)?;
             let (axis, failed, docked) = (axis.name(), along.failed?, along.docked?);
             Some(format!(
-                "; dominant error {axis} (mean {failed:.1} σ in failures, {docked:.1} σ in successes)"
+                "; dominant error {axis} (mean size {failed:.1} σ in failures, {docked:.1} σ in successes)"
             ))
         });
         document.row("failures", kinds.join(", ") + &along.unwrap_or_default());
@@ -231,7 +231,7 @@ impl RobotDocking {
             Column::new("σ"),
             Column::new("success with σ halved"),
             Column::new("gain (percentage points)"),
-            Column::new(format!("σ for {required}")),
+            Column::new(format!("this σ alone for {required}")),
         ]);
         let mut is_open = false;
         for improve in &self.improve {
@@ -258,9 +258,6 @@ impl RobotDocking {
             document.paragraph("?: the gain may be 0 (its 95 % CI includes 0)");
         }
         document.row("all σ together", self.tolerable.all.in_words(&required));
-        if self.tolerable.all.is_open_below() {
-            document.more("sample more errors for a lower bound");
-        }
     }
 }
 
@@ -277,14 +274,11 @@ impl Factor {
             );
         }
         if lo <= 0.0 {
-            return format!("{required} success with every σ times {factor:.2} (95 % CI: at most {hi:.2})");
+            return format!(
+                "{required} success with every σ times {factor:.2} (95 % CI up to {hi:.2}; its lower end needs more samples)"
+            );
         }
         format!("{required} success with every σ times {factor:.2} (95 % CI {lo:.2} … {hi:.2})")
-    }
-
-    /// Whether its interval has no lower end above 0.
-    fn is_open_below(&self) -> bool {
-        self.factor > 0.0 && self.ci95[0] <= 0.0 && !self.is_less && !self.is_more
     }
 }
 

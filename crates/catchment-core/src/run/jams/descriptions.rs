@@ -32,13 +32,13 @@ impl Immobility {
         });
         match self.order {
             ImmobilityOrder::First => {
-                format!("first-order immobile: a small shift s raises the COR by {slope} s or more")
+                "first-order immobile: any small displacement raises the COR".to_owned()
             }
             ImmobilityOrder::Second => format!("second-order immobile: {ways} free to first order{bends}"),
             ImmobilityOrder::Neutral if self.free == 0 => {
                 "first-order immobile, but its smallest slope is almost 0".to_owned()
             }
-            ImmobilityOrder::Neutral => format!("neutral: {ways} free to first and second order"),
+            ImmobilityOrder::Neutral => "neutral: it can slide without rising".to_owned(),
             ImmobilityOrder::Unstable => format!("unstable: {ways} free to first order{bends}"),
         }
     }
@@ -123,7 +123,7 @@ impl<'a> RestDescriptions<'a> {
         document.row("  final pose", format!("{}{}", self.units.pose(pose), self.above(above)));
         let wide = self.extent(pose, extent);
         if !wide.is_empty() {
-            document.row("  extends over", wide);
+            document.row("  rests over", wide);
         }
     }
 
@@ -177,35 +177,35 @@ impl<'a> RestDescriptions<'a> {
         let push = self.units.length(examined.push_d);
         let Examined { back, pushed, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
-            return format!("held by friction alone; {back} of {pushed} neighbouring poses stay or return");
+            return format!("held by friction alone; {back} of {pushed} neighbouring poses end here, too");
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
                 format!(
-                    "almost level: displaced by {push} in the weakest direction it rises by {}",
+                    "almost level: displaced by {push} in its weakest direction it rises by {}",
                     self.units.fine(rise)
                 )
             }
             (Stability::Ridge, _) => {
                 format!(
-                    "unstable: displaced by {push} in the weakest direction it falls; it came to rest on a ridge"
+                    "unstable: displaced by {push} in its weakest direction it falls; the rest is on a ridge"
                 )
             }
             (_, Some(rise)) => {
                 let rise = self.units.fine(rise);
-                format!("stable: displaced by {push} in the weakest direction it rises by {rise}")
+                format!("stable: displaced by {push} in its weakest direction it rises by {rise}")
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {back} of {pushed} neighbouring poses return")
+        format!("{rise}; {back} of {pushed} neighbouring poses end here, too")
     }
 
     /// The escape height, with the end of the escape path.
     pub(in crate::run) fn escape(self, climb: f64, to: &str) -> String {
         if climb < NOTHING {
-            format!("0; without lifting it {to}")
+            format!("0: pushed sideways it {to}")
         } else {
-            format!("at most {}; lifted so far it {to}", self.units.fine(climb))
+            format!("{} or less; lifted so far it {to}", self.units.fine(climb))
         }
     }
 
@@ -235,23 +235,25 @@ impl<'a> RestDescriptions<'a> {
 
     /// The contacts, with their positions on both halves.
     pub(in crate::run) fn contacts(self, document: &mut Document, contacts: &[FeatureContact]) {
-        for (k, words) in contacts_in_words(contacts).into_iter().enumerate() {
-            document.row(if k == 0 { "  contact" } else { "" }, words);
-        }
         // Corners, edges and facets that meet at one point are one place.
         let mut places: Vec<String> = Vec::new();
-        for contact in contacts {
-            let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-            let place = format!("{fixed} of the fixed half, {moving} of the moving half");
-            if !places.contains(&place) {
-                places.push(place);
+        for (k, words) in contacts_in_words(contacts).into_iter().enumerate() {
+            let pair = |contact: &&FeatureContact| {
+                words.starts_with(&contact_in_words(&contact.fixed, &contact.moving))
+            };
+            let mut at: Vec<String> = Vec::new();
+            for contact in contacts.iter().filter(pair) {
+                let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
+                let place = format!("at {fixed} of the fixed, {moving} of the moving half as drawn");
+                if places.len() < MOST_CONTACTS && !places.contains(&place) {
+                    places.push(place.clone());
+                    at.push(place);
+                }
             }
-        }
-        for (k, place) in places.iter().take(MOST_CONTACTS).enumerate() {
-            document.row(if k == 0 { "  as drawn at" } else { "" }, place.clone());
-        }
-        if places.len() > MOST_CONTACTS {
-            document.more(format!("and at {} more points", places.len() - MOST_CONTACTS));
+            document.row(if k == 0 { "  contact" } else { "" }, words);
+            for place in at {
+                document.more(place);
+            }
         }
     }
 

@@ -5,7 +5,8 @@ use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
 use crate::document::{
-    Cell, Column, ColumnFormat, Document, Share, Subject, Table, grouped, tenths, tenths_between,
+    Cell, Column, ColumnFormat, Document, Share, Subject, Table, exact_motions, grouped, tenths,
+    tenths_between,
 };
 use crate::method::descent::HARDLY;
 
@@ -26,10 +27,8 @@ impl Subject for Jams {
 
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", format!("descent, {} random poses, no grid", grouped(self.motions)));
-        if self.settings.friction > 0.0 {
-            document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
-        }
+        let poses = format!("{} random poses", grouped(self.motions));
+        document.row("method", exact_motions(&poses, self.settings.friction));
         document.section(None).table(self.outcome_table());
         let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {

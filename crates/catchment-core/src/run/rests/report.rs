@@ -5,7 +5,9 @@ use super::super::jams::{contacts_in_words, lifted};
 use super::{RestPlace, Rests};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
-use crate::document::{Cell, Document, Share, Subject, Table, grouped, tenths, tenths_between};
+use crate::document::{
+    Cell, Document, Share, Subject, Table, exact_motions, grouped, tenths, tenths_between,
+};
 
 /// Rests that are shown.
 const SHOWN: usize = 6;
@@ -21,7 +23,7 @@ impl Subject for Rests {
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
         document.row("load", "along -z, through the COR");
-        document.row("method", format!("descent, {} random poses, no grid", grouped(self.motions)));
+        document.row("method", exact_motions(&format!("{} random poses", grouped(self.motions)), 0.0));
         let off = self.outcomes.iter().filter(|(outcome, share)| {
             matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0
         });
@@ -61,9 +63,10 @@ impl Rests {
             0 | 1 => String::new(),
             n => format!(", at {n} places that are images of each other"),
         };
-        let docked = if rest.is_docked() { ", docked" } else { "" };
+        let docked = if rest.is_docked() { ", docked" } else { ", jammed" };
         let share = tenths_between(rest.of_box.share, rest.of_box.ci95);
-        document.row(format!("rest {number}"), format!("basin {share} of the error box{docked}{images}"));
+        document
+            .row(format!("rest {number}"), format!("reached from {share} of the error box{docked}{images}"));
         places.pose(document, &rest.pose, rest.above_mated_d, &rest.extent);
         if let Some(examined) = &rest.examined {
             RestDescriptions::order(document, examined);

@@ -3,10 +3,13 @@
 use super::{ToleranceWindow, WindowCertificate, WindowDetails};
 use crate::acceptance::Outcome;
 use crate::design::Design;
-use crate::document::{Cell, Column, DesignUnits, Document, Subject, Table, grouped};
+use crate::document::{Cell, Column, DesignUnits, Document, Subject, Table, exact_motions, grouped};
+use glam::DVec3;
 
 /// Contacts of the worst pose that are shown.
 const MOST_TOUCHES: usize = 4;
+/// Contacts within this are at one place, in D.
+const ONE_PLACE: f64 = 1e-3;
 /// An error that may grow by less than this share while the others stay in the window limits it.
 const LIMITING: f64 = 0.01;
 
@@ -15,10 +18,10 @@ impl Subject for ToleranceWindow {
 
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
-        if self.settings.friction > 0.0 {
-            document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
-        }
+        document.row(
+            "method",
+            exact_motions(&format!("{} poses", grouped(self.motions)), self.settings.friction),
+        );
         document.section(None);
         self.describe(&mut document, design);
         document.section(None);
@@ -32,8 +35,8 @@ impl WindowDetails {
     pub fn describe(&self, document: &mut Document, design: &Design) {
         document.table(self.table(design));
         document.paragraph(
-            "tolerance window: all errors at once; single-axis limit: this error, all others zero; limit, others in window: this error, the \
-             others anywhere in the window",
+            "tolerance window: all errors at once; the error box shrunk in proportion. single-axis limit: this error, all others zero. limit, \
+             others in window: this error, the others anywhere in the window.",
         );
         if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
             document.paragraph("* the error box ends here: the limit may be larger");
@@ -104,14 +107,15 @@ impl WindowDetails {
             document.more(format!("rests at {}", units.pose(&worst.end)));
         }
         // Corners, edges and facets that meet at a point are listed as a single place.
-        let mut places: Vec<String> = Vec::new();
-        for place in worst.touches.iter().map(|touch| units.point(touch.point.to_array())) {
-            if !places.contains(&place) {
-                places.push(place);
+        let mut places: Vec<DVec3> = Vec::new();
+        for touch in &worst.touches {
+            if places.iter().all(|place| place.distance(touch.point) > ONE_PLACE) {
+                places.push(touch.point);
             }
         }
         for place in places.iter().take(MOST_TOUCHES) {
-            document.more(format!("contact at {place}"));
+            let place = units.point(place.to_array());
+            document.more(format!("contact at {place} from the fixed face's centre"));
         }
         match places.len().saturating_sub(MOST_TOUCHES) {
             0 => {}
