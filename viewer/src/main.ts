@@ -126,7 +126,7 @@ function build() {
             make("button", { type: "button", onclick: () => examine([0, 0, 0, 0, 0]) }, "mated"),
             make("button", { type: "button", onclick: save, title: "the motion as `catchment trace --json` has it" }, "save motion")),
         canvas, player.element, verdict, sliders.element);
-    const set = make("section", { class: "card", id: "set" }, make("h2", {}, "What is forgiven"),
+    const set = make("section", { class: "card", id: "set" }, make("h2", {}, "Accepted set"),
         make("p", { class: "legend" }, ...["aligned", "jammed", "missed"].map((name) => make("span", {}, make("i", { style: `background:var(--${name})` }), name)),
             ...(page.window ? [make("span", {}, make("i", { class: "frame", style: "border-color:var(--window)" }), "window")] : []),
             ...(report.onaa?.bounds.length ? [make("span", {}, make("i", { class: "frame dashed", style: "border-color:var(--onaa)" }), "ONAA")] : []),

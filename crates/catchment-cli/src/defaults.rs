@@ -12,7 +12,7 @@ use crate::command::unit;
 use crate::exec_args::{bytes, threads};
 use crate::failure::Failure;
 use crate::source::read_table;
-use catchment::design::{Finding, Findings, LengthUnit, SourceText};
+use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
 use catchment::suggest::nearest;
 use catchment::terminal::escaped;
 use clap::ValueEnum;
@@ -123,10 +123,10 @@ fn is_there(path: &Path) -> bool {
 }
 
 /// The defaults of a file.
-fn of_file(source: &SourceText) -> Result<Defaults, Findings> {
-    let refused = |list: Vec<Finding>| Findings { source: Some(source.clone()), list, omitted: 0 };
+fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
+    let refused = |list: Vec<Diagnostic>| Diagnostics { source: Some(source.clone()), list, omitted: 0 };
     let table = DeTable::parse(&source.text).map_err(|error| {
-        refused(vec![Finding { message: error.message().to_owned(), help: None, span: error.span() }])
+        refused(vec![Diagnostic { message: error.message().to_owned(), help: None, span: error.span() }])
     })?;
     let (mut defaults, mut list) = (Defaults::default(), Vec::new());
     let name = source.path.display().to_string();
@@ -139,7 +139,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Findings> {
                 None => format!("the keys are {}", names.join(", ")),
             };
             let message = format!("unknown key `{}`", escaped(written));
-            list.push(Finding { message, help: Some(help), span: Some(key.span()) });
+            list.push(Diagnostic { message, help: Some(help), span: Some(key.span()) });
             continue;
         };
         let text = match value.get_ref() {
@@ -149,7 +149,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Findings> {
         };
         if let Err(reason) = (known.set)(&mut defaults, text.trim(), &name) {
             let message = format!("`{}`: {reason}", known.name);
-            list.push(Finding { message, help: None, span: Some(value.span()) });
+            list.push(Diagnostic { message, help: None, span: Some(value.span()) });
         }
     }
     // The table has its keys by their names.
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
     use std::ffi::OsString;
 
-    fn read(text: &str) -> Result<Defaults, Findings> {
+    fn read(text: &str) -> Result<Defaults, Diagnostics> {
         of_file(&SourceText::new("config.toml", text))
     }
 

@@ -158,7 +158,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     if let (Err(ProposalError::NoUnit { .. }), Some((unit, source))) = (&found, defaults::get().unit) {
         running.beside_bar(|| to_stderr(&[format!("note: unit {}, from {source}", unit.symbol())]));
         let with = std::mem::take(&mut settings.with);
-        settings = Settings { with, ..self::settings(args, Some(unit))? };
+        settings = ProposalSettings { with, ..self::settings(args, Some(unit))? };
         found = propose(&parts, &settings, place, &running.exec);
     }
     let found = found.map_err(refused)?;

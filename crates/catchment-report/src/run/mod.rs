@@ -17,6 +17,8 @@ use std::borrow::Cow;
 
 /// Jams that are shown.
 const JAMS: usize = 3;
+/// Limits this near to the end of the error box, as a share of its range, are shown as open.
+const AT_BORDER: f64 = 1e-3;
 
 impl Printed for RunBody {
     fn title(&self) -> Cow<'_, str> {
@@ -171,7 +173,7 @@ impl RunBody {
         match (&border, self.certificate.is_some(), a.sample.is_some()) {
             (Some([lo, hi]), true, _) => _ = document.more(format!("certified: {lo} … {hi}")),
             (Some([lo, hi]), _, false) => {
-                _ = document.more(format!("{lo} … {hi} if its border moves by one cell"))
+                _ = document.more(format!("{lo} … {hi} if its border moves by one cell"));
             }
             _ => {}
         }
@@ -320,7 +322,8 @@ fn limits(
     let mut is_open = false;
     for axis in design.alignment.free.iter() {
         let side = window.and_then(|found| found.bounds.iter().find(|side| side.axis == axis));
-        let limit = limits.iter().find(|limit| limit.axis == axis);
+        let limit = limits.iter().find(|limit| limit.axis == axis).map(|limit| at_border(limit, design));
+        let limit = limit.as_ref();
         if side.is_none() && limit.is_none() {
             continue;
         }
@@ -342,6 +345,15 @@ fn limits(
     }
     document.table(table);
     is_open
+}
+
+/// A limit that ends within its last bisection of the error box ends at the box.
+fn at_border(limit: &ToleranceReport, design: &Design) -> ToleranceReport {
+    let end = (1.0 - AT_BORDER) * design.alignment.half_range(limit.axis);
+    let mut limit = limit.clone();
+    limit.minus_reaches_border |= limit.minus >= end;
+    limit.plus_reaches_border |= limit.plus >= end;
+    limit
 }
 
 /// A limit in the unit of the design, or in D; angles in degrees.

@@ -22,10 +22,6 @@ const MOST_COMMON: f64 = 1.0;
 impl Immobility {
     /// By which order it is held, in words.
     pub fn words(&self) -> String {
-        let slope = match self.slope {
-            [from, to] if from == to => significant(to),
-            [from, to] => format!("{} to {}", significant(from), significant(to)),
-        };
         let ways = if self.free == 1 { "one direction" } else { "some directions" };
         let bends = self.curvature.map_or_else(String::new, |curvature| {
             format!(", curvature {} per D", significant(curvature).replace('-', "−"))
