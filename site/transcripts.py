@@ -28,12 +28,11 @@ PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid
 #: Commands that take more than some seconds of a debug build, by how they begin.
 SLOW = (
     "catchment window",
-    "catchment chance designs/v-face.toml --draw 'speed=2",
-    "catchment chance designs/v-face.toml --draw speed=1",
+    "catchment dynamics designs/v-face.toml --draw 'speed=2",
+    "catchment dynamics designs/v-face.toml --draw speed=1",
     "catchment zraa designs/x-face-3d.toml --beside drop",
     "catchment friction",
     "catchment success designs/pyramid-stl.toml",
-    "catchment jams",
     "catchment rests",
     "catchment run designs/pyramid.toml",
     "catchment export out -o set.vti",
