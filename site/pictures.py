@@ -35,8 +35,8 @@ PICTURES = {
     "catalog": ["catalog -o PICTURE"],
     "chain": ["chain designs/systems/p-sequence.toml -o PICTURE"],
     "chance": [
-        "chance designs/v-face.toml --draw 'speed=2 ± 0.4' --draw 'drift_x=0 ± 1' --draw height=0.3 --draw friction=0.1..0.3 "
-        "--error-sigma 'x=0.2,pitch=20 deg' --times 0.01,0.1,3 --overall 300 --map x,pitch --cells 12 --trials 8 -o PICTURE"
+        "dynamics designs/v-face.toml --draw 'speed=2 ± 0.4' --draw 'drift_x=0 ± 1' --draw height=0.3 --draw friction=0.1..0.3 "
+        "--error-sigma 'x=0.2,pitch=20 deg' --times 0.01,0.1,3 --samples 300 --map x,pitch --resolution 12 --trials 8 -o PICTURE"
     ],
     "chance-trace": [
         "trace designs/v-face.toml --pose x=0.45 --method drop --damping 10 --push 20 --speed 2 --drift 1,0 --drop-height 0.3 --friction 0.1 -o PICTURE"
@@ -60,7 +60,7 @@ PICTURES = {
     "friction": ["friction designs/pyramid.toml -o PICTURE"],
     "hold": ["hold designs/x-face-3d.toml --preload 40 --friction 0.2 -o PICTURE"],
     "invert": ["invert designs/pyramid.toml --heights designs/systems/wanted-bowl.csv -o PICTURE"],
-    "jams": ["jams designs/v-face.toml -o PICTURE"],
+    "jams": ["rests designs/v-face.toml --jams -o PICTURE"],
     "latch": ["latch designs/systems/latch.toml -o out", "out/latch"],
     "overview": ["new v-face -o v-face.toml", "run v-face.toml -o out", "out/overview"],
     "parts": ["check designs/pyramid-assembled.toml -o PICTURE"],
@@ -69,7 +69,7 @@ PICTURES = {
     ],
     "plan": [
         "plan designs/bench-pyramid-arc.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' "
-        "--accuracy 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
+        "--repeatability 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],
     "planar-faces": ["zraa designs/s-face.toml designs/v-face.toml designs/x-face.toml -o PICTURE"],
     "planar-levers": [
@@ -87,7 +87,7 @@ PICTURES = {
     ],
     "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21,41 --halvings 1 -o PICTURE"],
     "validate": [
-        "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --accuracy 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
+        "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --repeatability 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],
 }
 #: Those that take more than ten seconds on a busy machine.
