@@ -59,7 +59,7 @@ class Design(TypedDict):
     alignment: Alignment
 
 
-class Axis(TypedDict):
+class AxisReport(TypedDict):
     """One axis of the error grid."""
 
     #: Which error.
@@ -87,7 +87,7 @@ class Outcomes(TypedDict):
     undecided: int
 
 
-class Stratum2(TypedDict):
+class Stratum(TypedDict):
     """What was seen in one stratum."""
 
     #: What it holds.
@@ -120,7 +120,7 @@ class SampleReport(TypedDict):
     #: Its 95 % interval.
     differing_ci95: list[float]
     #: Where they lay.
-    strata: list[Stratum2]
+    strata: list[Stratum]
 
 
 class AcceptanceReport(TypedDict):
@@ -271,7 +271,7 @@ class BasinReport(TypedDict):
     fraction: float
 
 
-class StepReport(TypedDict):
+class ToleranceStepReport(TypedDict):
     """A step of the accepted share over the tolerance."""
 
     #: It holds for tolerances above this.
@@ -296,7 +296,7 @@ class BasinsReport(TypedDict):
     #: The basins after merging that hold the most cells, the largest first, at most `LISTED`.
     largest: list[BasinReport]
     #: What every tolerance accepts: each step holds for tolerances above its own, up to the next one's. Steps that change the accepted set by less than `SMALLEST_STEP` of the error box are left out.
-    staircase: list[StepReport]
+    staircase: list[ToleranceStepReport]
 
 
 class WatershedsReport(TypedDict):
@@ -314,7 +314,7 @@ class WatershedsReport(TypedDict):
     moved_share: float
 
 
-class Counts2(TypedDict):
+class PartitionCounts(TypedDict):
     """How much there was of everything."""
 
     #: Polytopes of the Minkowski sum.
@@ -331,12 +331,12 @@ class PartitionReport(TypedDict):
     """A partition of the contact space."""
 
     #: Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
-    counts: Counts2
+    counts: PartitionCounts
     #: Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
     sum: float
 
 
-class Certificate2(TypedDict):
+class BoxCertificate(TypedDict):
     """What is certain of an error box."""
 
     #: Share of the error box whose every pose docks.
@@ -374,7 +374,7 @@ class Joined(TypedDict):
     wrong_ci95: list[float]
 
 
-class Settings6(TypedDict):
+class JamsSettings(TypedDict):
     """What changes the answer."""
 
     #: Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
@@ -484,7 +484,7 @@ class Sticking(TypedDict):
     wedges_from: float | None
 
 
-class WayOut(TypedDict):
+class EscapePath(TypedDict):
     """A way out of a jam."""
 
     #: How far the half must be lifted to get out, at most, in D.
@@ -511,7 +511,7 @@ class Examined(TypedDict):
     #: From which friction on it may stick; null where it touches nothing.
     sticks: Sticking | None
     #: The lowest way out that was found; null where none was.
-    way_out: WayOut | None
+    way_out: EscapePath | None
     #: Poses a little off that were followed.
     pushed: int
     #: How many of them came back.
@@ -570,7 +570,7 @@ class Jams(TypedDict):
     """Where motions rest that do not dock."""
 
     #: The settings, everything filled in.
-    settings: Settings6
+    settings: JamsSettings
     #: Random poses of the error box that were followed.
     motions: int
     #: Their outcomes.
@@ -585,7 +585,7 @@ class Jams(TypedDict):
     features: list[JammingPair]
 
 
-class Settings15(TypedDict):
+class WindowSettings(TypedDict):
     """What changes the answer."""
 
     #: Half-widths that are given, in the order of `Dof::ALL`, in D and radians: these errors occur so far, and the others are asked about.
@@ -600,7 +600,7 @@ class Settings15(TypedDict):
     friction: float
 
 
-class Side(TypedDict):
+class WindowAxis(TypedDict):
     """One error of a window, in D or radians."""
 
     #: Which error.
@@ -641,7 +641,7 @@ class Worst(TypedDict):
     touches: list[Touch]
 
 
-class Certificate(TypedDict):
+class WindowCertificate(TypedDict):
     """The evidence of random poses of the window: none of them failed."""
 
     #: How many poses.
@@ -661,9 +661,9 @@ class WindowSection(TypedDict):
     pitch: NotRequired[float]
     yaw: NotRequired[float]
     #: The settings, everything filled in.
-    settings: Settings15
+    settings: WindowSettings
     #: Every free error.
-    sides: list[Side]
+    sides: list[WindowAxis]
     #: Half-widths that were not given are so many times their proportions.
     scale: float
     #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
@@ -671,7 +671,7 @@ class WindowSection(TypedDict):
     #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
     worst: Worst | None
     #: The evidence of random poses.
-    certificate: Certificate
+    certificate: WindowCertificate
     #: Exact motions in all.
     motions: int
 
@@ -758,7 +758,7 @@ class RunReport(TypedDict):
     #: The method's settings: what else changes the answer.
     settings: Any
     #: The axes of the error grid, the first one fastest; empty for listed poses.
-    axes: list[Axis]
+    axes: list[AxisReport]
     #: The accepted set.
     acceptance: AcceptanceReport
     #: The largest axis-oriented cube; null for listed poses.
@@ -778,7 +778,7 @@ class RunReport(TypedDict):
     #: The polytopes behind the outcomes; null for all methods but `partition`.
     partition: PartitionReport | None
     #: What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
-    certificate: Certificate2 | None
+    certificate: BoxCertificate | None
     #: How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did not know it.
     joined: Joined | None
     #: Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
@@ -817,9 +817,9 @@ class WindowReport(TypedDict):
     #: ± so much of every free error, by its name, in D and radians.
     window: HalfWidths
     #: The settings, everything filled in.
-    settings: Settings15
+    settings: WindowSettings
     #: Every free error.
-    sides: list[Side]
+    sides: list[WindowAxis]
     #: Half-widths that were not given are so many times their proportions.
     scale: float
     #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
@@ -827,7 +827,7 @@ class WindowReport(TypedDict):
     #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
     worst: Worst | None
     #: The evidence of random poses.
-    certificate: Certificate
+    certificate: WindowCertificate
     #: Exact motions in all.
     motions: int
     #: Warnings about the numbers: a code and a sentence each.
@@ -866,7 +866,7 @@ class JamsReport(TypedDict):
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
     #: The settings, everything filled in.
-    settings: Settings6
+    settings: JamsSettings
     #: Random poses of the error box that were followed.
     motions: int
     #: Their outcomes.
@@ -950,7 +950,7 @@ class MethodResult(TypedDict):
     seconds: float
 
 
-class Decided(TypedDict):
+class ComparedMethod(TypedDict):
     """One method of many."""
 
     #: Its name.
@@ -988,7 +988,7 @@ class MethodsReport(TypedDict):
     #: Unit of the Sums.
     unit: str
     #: Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
-    methods: list[Decided]
+    methods: list[ComparedMethod]
     #: Of the methods that came to a result, in their order: how each two agree.
     agreement: list[list[PairAgreement]]
     #: Warnings about the numbers: a code and a sentence each.
@@ -1069,7 +1069,7 @@ class ComparisonReport(TypedDict):
     #: The second.
     second: Compared
     #: The axes of the grid on which they are compared; empty for listed poses.
-    axes: list[Axis]
+    axes: list[AxisReport]
     #: How they compare.
     comparison: Comparison
     #: Warnings about the numbers: a code and a sentence each.
