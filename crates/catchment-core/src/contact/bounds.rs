@@ -42,12 +42,12 @@ pub(super) struct Bounds<T> {
 }
 
 /// Four parts.
-pub(super) type Four = Bounds<f32x4>;
+pub(super) type BoundsOfFour = Bounds<f32x4>;
 /// A single part.
-pub(super) type One = Bounds<f32>;
+pub(super) type BoundsOfOne = Bounds<f32>;
 
 /// By how much coordinates may be wrong of parts that are up to `extent` away, in D: a dozen roundings of single precision, with room. On planes
-/// heights are wrong by so much for each of their slopes, too, which [`Four::most`] adds.
+/// heights are wrong by so much for each of their slopes, too, which [`BoundsOfFour::most`] adds.
 pub(super) fn rounding(extent: f64) -> f32 {
     (1e-6 * extent) as f32
 }
@@ -71,7 +71,7 @@ impl<T: Copy> Bounds<T> {
     }
 }
 
-impl One {
+impl BoundsOfOne {
     /// Of features in the box from `low` to `high`, up to `radius` from its middle, up to `level` along `normal`.
     pub(super) fn new(
         [low, high]: [DVec3; 2],
@@ -110,14 +110,14 @@ impl One {
     };
 }
 
-impl Four {
+impl BoundsOfFour {
     /// These four.
-    pub(super) fn of([a, b, c, d]: &[One; 4]) -> Self {
-        let three = |get: fn(&One) -> [f32; 3]| {
+    pub(super) fn of([a, b, c, d]: &[BoundsOfOne; 4]) -> Self {
+        let three = |get: fn(&BoundsOfOne) -> [f32; 3]| {
             let [a, b, c, d] = [get(a), get(b), get(c), get(d)];
             [0, 1, 2].map(|k| f32x4::from([a[k], b[k], c[k], d[k]]))
         };
-        let one = |get: fn(&One) -> f32| f32x4::from([get(a), get(b), get(c), get(d)]);
+        let one = |get: fn(&BoundsOfOne) -> f32| f32x4::from([get(a), get(b), get(c), get(d)]);
         let cone = |k: usize| [0, 1].map(|i| f32x4::from([a, b, c, d].map(|part| part.cones[k][i])));
         Self {
             center: three(|part| part.center),
@@ -295,11 +295,11 @@ impl Placed {
 
     /// Parts of the moving half in the world.
     #[inline]
-    pub(super) fn four(&self, own: &Four) -> Four {
+    pub(super) fn four(&self, own: &BoundsOfFour) -> BoundsOfFour {
         let turned =
             |by: &[[f32; 3]; 3], v: &[f32x4; 3]| by.map(|row| v[0] * row[0] + v[1] * row[1] + v[2] * row[2]);
         let center = turned(&self.rotation, &own.center);
-        let placed = Four {
+        let placed = BoundsOfFour {
             center: [0, 1, 2].map(|k| center[k] + self.position[k]),
             // The enlarged half extents of a turned box do not exceed the radius of the ball around its
             // content.

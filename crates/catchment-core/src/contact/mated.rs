@@ -214,7 +214,7 @@ fn direction(way: DVec2) -> String {
 ///      ╲_╱       ╲_╱
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fall {
+pub struct LossOfSeat {
     /// Pose error at the release; `None` if it falls by itself.
     pub from: PoseError,
     /// Pose error of its rest.
@@ -225,14 +225,14 @@ pub struct Fall {
 
 /// Motions of halves that are released slightly off the mated pose.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct About {
+pub(crate) struct ReleaseResult {
     /// The first that falls out of the seat.
-    pub(crate) fall: Option<Fall>,
+    pub(crate) fall: Option<LossOfSeat>,
     /// Largest distance from the mated pose at which they end, in the ρ-metric; 0 if it is not known.
     pub(crate) home: f64,
 }
 
-impl Fall {
+impl LossOfSeat {
     /// The problem as a sentence.
     pub fn told(&self, told: DisplayUnit) -> String {
         let let_go = match self.from {

@@ -67,7 +67,7 @@ use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::{CorPose, DofSet};
 use glam::{DMat3, DVec2, DVec3};
-use mated::About;
+use mated::ReleaseResult;
 use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
@@ -114,7 +114,7 @@ pub struct Pair {
     /// Range of the seat in yaw alone, in both directions, in radians.
     spins: OnceLock<[f64; 2]>,
     /// Motions of a half that is slightly off.
-    about_mated: OnceLock<About>,
+    about_mated: OnceLock<ReleaseResult>,
     /// Whether its seat has no rim somewhere.
     leaks: OnceLock<bool>,
     /// Seconds that a motion takes.
@@ -212,7 +212,7 @@ impl Pair {
 
     /// Motions of a half that is released slightly off the mated pose; `find` is called once to determine
     /// them.
-    pub(crate) fn about_mated(&self, find: impl FnOnce() -> About) -> About {
+    pub(crate) fn about_mated(&self, find: impl FnOnce() -> ReleaseResult) -> ReleaseResult {
         *self.about_mated.get_or_init(find)
     }
 

@@ -10,7 +10,7 @@
 //! Every facet, corner and convex edge is a leaf, so that the pairs of leaves of two trees contain every pair
 //! of features once. Queries on two trees descend both of them at once ([`super::search`]).
 
-use super::bounds::{Four, One};
+use super::bounds::{BoundsOfFour, BoundsOfOne};
 use super::candidates::FLUSH;
 use super::cone::{self, Cone};
 use super::shape::Shape;
@@ -42,7 +42,7 @@ pub(super) const SLACKS: [f64; 3] = [FLUSH, 0.1, 0.35];
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     /// Bounds of the parts in their half's frame: of the fixed half, in the world.
-    pub(super) parts: Four,
+    pub(super) parts: BoundsOfFour,
     children: [Child; 4],
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Child {
 pub(super) struct Tree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    root: Option<(Child, One)>,
+    root: Option<(Child, BoundsOfOne)>,
     /// The largest coordinate, in D.
     pub(super) extent: f64,
 }
@@ -98,10 +98,10 @@ impl Tree {
             return Child { number: self.leaves.len() as u32 - 1, kinds, is_leaf: true };
         }
         let number = self.nodes.len();
-        let mut node = Node { parts: Four::of(&[One::NONE; 4]), children: [Child::NONE; 4] };
+        let mut node = Node { parts: BoundsOfFour::of(&[BoundsOfOne::NONE; 4]), children: [Child::NONE; 4] };
         self.nodes.push(node.clone());
         let (left, right) = halves(features);
-        let mut parts = [One::NONE; 4];
+        let mut parts = [BoundsOfOne::NONE; 4];
         let mut place = 0;
         for half in [left, right] {
             let quarters = if half.len() > 1 { <[_; 2]>::from(halves(half)) } else { [half, &mut []] };
@@ -111,7 +111,7 @@ impl Tree {
                 place += 1;
             }
         }
-        node.parts = Four::of(&parts);
+        node.parts = BoundsOfFour::of(&parts);
         if is_fixed {
             node.parts = node.parts.with_planes(true);
         }
@@ -120,7 +120,7 @@ impl Tree {
     }
 
     /// All of it, unless it has no features.
-    pub(super) const fn root(&self) -> Option<(Child, One)> {
+    pub(super) const fn root(&self) -> Option<(Child, BoundsOfOne)> {
         self.root
     }
 
@@ -219,7 +219,7 @@ fn least_area(features: &[Built]) -> Option<(usize, f64)> {
 }
 
 /// Bounds of some features.
-fn bounds(features: &[Built], shapes: &[Shape]) -> One {
+fn bounds(features: &[Built], shapes: &[Shape]) -> BoundsOfOne {
     let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
     let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
     let normal = features.iter().map(|f| f.axis).sum::<DVec3>().normalize_or_zero();
@@ -235,7 +235,7 @@ fn bounds(features: &[Built], shapes: &[Shape]) -> One {
         angles =
             std::array::from_fn(|k| if off.is_nan() { PI } else { angles[k].max(off + feature.angles[k]) });
     }
-    One::new([low, high], radius, normal, level, angles.map(Cone::of))
+    BoundsOfOne::new([low, high], radius, normal, level, angles.map(Cone::of))
 }
 
 /// The features of a shape.

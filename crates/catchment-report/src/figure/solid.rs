@@ -100,21 +100,21 @@ pub(super) fn bodies(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<(), F
 const PIXELS: f64 = 2.0;
 
 /// The same, with the map from points of the world to the picture.
-fn seen(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<Seen, FigureError> {
+fn seen(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<RenderedImage, FigureError> {
     let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
     let (camera, canvas) = draw(bodies, size)?;
     svg.image(rect, &raster::encode(size[0], size[1], true, &canvas.averaged())?, false);
-    Ok(Seen { rect, camera, canvas })
+    Ok(RenderedImage { rect, camera, canvas })
 }
 
 /// A finished image.
-struct Seen {
+struct RenderedImage {
     rect: Rect,
     camera: Camera,
     canvas: Canvas,
 }
 
-impl Seen {
+impl RenderedImage {
     /// Position of a point in the picture, and whether something is in front of it.
     fn place(&self, point: DVec3) -> ([f64; 2], bool) {
         /// So much in front of a point hides it, in fine pixels: less is the facet that it lies on.

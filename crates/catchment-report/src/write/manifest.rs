@@ -36,7 +36,7 @@ pub(super) struct Manifest {
 
 /// Something in a folder that would be lost with it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Strange {
+pub(super) struct ForeignFile {
     /// Its path below the folder.
     pub name: PathBuf,
     /// It was written with the folder, and changed since.
@@ -88,13 +88,13 @@ impl Manifest {
     }
 
     /// The first thing in the folder that is not from here.
-    pub(super) fn strange(&self, folder: &Path) -> io::Result<Option<Strange>> {
+    pub(super) fn strange(&self, folder: &Path) -> io::Result<Option<ForeignFile>> {
         let folders: BTreeSet<&Path> =
             self.files.keys().flat_map(|name| Path::new(name).ancestors().skip(1)).collect();
         for (name, is_folder) in walk(folder)? {
             if is_folder {
                 if !folders.contains(name.as_path()) {
-                    return Ok(Some(Strange { name, changed: false }));
+                    return Ok(Some(ForeignFile { name, changed: false }));
                 }
                 continue;
             }
@@ -108,7 +108,7 @@ impl Manifest {
                 there => there.ok(),
             };
             if !changed || known != there.as_ref() {
-                return Ok(Some(Strange { name, changed }));
+                return Ok(Some(ForeignFile { name, changed }));
             }
         }
         Ok(None)

@@ -25,20 +25,20 @@ const METADATA_BYTES: u64 = 1 << 20;
 const CHUNK_BYTES: u64 = (CHUNK_CELLS + CHUNK_CELLS / 1024 + 1024) as u64;
 
 /// Why there are no outcomes.
-pub(super) enum Refused {
+pub(super) enum OutcomesError {
     /// The file, and its error.
     Content(PathBuf, String),
     Cancelled(Cancelled),
 }
 
-impl From<Cancelled> for Refused {
+impl From<Cancelled> for OutcomesError {
     fn from(cancelled: Cancelled) -> Self {
         Self::Cancelled(cancelled)
     }
 }
 
 /// The outcomes over `shape`, row-major; their number has been compared with the memory allowed.
-pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Outcome>, Refused> {
+pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Outcome>, OutcomesError> {
     cells(folder, "outcome", "uint8", shape, exec, |[code]: [u8; 1]| {
         let outcome = Outcome::ALL.into_iter().find(|outcome| *outcome as u8 == code);
         outcome.ok_or_else(|| format!("{code} is the code of no outcome"))
@@ -46,7 +46,11 @@ pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Ou
 }
 
 /// The heights over `shape`, row-major, in D, NaN without contact; `None` for a group without heights.
-pub(super) fn heights(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Option<Vec<f32>>, Refused> {
+pub(super) fn heights(
+    folder: &Path,
+    shape: &[usize],
+    exec: &Exec,
+) -> Result<Option<Vec<f32>>, OutcomesError> {
     if !folder.join("height").is_dir() {
         return Ok(None);
     }
@@ -61,7 +65,7 @@ fn cells<T, const N: usize>(
     shape: &[usize],
     exec: &Exec,
     value: impl Fn([u8; N]) -> Result<T, String>,
-) -> Result<Vec<T>, Refused> {
+) -> Result<Vec<T>, OutcomesError> {
     let folder = folder.join(name);
     check_metadata(&folder.join("zarr.json"), shape, kind)?;
     let chunk = chunk_shape(shape);
@@ -74,13 +78,13 @@ fn cells<T, const N: usize>(
     let mut found = Vec::new();
     let most: usize = shape.iter().product();
     if found.try_reserve_exact(most).is_err() {
-        return Err(Refused::Content(folder, format!("there is no memory for its {most} cells")));
+        return Err(OutcomesError::Content(folder, format!("there is no memory for its {most} cells")));
     }
     for number in 0..grid.iter().product() {
         exec.check()?;
         let place = unravel(number, &grid);
         let path = place.iter().fold(folder.join("c"), |path, k| path.join(k.to_string()));
-        let refused = |reason| Refused::Content(path.clone(), reason);
+        let refused = |reason| OutcomesError::Content(path.clone(), reason);
         let bytes = unpacked(&path, cells, N).map_err(refused)?;
         let inside = (shape[cut] - place[cut] * chunk[cut]).min(chunk[cut]) * row;
         for bytes in bytes.as_chunks().0.iter().take(inside) {
@@ -104,8 +108,8 @@ fn unpacked(path: &Path, cells: usize, width: usize) -> Result<Vec<u8>, String> 
 }
 
 /// Refuses an array that this program would not have written over these cells.
-fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), Refused> {
-    let bad = |reason: String| Refused::Content(path.to_owned(), reason);
+fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), OutcomesError> {
+    let bad = |reason: String| OutcomesError::Content(path.to_owned(), reason);
     let bytes = bounded::read(path, METADATA_BYTES).map_err(|error| bad(error.to_string()))?;
     let found: Value = serde_json::from_slice(&bytes).map_err(|error| bad(error.to_string()))?;
     if found["shape"] != json!(shape) {

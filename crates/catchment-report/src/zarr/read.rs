@@ -2,7 +2,7 @@
 //! are read up to a limit, numbers are checked before use, and only layouts that this program writes are
 //! accepted.
 
-use super::outcomes::{self, Refused};
+use super::outcomes::{self, OutcomesError};
 use super::{LAYOUT, ZarrError};
 use crate::{Report, bounded};
 use catchment_core::acceptance::{Acceptance, Domain};
@@ -56,8 +56,8 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     exec.ensure_fits("the outcomes of a stored result", cells as u64, |_| vec![Advice::MoreMemory])?;
     let shape: Vec<usize> = grid.axes.iter().rev().map(|axis| axis.cells).collect();
     let outcomes = outcomes::read(path, &shape, exec).map_err(|refused| match refused {
-        Refused::Content(path, reason) => at(&path, reason),
-        Refused::Cancelled(cancelled) => cancelled.into(),
+        OutcomesError::Content(path, reason) => at(&path, reason),
+        OutcomesError::Cancelled(cancelled) => cancelled.into(),
     })?;
     let warnings = report.warnings.iter().map(|doubt| doubt.warning.clone()).collect();
     let acceptance = Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings };
@@ -80,8 +80,8 @@ pub fn read_heights(path: &Path, grid: &Grid, exec: &Exec) -> Result<Option<Vec<
     exec.ensure_fits("the heights of a stored result", bytes, |_| vec![Advice::MoreMemory])?;
     let shape: Vec<usize> = grid.axes.iter().rev().map(|axis| axis.cells).collect();
     outcomes::heights(path, &shape, exec).map_err(|refused| match refused {
-        Refused::Content(path, reason) => ZarrError::Content { path, reason },
-        Refused::Cancelled(cancelled) => cancelled.into(),
+        OutcomesError::Content(path, reason) => ZarrError::Content { path, reason },
+        OutcomesError::Cancelled(cancelled) => cancelled.into(),
     })
 }
 

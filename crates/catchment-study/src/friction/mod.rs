@@ -190,7 +190,7 @@ pub enum FrictionError {
 }
 
 /// Results for a single pose.
-struct Way {
+struct PoseByFriction {
     /// Outcome without friction, and at each coefficient together with the cases that Coulomb's law leaves
     /// open.
     without: Outcome,
@@ -242,7 +242,7 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
     let without = descent::DescentSettings::default();
     let top = settings.frictions.last().copied().unwrap_or_default();
     let done = AtomicUsize::new(0);
-    let ways: Vec<Way> = exec.install(|| {
+    let ways: Vec<PoseByFriction> = exec.install(|| {
         poses
             .par_iter()
             .map_init(
@@ -252,7 +252,7 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
                 },
                 |(free, followers), pose| {
                     exec.check()?;
-                    let way = Way::of(problem, pose, free, followers, &settings.frictions);
+                    let way = PoseByFriction::of(problem, pose, free, followers, &settings.frictions);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     exec.report(done as f64 / poses.len() as f64, "poses");
                     Ok(way)
@@ -317,7 +317,7 @@ impl StickingPair {
     }
 }
 
-impl Way {
+impl PoseByFriction {
     fn of(
         problem: &Problem,
         pose: &PoseError,
@@ -364,13 +364,13 @@ impl Way {
     }
 }
 
-fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<FrictionLevel> {
+fn rungs(frictions: &[f64], ways: &[PoseByFriction]) -> Vec<FrictionLevel> {
     let rung = |(k, friction): (Option<usize>, f64)| {
-        let at = |way: &Way| k.map_or((way.without, FrictionAmbiguity::default()), |k| way.at[k]);
-        let count = |is: &dyn Fn(&Way) -> bool| ways.iter().filter(|way| is(way)).count();
-        let docks = |way: &Way| at(way).0 == Outcome::Aligned;
-        let docked = |way: &Way| way.without == Outcome::Aligned;
-        let by_statics = |way: &Way| docked(way) && way.holds > friction;
+        let at = |way: &PoseByFriction| k.map_or((way.without, FrictionAmbiguity::default()), |k| way.at[k]);
+        let count = |is: &dyn Fn(&PoseByFriction) -> bool| ways.iter().filter(|way| is(way)).count();
+        let docks = |way: &PoseByFriction| at(way).0 == Outcome::Aligned;
+        let docked = |way: &PoseByFriction| way.without == Outcome::Aligned;
+        let by_statics = |way: &PoseByFriction| docked(way) && way.holds > friction;
         let ended = |outcome: Outcome| Share::of(count(&|way| at(way).0 == outcome), ways.len());
         FrictionLevel {
             friction,
@@ -393,7 +393,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<FrictionLevel> {
 
 /// Quantiles of the critical friction, with intervals by order statistics (Conover, *Practical Nonparametric Statistics*, 3.2): ranks
 /// n q ± 1.96 √(n q (1 − q)), rounded outwards.
-fn kept(ways: &[Way], top: f64) -> Vec<RetainedShare> {
+fn kept(ways: &[PoseByFriction], top: f64) -> Vec<RetainedShare> {
     let mut critical: Vec<f64> = ways
         .iter()
         .filter(|way| way.without == Outcome::Aligned)
@@ -422,7 +422,7 @@ fn kept(ways: &[Way], top: f64) -> Vec<RetainedShare> {
 }
 
 /// The poses that are lost first, each with a friction at which it is.
-fn first_lost(poses: &[PoseError], ways: &[Way]) -> Vec<(PoseError, f64)> {
+fn first_lost(poses: &[PoseError], ways: &[PoseByFriction]) -> Vec<(PoseError, f64)> {
     let docked = ways.iter().filter(|way| way.without == Outcome::Aligned).count();
     let lost = poses.iter().zip(ways).filter_map(|(pose, way)| way.critical.map(|[_, fails]| (*pose, fails)));
     let mut lost: Vec<(PoseError, f64)> = lost.collect();

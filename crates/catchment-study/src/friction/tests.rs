@@ -88,7 +88,7 @@ fn tallies_add_up_and_threads_change_nothing() {
 
 #[test]
 fn the_interval_of_a_quantile_holds_it() {
-    let way = |critical: f64| Way {
+    let way = |critical: f64| PoseByFriction {
         without: Outcome::Aligned,
         at: Vec::new(),
         holds: 0.0,
@@ -97,7 +97,7 @@ fn the_interval_of_a_quantile_holds_it() {
     // Critical frictions all over [0, 1), of which the ladder sees those below 0.5: 90 % are kept up to 0.1.
     let of = |seed: u64| {
         let stream = catchment_core::acceptance::Stream::new(seed);
-        let ways: Vec<Way> = (0..400).map(|k| way(stream.uniform(k))).collect();
+        let ways: Vec<PoseByFriction> = (0..400).map(|k| way(stream.uniform(k))).collect();
         kept(&ways, 0.5)
     };
     let hold = |share: usize, truth: f64| {

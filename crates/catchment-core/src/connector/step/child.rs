@@ -49,9 +49,9 @@ const TRIES: usize = 1000;
 static FOLDERS: AtomicU64 = AtomicU64::new(0);
 
 /// An empty folder that only this user may enter, and that goes when it is no longer needed.
-struct Nowhere(PathBuf);
+struct PrivateFolder(PathBuf);
 
-impl Nowhere {
+impl PrivateFolder {
     fn make() -> io::Result<Self> {
         let home = absolute(std::env::temp_dir())?;
         let mut builder = DirBuilder::new();
@@ -72,7 +72,7 @@ impl Nowhere {
     }
 }
 
-impl Drop for Nowhere {
+impl Drop for PrivateFolder {
     fn drop(&mut self) {
         // A failure to remove files of the child is harmless.
         let _ = std::fs::remove_dir_all(&self.0);
@@ -87,9 +87,9 @@ fn absolute_entries(paths: Option<OsString>) -> Option<OsString> {
 }
 
 /// A child process that ends with its owner.
-struct Started(Child);
+struct OwnedChild(Child);
 
-impl Drop for Started {
+impl Drop for OwnedChild {
     fn drop(&mut self) {
         // It may have ended already.
         let _ = self.0.kill();
@@ -108,7 +108,7 @@ pub(super) fn run(
     let name = program.to_string_lossy().into_owned();
     let failed =
         |error: io::Error| StepProblem::NoPython { program: name.clone(), message: error.to_string() };
-    let nowhere = Nowhere::make().map_err(failed)?;
+    let nowhere = PrivateFolder::make().map_err(failed)?;
     // A path is relative to the current folder; a bare name is looked up in the search path.
     let is_path = Path::new(&program).components().count() > 1;
     let program = if is_path { absolute(&program).map_err(failed)?.into_os_string() } else { program };
@@ -119,7 +119,7 @@ pub(super) fn run(
     };
     command.current_dir(&nowhere.0);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = Started(command.spawn().map_err(failed)?);
+    let mut child = OwnedChild(command.spawn().map_err(failed)?);
     if let Some(mut stdin) = child.0.stdin.take() {
         // If the child stops reading early, its reply contains the reason.
         thread::Builder::new().spawn(move || drop(stdin.write_all(&input))).map_err(failed)?;

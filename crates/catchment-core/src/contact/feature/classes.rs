@@ -20,9 +20,9 @@ const MOST_FACETS: usize = 20_000;
 
 /// The turns and reflections that map a half onto itself, the identity first.
 #[derive(Debug, Clone)]
-pub(crate) struct Turns(pub(crate) Vec<DMat3>);
+pub(crate) struct Symmetries(pub(crate) Vec<DMat3>);
 
-impl Turns {
+impl Symmetries {
     pub(super) fn of(half: &Half) -> Self {
         let mut found = vec![DMat3::IDENTITY];
         let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>();
@@ -48,13 +48,13 @@ fn candidates() -> Vec<DMat3> {
 /// Creases to be found by their places.
 struct Creases {
     list: Vec<Crease>,
-    middles: Places,
+    middles: PointIndex,
 }
 
 impl Creases {
     fn of(half: &Half) -> Self {
         let list = crease::of(half);
-        let middles = Places::of(list.iter().map(Crease::middle));
+        let middles = PointIndex::of(list.iter().map(Crease::middle));
         Self { list, middles }
     }
 
@@ -71,7 +71,7 @@ impl Creases {
 }
 
 /// The class of every feature: the smallest number among its symmetric images.
-pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) -> Vec<u32> {
+pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Symmetries) -> Vec<u32> {
     let mut sets = DisjointSets::new(count);
     let faces: Vec<u32> = surfaces.iter().flat_map(|lookup| &lookup.faces).copied().collect();
     let edge = |crease: &Crease| {
@@ -83,7 +83,7 @@ pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) 
         .iter()
         .flat_map(|lookup| lookup.corners.iter().map(|(v, feature)| (lookup.vertices[*v as usize], *feature)))
         .collect();
-    let places = Places::of(corners.iter().map(|(place, _)| *place));
+    let places = PointIndex::of(corners.iter().map(|(place, _)| *place));
     for turn in &turns.0 {
         for crease in &creases.list {
             let Some(image) = creases.image(crease, turn) else { continue };
@@ -107,9 +107,9 @@ pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) 
 }
 
 /// Points to be found by their place.
-struct Places(Vec<(DVec3, u32)>);
+struct PointIndex(Vec<(DVec3, u32)>);
 
-impl Places {
+impl PointIndex {
     fn of(points: impl Iterator<Item = DVec3>) -> Self {
         let mut places: Vec<(DVec3, u32)> = points.zip(0u32..).collect();
         places.sort_by(|(a, j), (b, k)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(j.cmp(k)));

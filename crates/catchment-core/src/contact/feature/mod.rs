@@ -28,7 +28,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
 mod classes;
-pub(crate) use classes::Turns;
+pub(crate) use classes::Symmetries;
 
 /// Cosine of 30°: facets that meet at less belong to one face. A round of thirteen sides is one face, a
 /// chamfer of 45° is another.
@@ -147,7 +147,7 @@ pub struct Features {
 struct Anatomy {
     features: Vec<Feature>,
     classes: Vec<u32>,
-    turns: Turns,
+    turns: Symmetries,
     surfaces: Vec<Lookup>,
 }
 
@@ -207,7 +207,7 @@ impl Features {
     }
 
     /// The turns and reflections about the approach axis that map a half onto itself.
-    pub(crate) fn turns(&self, side: HalfRole) -> &Turns {
+    pub(crate) fn turns(&self, side: HalfRole) -> &Symmetries {
         &self.halves[index(side)].turns
     }
 
@@ -232,7 +232,7 @@ impl Anatomy {
         for (number, surface) in half.surfaces.iter().enumerate() {
             surfaces.push(Lookup::of(surface, number, facing, top, &mut features));
         }
-        let turns = Turns::of(half);
+        let turns = Symmetries::of(half);
         let classes = classes::of(half, &surfaces, features.len(), &turns);
         Self { features, classes, turns, surfaces }
     }

@@ -18,7 +18,7 @@ mod pass;
 pub(super) use lists::{Lists, Passing, Touching};
 pub(super) use near::Gaps;
 
-use super::bounds::{Four, Placed, rounding};
+use super::bounds::{BoundsOfFour, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
 use super::shape::Shape;
@@ -191,7 +191,7 @@ impl<'a> Turned<'a> {
         &self,
         fixed: &Side<'_>,
         moving: &Side<'_>,
-        test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
+        test: impl FnOnce(&BoundsOfFour, &BoundsOfFour) -> (u32, [f32; 4], [f32; 4]),
         mut look: impl FnMut(&Side<'_>, &Side<'_>, [f32; 2]),
     ) {
         self.divided.set(self.divided.get() + 1);
@@ -217,9 +217,9 @@ impl<'a> Turned<'a> {
     #[inline]
     fn test(
         &self,
-        fixed: &Four,
-        moving: &Four,
-        test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
+        fixed: &BoundsOfFour,
+        moving: &BoundsOfFour,
+        test: impl FnOnce(&BoundsOfFour, &BoundsOfFour) -> (u32, [f32; 4], [f32; 4]),
     ) -> (u32, [f32; 4], [f32; 4]) {
         let (mut alive, least, most) = test(fixed, moving);
         if let Some(slack) = self.cones.filter(|_| alive != 0) {
@@ -253,9 +253,10 @@ impl<'a> Turned<'a> {
     }
 
     /// Both halves, unless one has no features: their roots, and the bounds of each, four times.
-    fn roots(&self) -> Option<([Child; 2], [Four; 2])> {
+    fn roots(&self) -> Option<([Child; 2], [BoundsOfFour; 2])> {
         let ((fixed, f), (moving, m)) = (self.trees.fixed.root()?, self.trees.moving.root()?);
-        let bounds = [Four::of(&[f; 4]).with_planes(true), self.placed.four(&Four::of(&[m; 4]))];
+        let bounds =
+            [BoundsOfFour::of(&[f; 4]).with_planes(true), self.placed.four(&BoundsOfFour::of(&[m; 4]))];
         Some(([fixed, moving], bounds))
     }
 
@@ -367,7 +368,7 @@ impl Lowered<'_> {
         // Without a ceiling, parts lower than the best height so far do not count.
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY).max(self.floor);
         let low = if self.asked.ceiling == f64::INFINITY { best as f32 } else { f32::NEG_INFINITY };
-        let test = |f: &Four, m: &Four| {
+        let test = |f: &BoundsOfFour, m: &BoundsOfFour| {
             let (most, beside) = f.most(m, MARGIN as f32, rounding);
             let counts = beside & most.simd_ge(f32x4::splat(low - 2.0 * rounding));
             (counts.to_bitmask(), f.least(m).to_array(), most.to_array())
@@ -407,7 +408,7 @@ const LARGER: f32 = 1.25;
 #[derive(Debug, Clone, Copy)]
 struct Side<'a> {
     child: Child,
-    four: &'a Four,
+    four: &'a BoundsOfFour,
     lane: usize,
 }
 

@@ -9,7 +9,7 @@
 use super::lists::{Lists, Pairs, Touching};
 use super::{DIVIDED, Number, Side, Trees, Turned, meeting, overhang};
 use crate::contact::Pair;
-use crate::contact::bounds::Four;
+use crate::contact::bounds::BoundsOfFour;
 use crate::contact::candidates::{Counts, Sieve};
 use crate::contact::element::Element;
 use crate::contact::tree::SLACKS;
@@ -62,7 +62,7 @@ impl Close<'_> {
         }
         let turned = *turned;
         let reach = [gaps.front as f32, gaps.deep as f32];
-        let test = |f: &Four, m: &Four| {
+        let test = |f: &BoundsOfFour, m: &BoundsOfFour| {
             let near = f.is_near(m, reach, turned.cones, (&turned.placed, turned.rounding));
             (near.to_bitmask(), [0.0; 4], [0.0; 4])
         };
@@ -95,7 +95,7 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
             return;
         }
         let reach = [self.reach; 2];
-        let test = |f: &Four, m: &Four| {
+        let test = |f: &BoundsOfFour, m: &BoundsOfFour| {
             (f.is_near(m, reach, None, (&turned.placed, turned.rounding)).to_bitmask(), [0.0; 4], [0.0; 4])
         };
         turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));

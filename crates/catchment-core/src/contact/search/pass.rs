@@ -3,7 +3,7 @@
 use super::lists::{Lists, Passing};
 use super::{DIVIDED, Side, Trees, Turned};
 use crate::contact::Pair;
-use crate::contact::bounds::Four;
+use crate::contact::bounds::BoundsOfFour;
 use crate::contact::candidates::Counts;
 use crate::contact::overlap::{Frames, MARGIN};
 use crate::contact::tree::{Child, Kind, Leaf};
@@ -28,7 +28,7 @@ impl<F: Fn(&Leaf, &Leaf) -> bool> Any<'_, F> {
                 (self.is)(turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
             return;
         }
-        let test = |f: &Four, m: &Four| {
+        let test = |f: &BoundsOfFour, m: &BoundsOfFour| {
             let near = f.is_near(m, [MARGIN as f32; 2], None, (&turned.placed, turned.rounding));
             (near.to_bitmask(), [0.0; 4], [0.0; 4])
         };

@@ -24,22 +24,22 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 /// A box that can be reached at a height; ordered by the lowest height, then by the smaller number.
 #[derive(PartialEq)]
-struct Reached {
+struct ReachableBox {
     height: f64,
     number: usize,
     /// The box from which it was reached; itself for a source.
     from: usize,
 }
 
-impl Eq for Reached {}
+impl Eq for ReachableBox {}
 
-impl Ord for Reached {
+impl Ord for ReachableBox {
     fn cmp(&self, other: &Self) -> Ordering {
         other.height.total_cmp(&self.height).then(other.number.cmp(&self.number))
     }
 }
 
-impl PartialOrd for Reached {
+impl PartialOrd for ReachableBox {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -52,32 +52,32 @@ fn walk(
     exec: &Exec,
     sources: impl Iterator<Item = usize>,
     height: impl Fn(&Cell) -> Option<f64>,
-    mut visit: impl FnMut(&Reached) -> Onward,
+    mut visit: impl FnMut(&ReachableBox) -> Expansion,
 ) -> Result<(), Cancelled> {
     let mut open = BinaryHeap::new();
     let mut taken = 0usize;
     let mut seen = vec![false; tree.cells.len()];
-    let mut push = |open: &mut BinaryHeap<Reached>, number: usize, from: usize, way: f64| {
+    let mut push = |open: &mut BinaryHeap<ReachableBox>, number: usize, from: usize, way: f64| {
         if !seen[number]
             && let Some(own) = height(&tree.cells[number])
         {
             seen[number] = true;
-            open.push(Reached { height: own.max(way), number, from });
+            open.push(ReachableBox { height: own.max(way), number, from });
         }
     };
     sources.for_each(|number| push(&mut open, number, number, f64::NEG_INFINITY));
     while let Some(reached) = open.pop() {
-        let Reached { height, number, .. } = reached;
+        let ReachableBox { height, number, .. } = reached;
         taken += 1;
         if taken.is_multiple_of(BETWEEN) {
             exec.check()?;
         }
         match visit(&reached) {
-            Onward::Go => {
+            Expansion::Go => {
                 let faces = tree.cells[number].faces.iter();
                 faces.for_each(|face| push(&mut open, face.number(), number, height));
             }
-            Onward::End => break,
+            Expansion::End => break,
         }
     }
     Ok(())
@@ -91,7 +91,7 @@ const BETWEEN: usize = 1024;
 const OVER_A_PATH: f64 = 1e-6;
 
 /// Whether to go on from a box.
-enum Onward {
+enum Expansion {
     Go,
     End,
 }
@@ -123,12 +123,12 @@ impl Seat<'_> {
     /// [`Cancelled`] if a stop is requested.
     pub(super) fn reach(&self, tree: &Tree, exec: &Exec) -> Result<Vec<bool>, Cancelled> {
         let mut in_seat = vec![false; tree.cells.len()];
-        walk(tree, exec, self.boxes(tree).into_iter(), floor, |&Reached { number, height, .. }| {
+        walk(tree, exec, self.boxes(tree).into_iter(), floor, |&ReachableBox { number, height, .. }| {
             if height > self.level + OVER_A_PATH {
-                return Onward::End;
+                return Expansion::End;
             }
             in_seat[number] = true;
-            Onward::Go
+            Expansion::Go
         })?;
         Ok(in_seat)
     }
@@ -202,7 +202,7 @@ impl EscapeRoute {
         let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
         let mut came_from = vec![usize::MAX; tree.cells.len()];
         let more = tree.cells.len() / PART_BLOCKING;
-        walk(tree, exec, seat.boxes(tree).into_iter(), floor, |&Reached { number, height, from }| {
+        walk(tree, exec, seat.boxes(tree).into_iter(), floor, |&ReachableBox { number, height, from }| {
             came_from[number] = from;
             let cell = &tree.cells[number];
             // From a cell known to dock every motion returns to the seat; beyond the border of the error box
@@ -216,7 +216,7 @@ impl EscapeRoute {
             }
             let out = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
             let enough = if out { LEAST_BLOCKING } else { MOST_BLOCKING }.max(more);
-            if blocking.len() >= enough { Onward::End } else { Onward::Go }
+            if blocking.len() >= enough { Expansion::End } else { Expansion::Go }
         })?;
         Ok(Self { level: level.unwrap_or(f64::INFINITY), inside, blocking, came_from })
     }
@@ -269,9 +269,9 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Esc
         .map(|(k, _)| k);
     let sources: Vec<usize> = seat.boxes(tree).into_iter().chain(unknown).collect();
     let mut way = vec![f64::INFINITY; tree.cells.len()];
-    walk(tree, exec, sources.into_iter(), floor, |&Reached { number, height, .. }| {
+    walk(tree, exec, sources.into_iter(), floor, |&ReachableBox { number, height, .. }| {
         way[number] = height;
-        Onward::Go
+        Expansion::Go
     })?;
     let lone = |cell: &Cell, way: f64| {
         cell.height.is_none_or(|height| height.up < way && way > seat.level + OVER_A_PATH)
@@ -301,9 +301,9 @@ pub(super) fn retention(
     walk(tree, exec, seat.boxes(tree).into_iter(), roof, |reached| match tree.cells[reached.number].label {
         Some(Label::Jams | Label::Leaves) => {
             out = reached.height;
-            Onward::End
+            Expansion::End
         }
-        _ => Onward::Go,
+        _ => Expansion::Go,
     })?;
     Ok([(level - seat.mated).max(0.0), out - seat.mated])
 }

@@ -55,7 +55,7 @@ struct Piece {
 }
 
 /// Result of examining a piece.
-enum Look {
+enum PieceCheck {
     /// The condition holds all over it.
     Holds,
     /// Its halves may decide.
@@ -176,19 +176,19 @@ impl Growth<'_> {
             let seen = self.look(&open, |piece, nearby| {
                 let survey = Survey::of(self.bodies, &piece.poses, &piece.among, nearby);
                 if holds(&survey, &piece.poses) {
-                    Look::Holds
+                    PieceCheck::Holds
                 } else if is_divisible(&piece.poses, whole) {
-                    Look::Open(survey.numbers())
+                    PieceCheck::Open(survey.numbers())
                 } else {
-                    Look::Fails
+                    PieceCheck::Fails
                 }
             })?;
             let mut next = Vec::new();
             for (piece, look) in open.iter().zip(seen) {
                 match look {
-                    Look::Holds => {}
-                    Look::Open(among) => next.extend(halves(&piece.poses, whole, &among)),
-                    Look::Fails => return Ok((false, spent)),
+                    PieceCheck::Holds => {}
+                    PieceCheck::Open(among) => next.extend(halves(&piece.poses, whole, &among)),
+                    PieceCheck::Fails => return Ok((false, spent)),
                 }
             }
             open = next;

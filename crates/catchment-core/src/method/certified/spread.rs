@@ -74,7 +74,7 @@ fn back(
     let leads_on =
         |to: &Cell, from: &Cell, face: Face| through(from) && goes(from, to, face.axis(), !face.above);
     let mut leads = chained(tree, &sources, leads_on, exec)?;
-    let way = Way { tree, sources: &sources, leads: &leads };
+    let way = SourceChains { tree, sources: &sources, leads: &leads };
     let ruled_out: Vec<Vec<usize>> = exec.install(|| {
         let ruled_out = |bearing: usize| way.ruled_out(bearing, exec);
         (0..tree.bearings.len()).into_par_iter().map(ruled_out).collect::<Result<_, Cancelled>>()
@@ -86,7 +86,7 @@ fn back(
 }
 
 /// Chains of faces to sources.
-struct Way<'a> {
+struct SourceChains<'a> {
     tree: &'a Tree,
     sources: &'a [usize],
     /// The leaves that such chains lead through.
@@ -96,20 +96,20 @@ struct Way<'a> {
 /// A leaf that a source may reach, and the distance reached along a bearing; ordered by the farthest, then by
 /// the smaller number.
 #[derive(PartialEq)]
-struct Far {
+struct FarthestLeaf {
     farthest: f64,
     number: usize,
 }
 
-impl Eq for Far {}
+impl Eq for FarthestLeaf {}
 
-impl Ord for Far {
+impl Ord for FarthestLeaf {
     fn cmp(&self, other: &Self) -> Ordering {
         self.farthest.total_cmp(&other.farthest).then(other.number.cmp(&self.number))
     }
 }
 
-impl PartialOrd for Far {
+impl PartialOrd for FarthestLeaf {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -118,7 +118,7 @@ impl PartialOrd for Far {
 /// Rounding of positions along a bearing, in D.
 const ROUNDING: f64 = 1e-9;
 
-impl Way<'_> {
+impl SourceChains<'_> {
     /// The leaves all of whose chains would have to go back along a bearing: the farthest reach along it of
     /// all leaves that may lead on stays behind the whole leaf.
     ///
@@ -132,10 +132,10 @@ impl Way<'_> {
         for number in sources {
             farthest[*number] = range(*number)[1];
         }
-        let far = |number: usize, farthest: f64| Far { farthest, number };
-        let mut open: BinaryHeap<Far> = sources.iter().map(|k| far(*k, farthest[*k])).collect();
+        let far = |number: usize, farthest: f64| FarthestLeaf { farthest, number };
+        let mut open: BinaryHeap<FarthestLeaf> = sources.iter().map(|k| far(*k, farthest[*k])).collect();
         let mut taken = 0usize;
-        while let Some(Far { number, farthest: then }) = open.pop() {
+        while let Some(FarthestLeaf { number, farthest: then }) = open.pop() {
             if then < farthest[number] {
                 continue;
             }

@@ -21,7 +21,7 @@ use super::motion::{Motion, Until};
 use super::rest::TOUCHING;
 use super::{DescentSettings, End};
 use crate::acceptance::Outcome;
-use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
+use crate::contact::mated::{CONTACT_TOLERANCE, LossOfSeat, ReleaseResult};
 use crate::contact::{Pair, Seat};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ const FEW: usize = 2;
 
 /// Rest below the seat of a pair that a half slightly off reaches, or its running off; `None` if the mated
 /// pose is stable. Always with the default settings: the result is stored with the pair.
-pub fn fall(pair: &Pair) -> Option<Fall> {
+pub fn fall(pair: &Pair) -> Option<LossOfSeat> {
     about(pair).fall
 }
 
@@ -50,7 +50,7 @@ pub(super) fn home(pair: &Pair) -> f64 {
     about(pair).home
 }
 
-fn about(pair: &Pair) -> About {
+fn about(pair: &Pair) -> ReleaseResult {
     pair.about_mated(|| {
         let settings = DescentSettings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
@@ -78,10 +78,10 @@ fn about(pair: &Pair) -> About {
             let height = height.unwrap_or(f64::NEG_INFINITY);
             let sinks = pair.mated_height() - height;
             let is_seated = height >= seat.floor() && seat.holds(&rest, height);
-            (sinks > CONTACT_TOLERANCE && !is_seated).then_some(Fall { from, rest, sinks })
+            (sinks > CONTACT_TOLERANCE && !is_seated).then_some(LossOfSeat { from, rest, sinks })
         };
         let fall = starts(pair).into_iter().find_map(&mut falls);
-        About { fall, home: if fall.is_none() { within } else { 0.0 } }
+        ReleaseResult { fall, home: if fall.is_none() { within } else { 0.0 } }
     })
 }
 

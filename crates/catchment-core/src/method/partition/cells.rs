@@ -53,12 +53,12 @@ pub(super) struct Gate {
     /// The part, in the other coordinates.
     pub(super) region: Polytope,
     /// The region beyond.
-    pub(super) to: Beyond,
+    pub(super) to: GateTarget,
 }
 
 /// The region beyond a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Beyond {
+pub(super) enum GateTarget {
     /// A cell that is not higher there.
     Cell(usize),
     /// A cell with opposing motion, or a wall: motion continues along the gate itself.
@@ -152,15 +152,15 @@ impl Cells {
                 for part in shared {
                     for (region, rise) in self.split_at_steps(part, k, other, plane, dropped) {
                         let to = match rise {
-                            Step::Up => Beyond::Ravine,
-                            Step::Level if counter => Beyond::Ravine,
-                            Step::Level | Step::Down => Beyond::Cell(other),
+                            Step::Up => GateTarget::Ravine,
+                            Step::Level if counter => GateTarget::Ravine,
+                            Step::Level | Step::Down => GateTarget::Cell(other),
                         };
                         gates.push(Gate { facet, dropped, region, to });
                     }
                 }
             }
-            let to = if self.on_border(plane) { Beyond::Border } else { Beyond::Nothing };
+            let to = if self.on_border(plane) { GateTarget::Border } else { GateTarget::Nothing };
             // Narrower gaps are left by rounding between cells that meet.
             let is_gap = |region: &Polytope| {
                 let (low, high) = region.bounds();

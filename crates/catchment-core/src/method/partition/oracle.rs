@@ -6,7 +6,7 @@
 //! lowest point (the dissertation's ravine rule, section 5.1.6; exact over two pose errors; over more, the
 //! ravine's own slope would bend the path). If no lower point exists, the motion has come to rest.
 
-use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, removed, touches};
+use super::cells::{Cells, Gate, GateTarget, LEVEL, TOUCH, dot, lifted, removed, touches};
 use crate::polytope::{MAX_DIMENSION, PolytopePoint};
 use std::array;
 
@@ -104,7 +104,7 @@ fn ravine(cells: &Cells, under: &[usize], q: &PolytopePoint, height: f64) -> Opt
     let mut best: Option<(f64, PolytopePoint)> = None;
     for &k in under {
         let cell = &cells.all[k];
-        for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
+        for gate in cell.gates.iter().filter(|gate| gate.to == GateTarget::Ravine) {
             let plane = &cell.region.facets()[gate.facet];
             if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &removed(q, gate.dropped)) {
                 continue;
@@ -159,8 +159,8 @@ fn resting(cells: &Cells, under: &[usize], q: &PolytopePoint) -> MotionEnd {
                 continue;
             }
             match gate.to {
-                Beyond::Nothing => return MotionEnd::Lost,
-                Beyond::Border => fate = MotionEnd::Left,
+                GateTarget::Nothing => return MotionEnd::Lost,
+                GateTarget::Border => fate = MotionEnd::Left,
                 _ => {}
             }
         }

@@ -18,7 +18,7 @@
 //! Cells are split only along the borders of watersheds, which keeps the number of parts near that of the
 //! cells; the original split at every meeting of two neighbours.
 
-use super::cells::{Beyond, Cells, Gate, facing};
+use super::cells::{Cells, Gate, GateTarget, facing};
 use super::oracle::{self, MotionEnd};
 use super::pieces;
 use crate::acceptance::Outcome;
@@ -103,7 +103,7 @@ pub(super) fn drain(
     }
     for (k, cell) in cells.all.iter().enumerate() {
         for gate in &cell.gates {
-            if let Beyond::Cell(to) = gate.to {
+            if let GateTarget::Cell(to) = gate.to {
                 graph.add_edge(NodeIndex::new(k), NodeIndex::new(to), ());
             }
         }
@@ -134,10 +134,10 @@ fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<MotionEnd>> {
     cell.gates
         .iter()
         .map(|gate| match gate.to {
-            Beyond::Cell(_) => None,
-            Beyond::Nothing => Some(MotionEnd::Lost),
-            Beyond::Border => Some(MotionEnd::Left),
-            Beyond::Ravine => Some(if let Some(place) = oracle::level(cells, k, gate) {
+            GateTarget::Cell(_) => None,
+            GateTarget::Nothing => Some(MotionEnd::Lost),
+            GateTarget::Border => Some(MotionEnd::Left),
+            GateTarget::Ravine => Some(if let Some(place) = oracle::level(cells, k, gate) {
                 MotionEnd::Rest(place)
             } else {
                 let (height, bottom) = oracle::lowest(cells, k, gate);
@@ -173,7 +173,7 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
         for (gate, label) in cell.gates.iter().zip(&self.labels[k]) {
             let whole = match (gate.to, label) {
                 (_, Some(label)) => Some(*label),
-                (Beyond::Cell(to), None) => match &self.parts[to] {
+                (GateTarget::Cell(to), None) => match &self.parts[to] {
                     Some(Parts::Whole(label)) => Some(*label),
                     _ => None,
                 },
@@ -181,7 +181,7 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
             };
             if let Some(label) = whole {
                 parts.push((cell.upstream(gate.facet, gate.dropped, &gate.region), label));
-            } else if let Beyond::Cell(to) = gate.to
+            } else if let GateTarget::Cell(to) = gate.to
                 && let Some(Parts::Cut(below)) = &self.parts[to]
             {
                 parts.extend(self.above(k, gate, below));
@@ -248,7 +248,7 @@ impl<F: Fn(&PolytopePoint) -> bool> Draining<'_, F> {
         let mut above: Vec<Vec<(usize, usize)>> = vec![Vec::new(); members.len()];
         for &k in members {
             for (g, gate) in self.cells.all[k].gates.iter().enumerate() {
-                if let Beyond::Cell(to) = gate.to
+                if let GateTarget::Cell(to) = gate.to
                     && let Some(to) = place(to)
                 {
                     above[to].push((k, g));

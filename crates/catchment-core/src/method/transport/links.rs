@@ -37,7 +37,7 @@ pub(super) struct Link {
 
 /// Continuation of the motion from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Way {
+pub(super) enum CellFlow {
     /// To the links that were written; the rest of the weight loses contact.
     Down,
     /// Out of the box, along the axis with this number.
@@ -48,7 +48,7 @@ pub(super) enum Way {
 
 /// A cell by its numbers along the axes: of the representative rotation it is kept at.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct CellIndex {
     /// Kept index.
     cell: u32,
     /// Number along every axis of the grid.
@@ -75,7 +75,7 @@ pub(super) struct Links<'a> {
 /// A corner of a simplex.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
-    place: Place,
+    place: CellIndex,
     /// The reflection between its storage and its position, relative to the cell from which the links start.
     mirror: Mirror,
     weight: f32,
@@ -109,7 +109,7 @@ impl<'a> Links<'a> {
     }
 
     /// Appends the links of a stored cell to `out`, and returns the continuation of the motion.
-    pub(super) fn of(&self, cell: u32, scratch: &mut Scratch, out: &mut Vec<Link>) -> Way {
+    pub(super) fn of(&self, cell: u32, scratch: &mut Scratch, out: &mut Vec<Link>) -> CellFlow {
         let start = out.len();
         let place = self.place(cell);
         let height = self.field.heights[cell as usize];
@@ -153,12 +153,12 @@ impl<'a> Links<'a> {
         let total = kept + lost;
         if total < LEAST {
             out.truncate(start);
-            return left.map_or(Way::End, Way::Leaves);
+            return left.map_or(CellFlow::End, CellFlow::Leaves);
         }
         for link in &mut out[start..] {
             link.weight /= total;
         }
-        Way::Down
+        CellFlow::Down
     }
 
     /// Visits the corners within the box of the simplex into which the direction at a position points. If the
@@ -214,7 +214,7 @@ impl<'a> Links<'a> {
     }
 
     /// Storage of a cell of the grid, and the reflection that leads there.
-    fn folded(&self, mut at: [u32; 5], rotation: u32) -> (Place, Mirror) {
+    fn folded(&self, mut at: [u32; 5], rotation: u32) -> (CellIndex, Mirror) {
         let fold = &self.field.fold;
         let image = fold.image(rotation as usize);
         let mut lateral = 0;
@@ -234,10 +234,10 @@ impl<'a> Links<'a> {
             self.turn_to(representative, &mut at);
         }
         let cell = image.representative as u32 * fold.slab() as u32 + lateral;
-        (Place { cell, at, rotation: representative }, image.mirror)
+        (CellIndex { cell, at, rotation: representative }, image.mirror)
     }
 
-    fn place(&self, cell: u32) -> Place {
+    fn place(&self, cell: u32) -> CellIndex {
         let fold = &self.field.fold;
         let slab = fold.slab() as u32;
         let mut lateral = cell % slab;
@@ -248,7 +248,7 @@ impl<'a> Links<'a> {
         }
         let rotation = fold.rotation((cell / slab) as usize) as u32;
         self.turn_to(rotation, &mut at);
-        Place { cell, at, rotation }
+        CellIndex { cell, at, rotation }
     }
 
     /// Writes the numbers of a rotation along its axes.
@@ -260,7 +260,7 @@ impl<'a> Links<'a> {
     }
 
     /// Velocity at a place, in cells; 0 without contact.
-    fn velocity(&self, place: &Place) -> [f32; 5] {
+    fn velocity(&self, place: &CellIndex) -> [f32; 5] {
         let carrier = self.field.carriers[place.cell as usize];
         if carrier == GradientField::NOTHING {
             return [0.0; 5];

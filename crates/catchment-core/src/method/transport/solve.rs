@@ -10,7 +10,7 @@
 //! same cell, that costs time and never a bit.
 
 use super::ExactOracle;
-use super::links::{Link, Links, Scratch, Way};
+use super::links::{CellFlow, Link, Links, Scratch};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::GradientField;
 use rayon::prelude::*;
@@ -145,12 +145,12 @@ impl Solver<'_> {
         }
         let links = self.found.len();
         let leaves = match self.links.of(cell, &mut self.scratch, &mut self.found) {
-            Way::Down => {
+            CellFlow::Down => {
                 self.waiting.push(Waiting { cell, links, cursor: links });
                 return Ok(());
             }
-            Way::Leaves(axis) => Some(axis),
-            Way::End => None,
+            CellFlow::Leaves(axis) => Some(axis),
+            CellFlow::End => None,
         };
         exec.check()?;
         let shares = self.judge.decide(cell, leaves);

@@ -58,7 +58,7 @@ pub(super) struct Flow<'a, D> {
 }
 
 /// Continuation of a motion at a border.
-enum Way {
+enum BorderStep {
     /// Into a cell.
     Into(usize),
     /// Along the border to one of its ends.
@@ -69,7 +69,7 @@ enum Way {
 }
 
 /// Continuation of a motion from a point at which borders meet.
-enum Onward {
+enum JunctionStep {
     /// Into a cell.
     Into(usize),
     /// Along a valley of a cell, to its end.
@@ -173,19 +173,19 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         let (from, to) = self.span(cell, k);
         let whole = |accepted| vec![Strip { from, to, accepted }];
         match self.way(cell, &border) {
-            Way::Missed => whole(false),
-            Way::Rest(floor) => {
+            BorderStep::Missed => whole(false),
+            BorderStep::Rest(floor) => {
                 let middle = border.midpoint();
                 let height = self.sheet(floor).height(middle);
                 let seated = (self.docked)(middle, height);
                 whole(seated)
             }
-            Way::Along(end) => {
+            BorderStep::Along(end) => {
                 let height = self.sheet(cell).height(end);
                 let on = (end - border.midpoint()).normalize_or_zero();
                 whole(self.ends_well(end, height, on, depth + 1))
             }
-            Way::Into(next) => {
+            BorderStep::Into(next) => {
                 // Both coordinates are linear along the border.
                 let (a, b) = (self.across(next, border.from), self.across(next, border.to));
                 if (b - a).abs() <= self.near() {
@@ -207,8 +207,8 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
     }
 
     /// Continuation of a motion that leaves `cell` at one of its borders.
-    fn way(&self, cell: usize, border: &Border) -> Way {
-        let Some(next) = border.across else { return Way::Missed };
+    fn way(&self, cell: usize, border: &Border) -> BorderStep {
+        let Some(next) = border.across else { return BorderStep::Missed };
         let middle = border.midpoint();
         let along = border.to - border.from;
         let outward = -along.perp().normalize_or_zero();
@@ -216,15 +216,15 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         let leads_on = self.direction(next).dot(outward);
         let angle = self.near() / along.length();
         if step <= self.near() && (leads_on > angle || self.direction(next) == DVec2::ZERO) {
-            return Way::Into(next);
+            return BorderStep::Into(next);
         }
         // A drop lands at the foot of the wall, whose slope counts from then on.
         let floor = if step < -self.near() { next } else { cell };
         let slope = -self.sheet(floor).gradient.dot(along.normalize_or_zero());
         if slope.abs() <= self.seam {
-            Way::Rest(floor)
+            BorderStep::Rest(floor)
         } else {
-            Way::Along(if slope > 0.0 { border.to } else { border.from })
+            BorderStep::Along(if slope > 0.0 { border.to } else { border.from })
         }
     }
 
@@ -253,7 +253,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
             self.tangled = true;
             return false;
         }
-        let mut best: Option<(f64, Onward)> = None;
+        let mut best: Option<(f64, JunctionStep)> = None;
         let mut offer = |steepness: f64, way| {
             if best.as_ref().is_none_or(|(most, _)| steepness > *most + 1e-12) {
                 best = Some((steepness, way));
@@ -272,7 +272,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
                     along.perp_dot(at - a) > self.near() || along.perp_dot(direction) >= -1e-9
                 });
             if leads_in {
-                offer(self.sheet(cell).gradient.length(), Onward::Into(cell));
+                offer(self.sheet(cell).gradient.length(), JunctionStep::Into(cell));
             }
             for (k, border) in self.borders[cell].iter().enumerate() {
                 let (from, to) = self.span(cell, k);
@@ -281,19 +281,19 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
                 if !leaves || !starts {
                     continue;
                 }
-                if let Way::Along(end) = self.way(cell, border)
+                if let BorderStep::Along(end) = self.way(cell, border)
                     && end.distance(at) > self.near()
                 {
                     let slope = -self.sheet(cell).gradient.dot((end - at).normalize_or_zero());
                     if slope > self.seam {
-                        offer(slope, Onward::Along(cell, end));
+                        offer(slope, JunctionStep::Along(cell, end));
                     }
                 }
             }
         }
         match best {
-            Some((_, Onward::Into(cell))) => self.follow(cell, at, depth + 1),
-            Some((_, Onward::Along(cell, end))) => {
+            Some((_, JunctionStep::Into(cell))) => self.follow(cell, at, depth + 1),
+            Some((_, JunctionStep::Along(cell, end))) => {
                 let below = self.sheet(cell).height(end);
                 self.ends_well(end, below, (end - at).normalize_or_zero(), depth + 1)
             }

@@ -154,7 +154,7 @@ struct Search<'a> {
 type Indexed = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
 /// Boxes of positions that are still to be examined.
-struct Place {
+struct SearchSquare {
     middle: DVec2,
     half: f64,
     /// Stretches that may be the nearest of some place in it.
@@ -241,7 +241,7 @@ impl<'a> Search<'a> {
         let middle = self.low.midpoint(self.high);
         let mut open = Vec::new();
         if !all.is_empty() {
-            open.push(Place { middle, half: (self.high - middle).max_element(), near: all });
+            open.push(SearchSquare { middle, half: (self.high - middle).max_element(), near: all });
         }
         while let Some(place) = open.pop() {
             exec.check()?;
@@ -255,10 +255,10 @@ impl<'a> Search<'a> {
     }
 
     /// Examines the positions of a box; returns its remaining quarters, the most promising last, or nothing.
-    fn look(&self, place: &Place, best: &mut Best) -> Vec<Place> {
+    fn look(&self, place: &SearchSquare, best: &mut Best) -> Vec<SearchSquare> {
         // Half of the edge's tolerance for the half edge, and the rest for seams.
         const ENOUGH: f64 = AcceptedSquare::TOLERANCE / 4.0;
-        let Place { middle, half, .. } = *place;
+        let SearchSquare { middle, half, .. } = *place;
         let corners = corners(middle, half);
         let most = |stretch: &Stretch| corners.iter().map(|&c| stretch.distance(c)).fold(0.0, f64::max);
         let stretches = || place.near.iter().map(|&k| (k, &self.border[k as usize]));
@@ -288,9 +288,9 @@ impl<'a> Search<'a> {
             return Vec::new();
         }
         let half = half / 2.0;
-        let mut quarters: Vec<(f64, Place)> = self::corners(middle, half)
+        let mut quarters: Vec<(f64, SearchSquare)> = self::corners(middle, half)
             .into_iter()
-            .map(|middle| (self.distance(&near, middle), Place { middle, half, near: near.clone() }))
+            .map(|middle| (self.distance(&near, middle), SearchSquare { middle, half, near: near.clone() }))
             .collect();
         quarters.sort_by(|a, b| a.0.total_cmp(&b.0));
         quarters.into_iter().map(|(_, quarter)| quarter).collect()
