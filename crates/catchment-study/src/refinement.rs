@@ -1,7 +1,7 @@
 //! A method at a given resolution: the building block of studies of methods.
 //!
 //! The Sum is that of the grid: the measure of the accepted cells, for transport the mean arrival fraction.
-//! Undecided cells are not followed exactly. [`Sampled::correct`] gives the unbiased Sum that a run reports.
+//! Undecided cells are not followed exactly. [`GridDecision::correct`] gives the unbiased Sum that a run reports.
 
 use catchment_core::acceptance::{Domain, Outcome};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};

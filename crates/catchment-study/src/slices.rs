@@ -33,7 +33,7 @@ use serde::{Serialize, Serializer};
 /// Settings that change the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlicesSettings {
-    /// Cells per axis; [`Settings::CELLS`] by default.
+    /// Cells per axis; [`SlicesSettings::CELLS`] by default.
     pub resolution: Resolution,
     /// The pairs of errors to vary, the first to the right in pictures; empty: all pairs of free errors.
     pub pairs: Vec<[Dof; 2]>,

@@ -86,8 +86,8 @@ impl<'a> HeightEnvelope<'a> {
         });
     }
 
-    /// Heights as by [`Envelope::heights`], and for every cell the number of the element that carries the
-    /// moving half there, for [`Envelope::carried_by`]; [`Envelope::NOTHING`] if the halves pass each other
+    /// Heights as by [`HeightEnvelope::heights`], and for every cell the number of the element that carries the
+    /// moving half there, for [`HeightEnvelope::carried_by`]; [`HeightEnvelope::NOTHING`] if the halves pass each other
     /// by. Among equals the first counts.
     pub fn heights_and_carriers(
         &mut self,

@@ -11,7 +11,7 @@
 //! moving one, and the higher of both heights counts: a pin that erodes away completely still stops where its
 //! partner is eroded. The maps only propose positions; exact heights decide.
 //!
-//! [`Relief::without_narrow`] removes features narrower than three points, such as a web or a pin. If a half
+//! [`HeightMap::without_narrow`] removes features narrower than three points, such as a web or a pin. If a half
 //! would sink into a seat without such a feature, [`in_the_way`] gives its position.
 
 use super::Lattice;

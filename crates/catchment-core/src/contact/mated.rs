@@ -9,7 +9,7 @@
 //! The second line is tested for every combination of signs of the free degrees of freedom. Slopes below 1 %
 //! and directions far from all of these are missed: the test detects wrong geometry and proves nothing. For a
 //! half in unstable balance the first order is not sufficient; exact motions from small errors decide
-//! ([`Fall`]).
+//! ([`LossOfSeat`]).
 //!
 //! The seat must also locate the half: if it leaves an error more play than the design allows, such as flat
 //! on flat or the yaw of a round plug, the mated pose is not unique, and the design must state the docking

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A result implements [`Subject`] once, beside its type; the renderers are in `catchment-report`. A
-//! [`Table`] holds values, not text: its columns define the format for people ([`Format`]) and the keys for
+//! [`Table`] holds values, not text: its columns define the format for people ([`ColumnFormat`]) and the keys for
 //! programs. Lengths are in D and angles in radians wherever a program reads them.
 
 mod number;
@@ -156,7 +156,7 @@ impl Document {
 /// A method of exact motions in words: `exact quasi-static motion (descent) of 4 000 random poses, without friction`.
 pub fn exact_motions(of: &str, friction: f64) -> String {
     if friction > 0.0 {
-        format!("exact quasi-static motion (descent) of {of}, µ = {friction} between the halves (Coulomb)")
+        format!("exact quasi-static motion (descent) of {of}, μ = {friction} between the halves (Coulomb)")
     } else {
         format!("exact quasi-static motion (descent) of {of}, without friction")
     }

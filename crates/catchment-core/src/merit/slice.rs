@@ -8,7 +8,7 @@
 //! which the other degrees of freedom are locked in the motion too.
 //!
 //! A fixed value selects the cell that contains it, on a border between two cells the upper cell.
-//! [`Slice::at`] gives the centres that are used, at most half a cell away.
+//! [`GridSlice::at`] gives the centres that are used, at most half a cell away.
 
 use super::{MeritError, axis_number};
 use crate::landscape::{Grid, GridAxis};

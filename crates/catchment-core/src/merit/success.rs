@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Errors outside the error box count as failures, and their share is reported. The grid resolution adds an
-//! uncertainty of its own: [`Success::bracket`] counts the border cells as failures, and as successes
+//! uncertainty of its own: [`SuccessProbability::bracket`] counts the border cells as failures, and as successes
 //! (including undecided cells). A distribution with errors along axes that were not sampled is rejected.
 
 pub use crate::poses::Distribution;

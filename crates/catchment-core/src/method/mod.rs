@@ -1,5 +1,5 @@
 //! Methods that decide outcomes of pose errors. All share an interface ([`Method`]): settings + problem +
-//! domain + `&Exec` → outcomes, warnings and by-products ([`Decided`]).
+//! domain + `&Exec` → outcomes, warnings and by-products ([`MethodOutput`]).
 //!
 //! ```text
 //!   confluence  exact motions that join each other              the default
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! [`correction`] adds an interval to the Sum of any of them by exact motions. [`zraa`] decides translation
-//! alone and has a separate interface. A new method needs its folder, which implements [`Decide`], and a line
+//! alone and has a separate interface. A new method needs its folder, which implements [`DecisionMethod`], and a line
 //! in [`REGISTRY`].
 
 pub mod certified;

@@ -19,8 +19,8 @@
 //! ```
 //!
 //! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`]
-//! selects the centre of rotation. A text is read completely or rejected with all its errors ([`Findings`]),
-//! each [`Finding`] with its byte range in the text.
+//! selects the centre of rotation. A text is read completely or rejected with all its errors ([`Diagnostics`]),
+//! each [`Diagnostic`] with its byte range in the text.
 //!
 //! Not promised: that a pose can be reached, or that the halves meet there. Only values of locked errors, and
 //! values outside any sensible unit, are rejected.

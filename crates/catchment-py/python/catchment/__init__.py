@@ -7,8 +7,8 @@
     >>> problem.follow("x=5 mm,pitch=10 deg").outcome
     'aligned'
 
-Lengths are in D, the width of the connector, angles in radians, unless written with a unit: "5 mm", "10 deg". Arrays of pose
-errors have the shape (n, 5): x, y, roll, pitch, yaw. The numbers are those of the command line, to the bit.
+Lengths are in D, the width of the connector, and angles in radians, unless they have a unit: "5 mm", "10 deg". Arrays of pose
+errors have the shape (n, 5): x, y, roll, pitch, yaw. The numbers equal those of the command line, to the bit.
 """
 
 from . import _catchment
@@ -28,7 +28,7 @@ from ._sweep import sweep
 
 
 def methods() -> dict[str, str]:
-    """Every method that decides outcomes, and what it does in a line; the default first."""
+    """Every method that decides outcomes, with a description in a single line; the default first."""
     return dict(_catchment.methods())
 
 

@@ -1,4 +1,4 @@
-"""`python -m catchment` is the `catchment` command."""
+"""`python -m catchment` runs the `catchment` command."""
 
 import sys
 

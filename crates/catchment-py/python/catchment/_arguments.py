@@ -1,4 +1,4 @@
-"""Arguments as people write them, in the words of the library: `5`, `"5 mm"`, `{"x": "1 mm", "yaw": 0.1}`."""
+"""Conversion of arguments to the text that the library parses: `5`, `"5 mm"`, `{"x": "1 mm", "yaw": 0.1}`."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 #: A length in D or with a unit ("5 mm"); an angle in radians or with a unit ("10 deg").
 Quantity: TypeAlias = Union[float, str]
-#: Errors by their names, or as written on the command line: "x=1 mm,yaw=2 deg".
+#: Pose errors by name, or in the notation of the command line: "x=1 mm,yaw=2 deg".
 Errors: TypeAlias = Union[str, Mapping[str, Quantity]]
-#: One pose error: as `Errors`, or five numbers x, y, roll, pitch, yaw in D and radians.
+#: A pose error: as `Errors`, or five numbers x, y, roll, pitch, yaw in D and radians.
 Pose: TypeAlias = Union[str, Mapping[str, Quantity], "NDArray[np.float64]", Iterable[float]]
 #: Cells per axis: 30, "x=40,yaw=24", {"x": 40, "yaw": 24}.
 Cells: TypeAlias = Union[int, str, Mapping[str, int]]
-#: Shows progress: True for a bar of tqdm, or a function of the share that is done and the name of the stage.
+#: Shows progress: True for a bar of tqdm, or a callback that takes the completed share and the name of the stage.
 Progress: TypeAlias = Union[bool, Callable[[float, str], object]]
 
-#: The five errors, in the order of all arrays.
+#: The five pose errors, in the order of all arrays.
 AXES = ("x", "y", "roll", "pitch", "yaw")
 
 
 class How(TypedDict):
-    """How to run: changes no bit of a result."""
+    """Execution settings: they change no bit of a result."""
 
     threads: int
     memory: int | None
@@ -39,7 +39,7 @@ class How(TypedDict):
 
 
 class Changes(TypedDict):
-    """What is changed in a design."""
+    """Values that override those of a design."""
 
     free: str | None
     cor: str | None
@@ -48,14 +48,14 @@ class Changes(TypedDict):
 
 
 class Expected(TypedDict):
-    """Errors that a robot makes."""
+    """Expected pose errors of a robot."""
 
     error_sigma: str | None
     error_uniform: str | None
 
 
 class Asked(TypedDict):
-    """What a run is asked for."""
+    """Arguments of a run."""
 
     method: str
     settings: str
@@ -71,14 +71,14 @@ class Asked(TypedDict):
     window: bool
 
 
-#: The largest number of seeds and counts.
+#: The largest value of seeds and counts.
 MOST = 2**64 - 1
 #: The largest number of threads, as on the command line.
 MOST_THREADS = 1024
 
 
 def whole(value: Any, name: str, *, least: int = 0, most: int = MOST) -> int:
-    """A whole number of an argument, in [least, most]. Raises ArgumentError with the name of the argument."""
+    """The argument as a whole number in [least, most]. Raises ArgumentError with the name of the argument."""
     try:
         number = None if isinstance(value, (bool, np.bool_)) else operator.index(value)
     except TypeError:
@@ -91,12 +91,12 @@ def whole(value: Any, name: str, *, least: int = 0, most: int = MOST) -> int:
 
 
 def count(value: Any, name: str, *, least: int = 0) -> int | None:
-    """The same of an argument that may be left out."""
+    """As `whole`, for an optional argument."""
     return None if value is None else whole(value, name, least=least)
 
 
 def real(value: Any, name: str) -> float:
-    """A number of an argument. Raises ArgumentError with the name of the argument."""
+    """The argument as a number. Raises ArgumentError with the name of the argument."""
     try:
         return float(unmasked(value, name))
     except (TypeError, ValueError) as error:
@@ -106,7 +106,7 @@ def real(value: Any, name: str) -> float:
 
 
 def unmasked(value: Any, name: str) -> Any:
-    """The value, refused where a part of it is masked: behind a mask there is no number to compute with."""
+    """The value. Raises ArgumentError if it has masked parts: a masked entry has no number to compute with."""
     parts = value if isinstance(value, (list, tuple)) else [value]
     masks = [np.ma.getmaskarray(part) for part in parts if isinstance(part, np.ma.MaskedArray)]
     hidden = sum(int(np.count_nonzero(mask)) for mask in masks)
@@ -118,7 +118,7 @@ def unmasked(value: Any, name: str) -> Any:
 
 
 def array(value: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Numbers as a contiguous array of float64; one that is already so is not copied."""
+    """Numbers as a contiguous array of float64; an array that is already contiguous float64 is not copied."""
     try:
         return np.ascontiguousarray(unmasked(value, name), dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -128,7 +128,7 @@ def array(value: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def unicode(text: str, name: str) -> str:
-    """A text that can be written as UTF-8: without halves of surrogate pairs."""
+    """The text. Raises ArgumentError if UTF-8 cannot encode it: it must contain no unpaired surrogates."""
     try:
         text.encode()
     except UnicodeEncodeError as error:
@@ -137,26 +137,26 @@ def unicode(text: str, name: str) -> str:
 
 
 def quantity(value: Quantity, name: str) -> str:
-    """A number with all its digits, or as written."""
+    """A number with all its digits; text is unchanged."""
     return unicode(value, name) if isinstance(value, str) else repr(real(value, name))
 
 
 def errors(value: Errors | None, argument: str) -> str | None:
-    """Errors by name, as the library reads them."""
+    """Pose errors by name, in the notation of the library."""
     if value is None or isinstance(value, str):
         return value
     return ",".join(f"{name}={quantity(size, f'{argument}: {name}')}" for name, size in value.items())
 
 
 def cells(value: Cells | None) -> str | None:
-    """A resolution, as the library reads it."""
+    """A resolution, in the notation of the library."""
     if isinstance(value, Mapping):
         return ",".join(f"{name}={whole(number, f'resolution: {name}')}" for name, number in value.items())
     return None if value is None else str(value)
 
 
 def free(value: str | Iterable[str] | None) -> str | None:
-    """Names of errors, as the library reads them."""
+    """Names of pose errors, in the notation of the library."""
     return value if value is None or isinstance(value, str) else ",".join(value)
 
 
@@ -174,7 +174,7 @@ def changes(
     aspect_ratio: float | None,
     rotation_length: Quantity | None,
 ) -> Changes:
-    """What is changed in a design."""
+    """Values that override those of a design."""
     return Changes(
         free=free(free_),
         cor=None if cor is None else quantity(cor, "cor"),
@@ -184,12 +184,12 @@ def changes(
 
 
 def require(value: str | Iterable[str]) -> list[str]:
-    """Requirements."""
+    """Requirements as a list."""
     return [value] if isinstance(value, str) else list(value)
 
 
 def how(threads: int = 0, memory: int | None = None, progress: Progress = False) -> How:
-    """How to run."""
+    """Execution settings from the arguments of a call."""
     shown: Callable[[float, str], object] | None
     if progress is True:
         shown = bar()
@@ -200,7 +200,7 @@ def how(threads: int = 0, memory: int | None = None, progress: Progress = False)
 
 
 def bar() -> Callable[[float, str], object]:
-    """A progress bar, of tqdm: in a notebook one of the notebook."""
+    """A progress bar of tqdm; in a notebook, its notebook variant."""
     try:
         tqdm: Any = import_module("tqdm.auto").tqdm
     except ImportError:

@@ -1,4 +1,4 @@
-"""The compiled part: the library's `Problem` and `Run`. Use the package `catchment`, which gives it names, units and defaults."""
+"""The compiled module: `Problem` and `Run` of the library. Use the package `catchment`, which adds names, units and defaults."""
 
 from typing import final
 
@@ -15,73 +15,73 @@ def read_text(path: str) -> str:
     """The text of a design file."""
 
 def methods() -> list[tuple[str, str]]:
-    """Every method: its name, and what it does in a line."""
+    """Every method: its name, and a description in a single line."""
 
 def program(words: list[str]) -> int:
-    """Does what a command line says, the name of the program first; returns the exit code."""
+    """Runs a command line; its first word is the name of the program. Returns the exit code."""
 
 def compare(
     sides: tuple[str | tuple[str, Problem, str, str], str | tuple[str, Problem, str, str]],
     cells: str | None,
     how: How,
 ) -> Rendered:
-    """Two acceptances: each where a result is stored, or (name, problem, method, settings as JSON)."""
+    """Compares two areas of acceptance: each the path of a stored result, or (name, problem, method, settings as JSON)."""
 
 @final
 class Problem:
-    """An alignment problem: geometry built, mated pose checked."""
+    """An alignment problem, with its geometry built and its mated pose checked."""
 
     def __new__(
         cls, path: str, text: str, files: list[tuple[str, bytes]], changes: Changes, how: How
     ) -> Problem: ...
     def name(self) -> str:
-        """What the design is called."""
+        """Name of the design."""
 
     def digest(self) -> str:
-        """SHA-256 of all that may change an answer."""
+        """SHA-256 of everything that can change a result."""
 
     def design(self) -> str:
         """The resolved design as JSON: lengths in D, angles in radians."""
 
     def doubts(self) -> list[str]:
-        """What speaks against the mated pose, as sentences."""
+        """Warnings about the mated pose, as sentences."""
 
     def error_box(self) -> list[tuple[str, float]]:
-        """Names of the free errors, and the half-widths of the error box, in D and radians."""
+        """Names of the free errors, with the half-widths of the error box, in D and radians."""
 
     def files(self) -> list[tuple[str, bytes]]:
-        """Every file that the halves come from, with what is in it, by its path."""
+        """Every source file of the halves: its path and its content."""
 
     def picture(self) -> tuple[str, bytes]:
         """Both halves as SVG and PNG."""
 
     def plan(self, asked: Asked, expected: Expected) -> str:
-        """What was asked for as a run: JSON, refused now if it cannot be made."""
+        """The arguments as a run in JSON. Raises if the run is impossible."""
 
     def run(self, run: str, how: How) -> Answer:
         """Computes a run of `plan`."""
 
     def part(self, run: str, number: int, of: int, how: How) -> str:
-        """Decides one part of a run: JSON for `merge`."""
+        """Decides a part of a run; returns JSON for `merge`."""
 
     def merge(self, run: str, parts: list[str], how: How) -> Answer:
-        """Puts the parts of a run together, and goes on as `run` does."""
+        """Merges the parts of a run, and continues as `run` does."""
 
     def pose(self, text: str) -> list[float]:
-        """A pose error as a person writes it: x, y, roll, pitch, yaw in D and radians."""
+        """Parses a pose error; returns x, y, roll, pitch, yaw in D and radians."""
 
     def follow(
         self, pose: list[float], name: str, settings: str, how: How
     ) -> tuple[str, list[float], float | None, list[tuple[str, str, list[float]]]]:
-        """Where one pose ends: its outcome, the last pose error, z of the centre of rotation there, and what touches; in D and radians."""
+        """Follows a pose: its outcome, and the pose error, z of the centre of rotation and contacts of its final state; in D and radians."""
 
     def follow_many(
         self, poses: NDArray[np.float64], name: str, settings: str, how: How
     ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.float64]]:
-        """Where every row ends: (n, 5) in D and radians → codes (n,), last errors (n, 5) and heights (n,)."""
+        """Follows every row: (n, 5) in D and radians → codes (n,), final errors (n, 5) and heights (n,)."""
 
     def trace(self, pose: list[float], friction: float, how: How) -> Rendered:
-        """The way of one pose, from first contact to where it rests."""
+        """The trajectory of a pose, from first contact to rest."""
 
     def window(
         self,
@@ -92,7 +92,7 @@ class Problem:
         friction: float,
         how: How,
     ) -> Rendered:
-        """The largest box of errors that all dock."""
+        """Finds the tolerance window: the largest box of errors that all dock."""
 
     def jams(
         self,
@@ -105,35 +105,35 @@ class Problem:
         expected: Expected,
         how: How,
     ) -> Rendered:
-        """Where it jams instead of docking, and on which features."""
+        """Finds the jams: rests that do not dock, with their features."""
 
     def zraa(self, how: How) -> Rendered:
-        """Offsets that are corrected by sliding alone, exactly."""
+        """Computes exactly the offsets corrected with all rotations locked (ZRAA)."""
 
 @final
 class Answer:
-    """The answer of a run."""
+    """The result of a run."""
 
     def json(self) -> str:
         """The report, as the command line prints it."""
 
     def table(self) -> str:
-        """The report for eyes."""
+        """The report as a table to read."""
 
     def outcomes(self) -> NDArray[np.uint8]:
-        """The code of every outcome, the first axis fastest: 1 aligned, 2 jammed, 3 missed, 4 undecided."""
+        """The code of every outcome: 1 aligned, 2 jammed, 3 missed, 4 undecided. The first axis varies fastest."""
 
     def heights(self) -> NDArray[np.float32] | None:
-        """Heights of first contact over the grid, in D, where they were kept."""
+        """Heights of first contact over the grid, in D; None unless they were kept."""
 
     def unmet(self) -> list[str]:
-        """The requirements that are not met, as sentences."""
+        """Unmet requirements, as sentences."""
 
     def draw(self, how: How) -> list[tuple[str, str, bytes]]:
-        """Every picture: its name, SVG and PNG."""
+        """Draws every picture: its name, SVG and PNG."""
 
     def save(self, path: str, how: How) -> None:
-        """Writes everything into a folder, or the Zarr group alone where the path ends with `.zarr`."""
+        """Writes everything into a folder, or only the Zarr group if the path ends with `.zarr`."""
 
 @final
 class Rendered:
@@ -145,11 +145,11 @@ class Rendered:
 
     @property
     def table(self) -> str:
-        """For eyes."""
+        """The report as a table to read."""
 
     @property
     def csv(self) -> str:
-        """For programs."""
+        """The report as CSV, for programs."""
 
     def svg(self) -> str | None:
         """The picture as SVG."""
@@ -159,20 +159,20 @@ class Rendered:
 
 @final
 class Sweep:
-    """The designs of a sweep, read and not yet computed."""
+    """The designs of a sweep, parsed and not yet computed."""
 
     def __new__(
         cls, problem: Problem, over: list[str], asked: Asked, expected: Expected, output: str | None
     ) -> Sweep: ...
     def __len__(self) -> int: ...
     def missing(self) -> list[int]:
-        """The numbers of the designs that are not kept yet."""
+        """The numbers of the designs without a stored result."""
 
     def design(self, number: int, how: How) -> tuple[str, str] | None:
-        """Computes one design: its key and its figures as JSON; None where its halves do not build."""
+        """Computes a design: its key and its results as JSON; None if its halves cannot be built."""
 
     def keep(self, key: str, found: str) -> None:
-        """Keeps what was found elsewhere, where results are kept."""
+        """Stores the result of a design that was computed elsewhere, if results are stored."""
 
     def run(self, found: list[tuple[str, str]], how: How) -> Rendered:
-        """Computes what neither `found` nor the folder has, and tells the whole."""
+        """Computes the designs that are neither in `found` nor in the folder; returns the report of all designs."""

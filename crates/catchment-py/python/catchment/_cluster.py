@@ -1,9 +1,9 @@
-"""Work on a Dask cluster: designs of a sweep and parts of one grid, a task each.
+"""Computation on a Dask cluster: each design of a sweep, and each part of a grid, is a task.
 
-    client ──problem, pickled once──▶ workers ──(key, figures)──▶ client keeps each as it comes ──▶ report
+    client ──problem, pickled once──▶ workers ──(key, results)──▶ client stores each on arrival ──▶ report
 
-A task that was lost with its worker is done again by Dask. Nothing depends on who did what, nor on the order: keys are
-digests of all that the figures depend on.
+Dask repeats a task that was lost with its worker. The report does not depend on the assignment of tasks to workers, nor on
+their order: a key is a digest of everything that the results of a design depend on.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 #: A `distributed.Client`, which is not typed.
 Client: TypeAlias = Any
 
-#: Parts per worker thread: enough that the last of them is not waited for long.
+#: Parts per worker thread: small parts keep the wait for the last part short.
 PARTS_PER_THREAD = 4
-#: How often a task may die with its worker before it is given up: a part that ends every worker is no worker's fault.
+#: Retries of a task whose worker died: if a part ends every worker, the part is at fault.
 RETRIES = 5
 
 Plan = tuple[list[str], Asked, Expected, "str | None"]
@@ -35,23 +35,23 @@ Plan = tuple[list[str], Asked, Expected, "str | None"]
 
 @lru_cache(maxsize=4)
 def _sweep(problem: Problem, plan: str) -> _catchment.Sweep:
-    """The sweep on this worker, read once. The plan has the design's text, too: equal problems may be written differently."""
+    """The sweep on this worker, parsed once. The plan includes the text of the design, because equal problems may differ in text."""
     axes, asked, expected = json.loads(plan)[:3]
     return _catchment.Sweep(problem._native, axes, asked, expected, None)
 
 
 def _design(problem: Problem, plan: str, number: int) -> tuple[str, str] | None:
-    """One design of a sweep, on a worker."""
+    """Computes a design of a sweep, on a worker."""
     return _sweep(problem, plan).design(number, how(threads=1))
 
 
 def _part(problem: Problem, plan: str, number: int, of: int) -> str:
-    """One part of a run, on a worker."""
+    """Computes a part of a run, on a worker."""
     return problem._native.part(plan, number, of, how(threads=1))
 
 
 def _there(client: Client, problem: Problem) -> Any:
-    """The problem on the workers: made by a task of its own, so that it comes back where it was lost with a worker."""
+    """The problem on the workers: a separate task builds it, so that Dask can rebuild it after the loss of a worker."""
     return client.submit(pickle.loads, pickle.dumps(problem), pure=False, retries=RETRIES)
 
 
@@ -61,7 +61,7 @@ def _tell(run_how: How, done: int, count: int, stage: str) -> None:
 
 
 def _gather(client: Client, futures: dict[Any, Any], run_how: How, stage: str, keep: Any) -> None:
-    """Hands every result to `keep` as it comes; cancels the rest where this ends early."""
+    """Passes every result to `keep` on arrival; cancels the remaining tasks if this ends early."""
     as_completed: Any = import_module("distributed").as_completed
     try:
         for done, future in enumerate(as_completed(futures), 1):
@@ -78,7 +78,7 @@ def designs(
     sweeps: Sequence[_catchment.Sweep],
     run_how: How,
 ) -> list[list[tuple[str, str]]]:
-    """The designs that are not kept yet, of all sweeps at once: their keys and figures."""
+    """Computes the missing designs of all sweeps at once; returns their keys and results."""
     there = _there(client, problem)
     found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
     futures: dict[Any, Any] = {}
@@ -98,7 +98,7 @@ def designs(
 
 
 def parts(client: Client, problem: Problem, plan: str, count: int | None, run_how: How) -> list[str]:
-    """The parts of a run."""
+    """Computes the parts of a run."""
     threads = sum(client.nthreads().values())
     of = count or max(1, PARTS_PER_THREAD * threads)
     there = _there(client, problem)

@@ -1,4 +1,4 @@
-"""Why something is refused: one tree of exceptions, with places and advice."""
+"""The exceptions of the package: a single tree, with diagnostics that have a place and advice."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from typing import NamedTuple
 
 
 class Finding(NamedTuple):
-    """One thing that is wrong, where it stands, and what to do about it."""
+    """A diagnostic: an error in the input, with its place and advice."""
 
-    #: What is wrong.
+    #: The error.
     message: str
-    #: What to do about it; None where there is nothing to say.
+    #: How to correct it, or None.
     advice: str | None
-    #: Line in the design's text, from 1; None where it has no place.
+    #: Line in the text of the design, from 1; None without a place.
     line: int | None
     #: Column in that line, in characters from 1.
     column: int | None
 
 
-#: Marks that turn the direction of writing, and breaks of lines that no line shows.
+#: Characters that change the direction of writing, and invisible line breaks.
 _MARKS = frozenset("\u200e\u200f\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 
 
 def _escaped(text: str) -> str:
-    """The text with control characters as Python writes them, but for breaks of lines: files and names must not steer a terminal."""
+    """The text with control characters escaped as in Python, except line breaks: files and names must not control a terminal."""
     steers = (c != "\n" and (unicodedata.category(c) == "Cc" or c in _MARKS) for c in text)
     return "".join(c.encode("unicode_escape").decode() if bad else c for c, bad in zip(text, steers))
 
 
 class Error(Exception):
-    """Whatever this package refuses. `except catchment.Error` catches all of it, and nothing else."""
+    """Base class of all exceptions of this package. `except catchment.Error` catches these and no others."""
 
-    #: Everything that is wrong, each with its place and advice; empty where there is only a message.
+    #: All errors, each with its place and advice; empty if there is only a message.
     findings: tuple[Finding, ...]
-    #: The file or name that the places are in.
+    #: The file or name that the places refer to.
     path: str | None
 
     def __init__(
@@ -51,7 +51,7 @@ class Error(Exception):
         self.findings = tuple(
             Finding(said, advice, *(place or (None, None))) for said, advice, place in findings
         )
-        #: How many more things are wrong that are not in `findings`.
+        #: Number of further errors that are not in `findings`.
         self.omitted = omitted
         self.path = path
 
@@ -60,35 +60,35 @@ class Error(Exception):
 
 
 class DesignError(Error):
-    """The design says something that cannot be, or cannot be read: `line`, `column`, `advice` of the first thing."""
+    """The design is invalid, or cannot be read; `line`, `column` and `advice` are those of the first error."""
 
     @property
     def line(self) -> int | None:
-        """Line of the first finding, from 1."""
+        """Line of the first error, from 1."""
         return self.findings[0].line if self.findings else None
 
     @property
     def column(self) -> int | None:
-        """Column of the first finding, from 1."""
+        """Column of the first error, from 1."""
         return self.findings[0].column if self.findings else None
 
     @property
     def advice(self) -> str | None:
-        """What to do about the first finding."""
+        """How to correct the first error."""
         return self.findings[0].advice if self.findings else None
 
 
 class GeometryError(DesignError):
-    """The design reads well, but its halves bound no solids, or do not meet."""
+    """The design can be read, but its halves do not bound solids, or do not meet."""
 
 
 class ArgumentError(Error, ValueError):
-    """An argument of a call is wrong: a pose, a method, a resolution."""
+    """An argument of a call is invalid: a pose, a method, a resolution."""
 
 
 class MemoryLimitError(Error, MemoryError):
-    """It would not fit into memory; nothing was computed. The message says what would fit."""
+    """The result would exceed the memory budget; nothing was computed. The message gives a size that fits."""
 
 
 class ComputeError(Error):
-    """There is no answer: the method gave up, or what was asked for does not exist."""
+    """There is no result: the method failed, or the requested result does not exist."""

@@ -1,4 +1,4 @@
-"""Halves from meshes in memory: as files that a design names, and that never touch a disk."""
+"""Halves from meshes in memory. They become files that a design names; these files are never written to a disk."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ._arguments import array, unmasked
 from ._errors import ArgumentError
 
-#: A trimesh, anything else with `vertices` and `faces`, or the two arrays: (n, 3) coordinates, (m, 3) numbers of corners,
+#: A trimesh, any other object with `vertices` and `faces`, or the two arrays: (n, 3) coordinates and (m, 3) vertex indices,
 #: counter-clockwise seen from outside.
 Mesh: TypeAlias = Any
 
@@ -38,7 +38,7 @@ def arrays(mesh: Mesh, name: str) -> tuple[NDArray[np.float64], NDArray[np.int32
 
 
 def ply(mesh: Mesh, name: str) -> bytes:
-    """A mesh as a binary PLY file, every coordinate as it is."""
+    """A mesh as a binary PLY file, with unchanged coordinates."""
     points, corners = arrays(mesh, name)
     head = (
         "ply\nformat binary_little_endian 1.0\n"

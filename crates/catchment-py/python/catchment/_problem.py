@@ -1,4 +1,4 @@
-"""Problems: from design files, from their text, and from meshes in memory."""
+"""Problems from design files, from the text of a design, and from meshes in memory."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ def load(
     aspect_ratio: float | None = None,
     rotation_length: Quantity | None = None,
 ) -> Problem:
-    """The problem of a design file.
+    """Loads the problem of a design file.
 
-    free, cor, aspect_ratio, rotation_length: instead of what the file says, as `Problem.replace` has them.
-    Raises DesignError with line, column and advice of everything that is wrong, GeometryError where the halves do not fit.
+    free, cor, aspect_ratio, rotation_length: override the values of the file, as in `Problem.replace`.
+    Raises DesignError with the line, column and advice of every error, and GeometryError if the halves do not fit.
     """
     place = os.fspath(path)
     given = changes(free, cor, aspect_ratio, rotation_length)
@@ -67,23 +67,23 @@ def load(
 
 
 class Problem:
-    """An alignment problem: two halves, which errors are free and how far, checked once.
+    """An alignment problem: two halves, their free errors and the error box. The design is checked once.
 
-    It never changes; `replace` makes another. It can be pickled, with the meshes that it came from; read no pickle of a stranger: it
-    can run any program. A process that was forked after something was computed cannot compute: start processes by "spawn".
+    A problem is immutable; `replace` returns a new problem. You can pickle it, with its source meshes. Never read a pickle from a
+    stranger: it can run any program. A process that was forked after a computation cannot compute: start processes by "spawn".
 
-    From two meshes, each a trimesh or (vertices, faces) with vertices (n, 3) in `unit` and faces (m, 3) counter-clockwise
-    seen from outside:
+    Build a problem from two meshes. Each is a trimesh or (vertices, faces), with vertices (n, 3) in `unit` and faces (m, 3)
+    counter-clockwise seen from outside:
 
     >>> Problem(fixed=socket, moving=plug, width=50.0, unit="mm", cor=0.5)
 
-    width: D, the length that all results are in, in `unit`; left out it is measured where the halves touch.
-    drawn: "facing": each half in a frame of its own, facing +z; "assembled": both in one frame, docked, and `approach` is
-    the direction in which the moving half comes ("-z").
-    face_height: z of the face centre in each half's own frame, in `unit`; found where it is left out.
-    cor: centre of rotation in front of the face centre, in D or with a unit.
-    rotation_length: how far one radian counts as when motion is damped, in D or with a unit.
-    error_box: half-widths of the errors to consider, such as {"x": "20 mm", "yaw": "30 deg"}.
+    width: D, the length unit of all results, in `unit`; without it, D is measured at the mating contact.
+    drawn: "facing": each half is drawn in its own frame and faces +z; "assembled": both halves are drawn docked, in a common
+    frame, and `approach` is the direction of motion of the moving half ("-z").
+    face_height: z of the face centre in the frame of each half, in `unit`; without it, it is computed.
+    cor: distance of the centre of rotation in front of the face centre, in D or with a unit.
+    rotation_length: characteristic length ρ, which converts radians to length in the damping metric, in D or with a unit.
+    error_box: half-widths of the error box, such as {"x": "20 mm", "yaw": "30 deg"}.
     """
 
     _built: _catchment.Problem | None
@@ -128,7 +128,7 @@ class Problem:
 
     @classmethod
     def from_text(cls, text: str, name: str = "design.toml") -> Problem:
-        """The problem of a design file's text; `name` is what messages call it, and meshes are looked for beside it."""
+        """Builds the problem from the text of a design file. Messages use `name`; mesh paths are relative to its folder."""
         return cls._made(name, text, [], NOTHING)
 
     @classmethod
@@ -139,8 +139,8 @@ class Problem:
 
     @classmethod
     def _restored(cls, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> Problem:
-        """A problem out of a pickle, built when it is first needed: a pool of processes loses a task that cannot be unpickled, and
-        whoever waits for it waits for ever; what a call raises comes back."""
+        """A problem from a pickle, built at its first use. A pool of processes loses a task that cannot be unpickled, and its caller
+        waits forever; an exception that a call raises reaches the caller."""
         problem = cls.__new__(cls)
         problem._hold(path, text, files, given)
         return problem
@@ -173,12 +173,12 @@ class Problem:
         aspect_ratio: float | None = None,
         rotation_length: Quantity | None = None,
     ) -> Problem:
-        """This problem with something else in it.
+        """Returns a copy of this problem with other values.
 
-        free: the errors that are free, such as "x,y,yaw"; the others are locked.
-        cor: centre of rotation in front of the face centre, in D or with a unit ("5 mm").
-        aspect_ratio: H/D, height of the mating profile over the width; of families.
-        rotation_length: rho, how far one radian counts as when motion is damped, in D or with a unit.
+        free: the free errors, such as "x,y,yaw"; the others are locked.
+        cor: distance of the centre of rotation in front of the face centre, in D or with a unit ("5 mm").
+        aspect_ratio: H/D, height of the mating profile divided by the width; only of the built-in families.
+        rotation_length: characteristic length ρ, which converts radians to length in the damping metric, in D or with a unit.
         """
         given = changes(free, cor, aspect_ratio, rotation_length)
         both = Changes(
@@ -191,17 +191,17 @@ class Problem:
 
     @property
     def name(self) -> str:
-        """What the design is called."""
+        """Name of the design."""
         return self._native.name()
 
     @property
     def digest(self) -> str:
-        """SHA-256 of all that may change an answer: equal digests, equal answers."""
+        """SHA-256 of everything that can change a result: equal digests give equal results."""
         return self._native.digest()
 
     @property
     def design(self) -> dict[str, Any]:
-        """The design, resolved: lengths in D, angles in radians."""
+        """The resolved design: lengths in D, angles in radians."""
         read: dict[str, Any] = json.loads(self._native.design())
         return read
 
@@ -212,17 +212,17 @@ class Problem:
 
     @property
     def error_box(self) -> dict[str, float]:
-        """Half-widths of the errors considered, of those that are free, in D and radians."""
+        """Half-widths of the error box, for the free errors, in D and radians."""
         return dict(self._native.error_box())
 
     @property
     def doubts(self) -> list[str]:
-        """What speaks against the mated pose, as sentences; empty where nothing does."""
+        """Warnings about the mated pose, as sentences; empty without warnings."""
         return self._native.doubts()
 
     @property
     def picture(self) -> Picture:
-        """Both halves as they were understood: apart in space, mated in section."""
+        """Both halves as the program reads them: separated in space, and mated in section."""
         return Picture(*self._native.picture())
 
     def __repr__(self) -> str:
@@ -239,7 +239,7 @@ class Problem:
         return hash(self.digest)
 
     def _pose(self, pose: Pose) -> list[float]:
-        """Five numbers of a pose error."""
+        """The five numbers of a pose error."""
         if isinstance(pose, (str, Mapping)):
             written = errors(pose, "pose") or ""
             return self._native.pose(written) if written else [0.0] * 5
@@ -274,27 +274,27 @@ class Problem:
         memory: int | None = None,
         progress: Progress = False,
     ) -> Result:
-        """The area of acceptance: which pose errors contact corrects.
+        """Computes the area of acceptance: the set of pose errors that dock.
 
-        method: how outcomes are decided; `catchment.methods()` lists them.
-        settings: those of the method, such as {"friction": 0.2}.
+        method: the method that decides outcomes; `catchment.methods()` lists them.
+        settings: settings of the method, such as {"friction": 0.2}.
         resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}.
-        poses: instead of a grid, so many random poses.
-        samples: random poses followed exactly to correct the Sum, 0 for none.
-        budget: instead of samples, as many as can be followed in these seconds, of which the grid takes half at most.
-        tolerance: instead of samples, until the 95 % interval is ± this share of the Sum.
-        seed: of the random poses.
-        error_sigma, error_uniform: errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
-        require: what must hold of the report, such as "onaa.edge>=0.3"; `Result.unmet` says what does not.
+        poses: number of random poses to decide instead of a grid.
+        samples: number of sampled poses, followed exactly to correct the Sum; 0 leaves the Sum uncorrected.
+        budget: instead of samples, the time for sampling in seconds; the grid takes at most half of it.
+        tolerance: instead of samples, sample until the 95 % interval is ± this share of the Sum.
+        seed: seed of the sampled poses.
+        error_sigma, error_uniform: expected errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
+        require: conditions on the report, such as "onaa.edge>=0.3"; `Result.unmet` lists those that fail.
         heights: keep the heights of first contact.
-        jams: the report also says where poses jam, and on what.
-        window: the report also has the largest box of errors that all dock.
-        client: a dask.distributed.Client: parts of the grid (or of the random poses) are decided on its workers, by methods
-        that decide each pose by itself (descent, drop).
-        parts: into how many parts a client's work is cut.
-        threads, memory, progress: change no bit. 0 threads are one per core; memory is a limit in bytes; progress is True or a
-        function of the share and the stage.
-        Ctrl-C ends it with KeyboardInterrupt.
+        jams: add the most frequent jams, with their contacts, to the report.
+        window: add the tolerance window to the report.
+        client: a dask.distributed.Client: its workers decide parts of the grid (or of the random poses), with methods that
+        decide each pose independently (descent, drop).
+        parts: number of parts into which the work of a client is divided.
+        threads, memory, progress: execution settings; they change no bit of the result. threads=0 uses every core; memory is a
+        limit in bytes; progress is True or a callback that takes the completed share and the stage.
+        Ctrl-C ends the run with KeyboardInterrupt.
         """
         asked = Asked(
             method=method,
@@ -326,10 +326,10 @@ class Problem:
         method: str = "descent",
         settings: Mapping[str, object] | None = None,
     ) -> End:
-        """Where one pose error comes to rest, by exact quasi-static motion.
+        """Follows a pose error to its final state, by exact quasi-static motion.
 
         pose: "x=5 mm,pitch=10 deg", {"x": "5 mm", "pitch": 0.2}, or x, y, roll, pitch, yaw in D and radians.
-        settings: of the method, such as {"friction": 0.2}.
+        settings: settings of the method, such as {"friction": 0.2}.
         """
         outcome, end, height, contacts = self._native.follow(self._pose(pose), method, as_json(settings), how())
         touching = tuple(Touching(fixed, moving, np.asarray(point)) for fixed, moving, point in contacts)
@@ -345,10 +345,10 @@ class Problem:
         memory: int | None = None,
         progress: Progress = False,
     ) -> Ends:
-        """Where every pose error of an array comes to rest, on all threads.
+        """Follows every pose error of an array to its final state, on all threads.
 
-        poses: (n, 5): x, y in D, roll, pitch, yaw in radians; 0 where the design locks. A contiguous array of float64 is read where
-        it lies; it must not be written to meanwhile.
+        poses: (n, 5): x, y in D, roll, pitch, yaw in radians; 0 for locked errors. A contiguous array of float64 is read in place;
+        do not write to it during the call.
         Returns outcomes (n,), errors (n, 5) and heights (n,).
         """
         rows = array(poses, "poses")
@@ -359,7 +359,7 @@ class Problem:
         return Ends(*self._native.follow_many(rows, method, as_json(settings), how(threads, memory, progress)))
 
     def trace(self, pose: Pose, *, friction: float = 0.0) -> Report[reports.TraceReport]:
-        """The way of one pose error, from first contact to where it rests, with its picture."""
+        """Follows a pose error and returns its trajectory, from first contact to rest, with a picture."""
         return Report._of(self._native.trace(self._pose(pose), real(friction, "friction"), how()))
 
     def window(
@@ -374,11 +374,11 @@ class Problem:
         memory: int | None = None,
         progress: Progress = False,
     ) -> Report[reports.WindowReport]:
-        """The largest box of errors around zero that all dock: what a datasheet may say. `report["window"]`.
+        """Finds the tolerance window: the largest box of errors around zero that all dock, for a datasheet. `report["window"]`.
 
-        fix: half-widths that are given ({"x": "2 mm"}); the others grow.
-        proportions: of those that are not given; what is not named does not occur. Without them: those of the error box.
-        motions: random poses of the certificate.
+        fix: given half-widths, such as {"x": "2 mm"}; the others grow.
+        proportions: proportions of the other half-widths; errors that are not named are zero. Default: the error box.
+        motions: number of sampled poses of the certificate.
         """
         run_how = how(threads, memory, progress)
         sizes = errors(fix, "fix"), errors(proportions, "proportions")
@@ -400,11 +400,11 @@ class Problem:
         memory: int | None = None,
         progress: Progress = False,
     ) -> Report[reports.JamsReport]:
-        """Where it jams instead of docking, on which features, how firmly. `report["jams"]`.
+        """Finds the jams: rests that do not dock, with their features and their stability. `report["jams"]`.
 
-        motions: random poses that are followed.
-        examine: how many jams are looked at closely.
-        certified: also how far each must be lifted at least.
+        motions: number of sampled poses to follow.
+        examine: number of jams whose stability and escape path are computed.
+        certified: also compute a guaranteed lower bound on the escape height of each jam.
         """
         expected = _expected(error_sigma, error_uniform)
         run_how = how(threads, memory, progress)
@@ -413,7 +413,7 @@ class Problem:
         return Report._of(self._native.jams(*drawn, cells(resolution), mu, certified, expected, run_how))
 
     def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report[reports.ZraaReport]:
-        """Offsets that are corrected by sliding alone, all rotations locked, exactly. `report["area_d2"]` or `report["from_d"]`."""
+        """Computes exactly the offsets corrected with all rotations locked (ZRAA). `report["area_d2"]` or `report["from_d"]`."""
         return Report._of(self._native.zraa(how(threads, memory, progress)))
 
 
@@ -428,12 +428,12 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def _toml(text: str, name: str) -> str:
-    """A string of TOML: characters as they are, and escapes for what TOML does not take so."""
+    """A TOML string: characters are unchanged, except those that TOML requires to be escaped."""
     return json.dumps(unicode(text, name), ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _keys(table: Mapping[str, object]) -> list[str]:
-    """Lines of a TOML table; what is None is left out."""
+    """Lines of a TOML table; keys with the value None are omitted."""
     lines = []
     for key, value in table.items():
         written = key if _BARE.fullmatch(key) else _toml(key, "key")
@@ -458,10 +458,10 @@ def compare(
     memory: int | None = None,
     progress: Progress = False,
 ) -> Report[reports.ComparisonReport]:
-    """Two acceptances beside each other: where they differ, and by how much. `report["comparison"]`.
+    """Compares two areas of acceptance: the poses at which they differ, and their share. `report["comparison"]`.
 
-    first, second: problems, or folders (or NAME.zarr) of stored results. One problem alone is decided by two methods.
-    methods: of every problem, in their order, such as "descent,flood"; one counts for both.
+    first, second: problems, or folders (or NAME.zarr) of stored results. A problem alone is decided by two methods.
+    methods: the method of each problem, in order, such as "descent,flood"; a single method applies to both.
     """
     sides = [first, first if second is None else second]
     chosen = methods.split(",") if isinstance(methods, str) else list(methods or [])

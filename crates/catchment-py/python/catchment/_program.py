@@ -1,4 +1,4 @@
-"""The `catchment` command, as `pip install` puts it on the path."""
+"""The `catchment` command, which `pip install` puts on the path."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from . import _catchment
 
 
 def main() -> int:
-    """Does what the command line of this process says; returns the exit code."""
+    """Runs the command line of this process; returns the exit code."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        # The program listens to Ctrl-C itself.
+        # The program handles Ctrl-C itself.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _catchment.program(["catchment", *sys.argv[1:]])
 

@@ -1,4 +1,4 @@
-"""What was found: the reports of the command line, with arrays and pictures."""
+"""Results: the reports of the command line, with arrays and pictures."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
     from ._problem import Problem
 
-#: The codes of outcomes in arrays; 0 stands for none.
+#: The codes of outcomes in arrays; 0 means that there is no outcome.
 OUTCOMES: Mapping[int, str] = {1: "aligned", 2: "jammed", 3: "missed", 4: "undecided"}
 
 
 class Picture(NamedTuple):
-    """A picture in two forms."""
+    """A picture in two formats."""
 
-    #: For pages and papers: text stays text.
+    #: SVG, for web pages and papers; text remains text.
     svg: str
-    #: For everything else, two pixels per unit of the drawing.
+    #: PNG, with two pixels per unit of the drawing.
     png: bytes
 
     def _repr_png_(self) -> bytes:
@@ -41,7 +41,7 @@ class Picture(NamedTuple):
         return self.svg
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes it to a file that ends with .svg or .png."""
+        """Writes the picture to a file whose name ends with .svg or .png."""
         with open(path, "wb") as file:
             file.write(self.svg.encode() if os.fspath(path).endswith(".svg") else self.png)
 
@@ -51,16 +51,16 @@ Fields = TypeVar("Fields", bound=Mapping[str, Any])
 
 
 class Report(Generic[Fields]):
-    """A report: the same JSON, table and picture as the command line's.
+    """A report: the JSON, table and picture of the command line.
 
-    Fields of the JSON are read by `report["sum"]` or `report.to_dict()`; lengths in it are in D, angles in radians.
-    It can be pickled; read no pickle of a stranger: it can run any program.
+    Read fields of the JSON by `report["sum"]` or `report.to_dict()`; lengths are in D, angles in radians.
+    You can pickle a report. Never read a pickle from a stranger: it can run any program.
     """
 
     def __init__(self, json_text: str, table: str, csv: str | None, picture: Picture | None) -> None:
-        #: The report as JSON text, byte for byte what `--json` prints but for `timing`.
+        #: The report as JSON text, equal to the output of `--json` byte for byte, except for `timing`.
         self.json = json_text
-        #: The report for eyes, as the command line prints it.
+        #: The report as a table to read, as the command line prints it.
         self.table = table
         self._csv = csv
         self._picture = picture
@@ -73,7 +73,7 @@ class Report(Generic[Fields]):
         return cls(rendered.json, rendered.table, rendered.csv, picture)
 
     def to_dict(self) -> Fields:
-        """The report as a dictionary of its own; `catchment.reports` has the types of its fields."""
+        """The report as a new dictionary; `catchment.reports` defines the types of its fields."""
         return cast("Fields", json.loads(self.json))
 
     def __getitem__(self, key: str) -> Any:
@@ -83,19 +83,19 @@ class Report(Generic[Fields]):
 
     @property
     def warnings(self) -> list[str]:
-        """What speaks against the numbers, as sentences."""
+        """Warnings about the results, as sentences."""
         return [warning["message"] for warning in self["warnings"]]
 
     @property
     def csv(self) -> str:
-        """The table for programs; `pandas.read_csv(io.StringIO(report.csv))` reads it."""
+        """The table as CSV, for programs; `pandas.read_csv(io.StringIO(report.csv))` reads it."""
         if self._csv is None:
             raise AttributeError("a run has no table of its own; to_xarray() has its cells")
         return self._csv
 
     @property
     def picture(self) -> Picture | None:
-        """The picture; None where there is nothing to draw."""
+        """The picture, or None if there is nothing to draw."""
         return self._picture
 
     def __getstate__(self) -> dict[str, Any]:
@@ -120,28 +120,28 @@ class Report(Generic[Fields]):
 
 
 class Result(Report["reports.RunReport"]):
-    """The answer of a run: outcomes over the grid, the Sum with its interval, figures of merit.
+    """The result of a run: outcomes over the grid, the Sum with its confidence interval, figures of merit.
 
-    It can be pickled. Pictures that were not drawn before are computed again where they are asked for after that, and so is
-    what `save` writes: equal runs have equal answers.
+    You can pickle a result. An unpickled result computes its pictures and the output of `save` again when you use them, unless the
+    pictures were already drawn; equal runs have equal results.
     """
 
     def __init__(self, problem: Problem, run: str, answer: _catchment.Answer) -> None:
         super().__init__(answer.json(), answer.table(), None, None)
-        #: The problem that was decided.
+        #: The problem of the run.
         self.problem = problem
-        #: Requirements that are not met, as sentences.
+        #: Unmet requirements, as sentences.
         self.unmet = answer.unmet()
         self._run = run
         self._answer: _catchment.Answer | None = answer
         self._pictures: dict[str, Picture] | None = None
-        # The first axis runs fastest.
+        # The first axis varies fastest.
         shape = tuple(axis["cells"] for axis in reversed(self["axes"])) or (-1,)
         outcomes, heights = answer.outcomes(), answer.heights()
-        #: Codes of `OUTCOMES`: of shape `[sizes of dims]`, as in the Zarr group; (n,) for random poses. uint8.
+        #: Codes of `OUTCOMES`, uint8; the shape is `[sizes of dims]`, as in the Zarr group, or (n,) for random poses.
         self.outcomes: NDArray[np.uint8] = outcomes.reshape(shape)
-        #: z of the centre of rotation at first contact, in D, of the shape of `outcomes`; None unless `heights=True`
-        #: was asked for, or the method needs them. float32; not finite without contact.
+        #: z of the centre of rotation at first contact, in D, float32, with the shape of `outcomes`; None unless you set
+        #: `heights=True`, or the method needs them. Not finite without contact.
         self.heights: NDArray[np.float32] | None = None if heights is None else heights.reshape(shape)
         for array in (self.outcomes, self.heights):
             if array is not None:
@@ -151,24 +151,24 @@ class Result(Report["reports.RunReport"]):
         return {**super().__getstate__(), "_answer": None}
 
     def _again(self) -> _catchment.Answer:
-        """The answer, computed again where it came out of a pickle."""
+        """The native result; computed again after unpickling."""
         if self._answer is None:
             self._answer = self.problem._native.run(self._run, how())
         return self._answer
 
     @property
     def method(self) -> str:
-        """Name of the method that decided."""
+        """Name of the method of the run."""
         return str(self["method"])
 
     @property
     def sum(self) -> float:
-        """The measure of the accepted set, in `unit`: unbiased where random poses were followed."""
+        """The Sum: measure of the area of acceptance, in `unit`; unbiased if poses were sampled."""
         return float(self["acceptance"]["sum"])
 
     @property
     def sum_ci95(self) -> tuple[float, float] | None:
-        """Its 95 % interval, in `unit`; None where no random poses were followed."""
+        """95 % confidence interval of the Sum, in `unit`; None without sampled poses."""
         interval = self["acceptance"]["sum_ci95"]
         return None if interval is None else (interval[0], interval[1])
 
@@ -184,22 +184,22 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many cells or poses met each outcome."""
+        """Number of cells or poses per outcome."""
         return dict(self["acceptance"]["outcomes"])
 
     @property
     def onaa_edge(self) -> float | None:
-        """Edge of the largest axis-oriented cube in the accepted set, in [0, 1] of the error box; None for random poses."""
+        """ONAA: edge of the largest axis-parallel cube inside the area of acceptance, 0 to 1 of the error box; None for random poses."""
         return None if self["onaa"] is None else float(self["onaa"]["edge"])
 
     @property
     def tolerances(self) -> dict[str, tuple[float, float]]:
-        """How far each error may go alone, below and above zero (both not negative), in D and radians."""
+        """Single-axis limits: tolerance of each error below and above zero (both not negative), all others zero, in D and radians."""
         return {found["axis"]: (found["minus"], found["plus"]) for found in self["tolerances"]}
 
     @property
     def success(self) -> float | None:
-        """Probability of success for the errors asked about; None if none were."""
+        """Success probability for `error_sigma` or `error_uniform`; None without them."""
         return None if self["success"] is None else float(self["success"]["probability"])
 
     @property
@@ -219,7 +219,7 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def pictures(self) -> dict[str, Picture]:
-        """Every picture by its name: overview, slices, heights, section, solids … Drawn when first asked for."""
+        """Every picture by its name: overview, slices, heights, section, solids … Drawn at first use."""
         if self._pictures is None:
             drawn = self._again().draw(how())
             self._pictures = {name: Picture(svg, png) for name, svg, png in drawn}
@@ -227,11 +227,11 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def picture(self) -> Picture | None:
-        """The picture that says most: the overview, where two errors or more are free."""
+        """The main picture: the overview if two or more errors are free."""
         return next(iter(self.pictures.values()), None)
 
     def to_xarray(self) -> xarray.Dataset:
-        """The cells with named dimensions and coordinates: what `xarray.open_zarr` makes of the Zarr group of `save`."""
+        """The cells with named dimensions and coordinates, as `xarray.open_zarr` reads them from the Zarr group of `save`."""
         import xarray
 
         if not self.dims:
@@ -253,9 +253,9 @@ class Result(Report["reports.RunReport"]):
     def save(
         self, path: str | os.PathLike[str], *, threads: int = 0, memory: int | None = None, progress: Progress = False
     ) -> None:
-        """Writes report.json, result.zarr and all pictures into a folder, or the Zarr group alone to NAME.zarr.
+        """Writes report.json, result.zarr and all pictures into a folder, or only the Zarr group to NAME.zarr.
 
-        All or nothing; a folder is replaced where an older result is in it, and refused where anything else is.
+        It writes everything or nothing. It replaces a folder that holds an older result, and refuses a folder with other content.
         """
         self._again().save(os.fspath(path), how(threads, memory, progress))
 
@@ -266,14 +266,14 @@ class Result(Report["reports.RunReport"]):
 
 
 def _centers(axis: dict[str, Any]) -> NDArray[np.float64]:
-    """Centres of the cells of an axis, to the bit those of the library."""
+    """Centres of the cells of an axis, equal to those of the library to the bit."""
     step = (axis["hi"] - axis["lo"]) / axis["cells"]
     centers: NDArray[np.float64] = axis["lo"] + (np.arange(axis["cells"], dtype=np.float64) + 0.5) * step
     return centers
 
 
 def _about(axis: dict[str, Any]) -> dict[str, Any]:
-    """What a coordinate says of itself, as in the Zarr group."""
+    """Attributes of a coordinate, as in the Zarr group."""
     name = axis["axis"]
     long_name = f"lateral offset of the face centre along {name}" if axis["unit"] == "D" else f"{name} error"
     return {"long_name": long_name, "units": axis["unit"], "lower_border": axis["lo"], "upper_border": axis["hi"]}
@@ -282,44 +282,44 @@ def _about(axis: dict[str, Any]) -> dict[str, Any]:
 class Touching(NamedTuple):
     """Two features in contact."""
 
-    #: The feature of the fixed half, in words.
+    #: Name of the feature of the fixed half.
     fixed: str
-    #: The feature of the moving half, in words.
+    #: Name of the feature of the moving half.
     moving: str
-    #: Where they touch, in the world frame, in D; (3,).
+    #: The contact point, in the world frame, in D; (3,).
     point: NDArray[np.float64]
 
 
 class End(NamedTuple):
-    """The state that a motion ends in."""
+    """The final state of a motion."""
 
     #: "aligned", "jammed", "missed" or "undecided".
     outcome: str
-    #: The last pose error: x, y in D, roll, pitch, yaw in radians; (5,).
+    #: The final pose error: x, y in D, roll, pitch, yaw in radians; (5,).
     error: NDArray[np.float64]
-    #: z of the centre of rotation in that state, in D; None where the moving half missed.
+    #: z of the centre of rotation in the final state, in D; None if the moving half missed.
     height: float | None
-    #: What touches there.
+    #: The contacts in the final state.
     contacts: tuple[Touching, ...]
 
     @property
     def docks(self) -> bool:
-        """Whether contact brings the halves together."""
+        """Whether the pose error docks."""
         return self.outcome == "aligned"
 
 
 class Ends(NamedTuple):
-    """Where many pose errors end, row by row."""
+    """The final states of many motions, row by row."""
 
     #: Codes of `OUTCOMES`; (n,), uint8.
     outcomes: NDArray[np.uint8]
-    #: The last pose errors, x, y in D, roll, pitch, yaw in radians; (n, 5), float64.
+    #: The final pose errors: x, y in D, roll, pitch, yaw in radians; (n, 5), float64.
     errors: NDArray[np.float64]
-    #: z of the centre of rotation in those states, in D, NaN where the moving half missed; (n,), float64.
+    #: z of the centre of rotation in the final states, in D, NaN if the moving half missed; (n,), float64.
     heights: NDArray[np.float64]
 
     @property
     def docks(self) -> NDArray[np.bool_]:
-        """Whether contact brings the halves together; (n,)."""
+        """Whether each pose error docks; (n,)."""
         docked: NDArray[np.bool_] = self.outcomes == 1
         return docked

@@ -1,4 +1,4 @@
-"""Sweeps: one design with keys of its file replaced, every combination computed, here or on a cluster."""
+"""Sweeps: every combination of values for keys of a design, computed here or on a cluster."""
 
 from __future__ import annotations
 
@@ -85,17 +85,17 @@ def sweep(
     memory: int | None = None,
     progress: Progress = False,
 ) -> Report[Mapping[str, Any]] | list[Report[Mapping[str, Any]]]:
-    """Design parameters varied: every combination of values, computed and compared. `report["designs"]`.
+    """Varies design parameters: computes and compares every combination of values. `report["designs"]`.
 
-    over: keys of the design file and their values: {"aspect_ratio": [0.5, 1, 2], "cor": "-1..1/5"}; the last key changes
-    fastest. A key is its path ("errors.x"), or its last word where no other key has it.
-    seed: of the random poses; several seeds give a report each.
-    output: a folder for report, table, pictures and a Zarr group, written when all is done. Until then finished designs are
-    kept beside it: the same call goes on from there. Several seeds: a folder seed-1, seed-2 … each in it.
-    client: a dask.distributed.Client: designs are computed on its workers, a task each; what a lost worker had is computed
-    again elsewhere. The report is that of one machine, byte for byte but for `timing`. A design is never cut: by `confluence`,
-    the default, a grid is one task, however large; `Problem.run(method="descent", client=client)` cuts one grid into parts.
-    Everything else as in `Problem.run`.
+    over: keys of the design file and their values: {"aspect_ratio": [0.5, 1, 2], "cor": "-1..1/5"}; the last key varies
+    fastest. A key is its path ("errors.x"), or its last word if no other key has it.
+    seed: seed of the sampled poses; several seeds give a report each.
+    output: a folder for report, table, pictures and a Zarr group, written when the sweep is complete. Until then, finished designs
+    are stored beside it, and the same call resumes from them. Several seeds: each in a subfolder seed-1, seed-2 …
+    client: a dask.distributed.Client: its workers compute the designs, a task each; the tasks of a lost worker are computed
+    again elsewhere. The report equals that of a single machine byte for byte, except for `timing`. A design is never divided: with
+    `confluence`, the default, a grid of any size is a single task; `Problem.run(method="descent", client=client)` divides a grid.
+    Everything else is as in `Problem.run`.
     """
     axes = [f"{key}={values if isinstance(values, str) else _values(key, values)}" for key, values in over.items()]
     expected = _expected(error_sigma, error_uniform)
@@ -133,7 +133,7 @@ def sweep(
 
 
 def _values(key: str, values: Iterable[Quantity]) -> str:
-    """Values as a person writes them; whole numbers stay whole."""
+    """Values in the notation of a design; whole numbers stay whole."""
     written = [str(value) if isinstance(value, (str, int)) else quantity(value, f"over: {key}") for value in values]
     if not written:
         raise ArgumentError(f"over: {key} has no values")

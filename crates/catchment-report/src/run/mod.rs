@@ -87,7 +87,7 @@ impl RunBody {
         document.row("method", format!("{}, of a {}", self.method_in_words(), self.domain()));
         let friction = self.friction();
         if friction > 0.0 {
-            document.row("friction", format!("µ = {friction} between the halves (Coulomb)"));
+            document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
         }
         if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
             document.row("slope threshold", format!("{slope}: motion ends on gentler slopes"));

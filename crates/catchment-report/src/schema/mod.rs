@@ -1,5 +1,5 @@
 //! The report of a run: a versioned contract. Lengths in D, angles in radians, fields in this order, in the
-//! [`Envelope`] of every report. The same run writes the same bytes except for `timing`.
+//! [`ReportEnvelope`] of every report. The same run writes the same bytes except for `timing`.
 
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::acceptance::{Acceptance, Warning};

@@ -20,7 +20,7 @@
 //!
 //! Rigid halves under Coulomb's law and slightly compliant halves, as real ones and those of engines are, may
 //! differ at some poses. Two kinds of such poses are counted: those that dock with a tenth less friction
-//! (`hardly_held`), and those that *wedge* in a jam ([`Doubt::wedges`]).
+//! (`hardly_held`), and those that *wedge* in a jam ([`FrictionAmbiguity::wedges`]).
 //!
 //! Not promised: that a pose lost at a coefficient is lost at all larger coefficients; coefficients
 //! between the given ones are not tested.

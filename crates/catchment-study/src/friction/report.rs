@@ -28,14 +28,14 @@ impl Subject for Friction {
         if let Some(FrictionLevel { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held)
         {
             warnings.push(note(format!(
-                "{} poses are lost at µ = {friction} and dock at 0.9 of it: rigid halves stick there; compliant halves, as real ones and those of physics \
+                "{} poses are lost at μ = {friction} and dock at 0.9 of it: rigid halves stick there; compliant halves, as real ones and those of physics \
                  engines, may slip",
                 grouped(*hardly_held),
             )));
         }
         if let Some(friction) = self.wedges_from() {
             warnings.push(note(format!(
-                "from µ = {friction} on some poses wedge: the halves press against each other, and rigid halves may stay even against a pull straight \
+                "from μ = {friction} on some poses wedge: the halves press against each other, and rigid halves may stay even against a pull straight \
                  out; compliant halves, as real ones and those of physics engines, may come loose"
             )));
         }
@@ -47,14 +47,14 @@ impl Subject for Friction {
         document.row(
             "method",
             format!(
-                "exact quasi-static motion (descent) of the same {} random poses at every µ",
+                "exact quasi-static motion (descent) of the same {} random poses at every μ",
                 grouped(self.motions)
             ),
         );
         document.section(None).table(self.table());
         document.paragraph(format!(
-            "µ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this µ; gained: the other way \
-             round; may stick: dock, but could also stick by Coulomb's law; barely stuck: lost, but dock at 0.9 µ.",
+            "μ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this μ; gained: the other way \
+             round; may stick: dock, but could also stick by Coulomb's law; barely stuck: lost, but dock at 0.9 μ.",
             grouped(self.motions)
         ));
         self.describe_kept(&mut document);
@@ -63,7 +63,7 @@ impl Subject for Friction {
             let poses = poses(self.come_back);
             document
                 .section(None)
-                .row("note", format!("{poses} are lost at some µ and dock again at a larger µ"));
+                .row("note", format!("{poses} are lost at some μ and dock again at a larger μ"));
         }
         document
     }
@@ -72,7 +72,7 @@ impl Subject for Friction {
 impl Friction {
     fn table(&self) -> Table {
         let mut table = Table::new([
-            Column::new("µ").key("friction"),
+            Column::new("μ").key("friction"),
             Column::data("motions"),
             Column::new("docks (95 % CI)").interval("aligned").format(ColumnFormat::Tenths),
             Column::data("jammed"),
@@ -120,10 +120,10 @@ impl Friction {
         document.titled(Some(format!("of the {} that dock without friction, still docking", poses(base))));
         for kept in &self.kept {
             let friction = if kept.is_top {
-                format!("beyond µ = {}, the largest that was tried", self.top())
+                format!("beyond μ = {}, the largest that was tried", self.top())
             } else {
                 let [lo, hi] = kept.ci95.map(|friction| self.up_to(friction));
-                format!("up to µ = {:.3}  (95 % CI {lo} … {hi})", kept.friction)
+                format!("up to μ = {:.3}  (95 % CI {lo} … {hi})", kept.friction)
             };
             document.row(format!("{:.0} %", 100.0 * kept.share), friction);
         }
@@ -143,7 +143,7 @@ impl Friction {
             document.row(
                 tenths(pair.share),
                 format!(
-                    "{}: from µ = {least}, half of these poses by µ = {median}",
+                    "{}: from μ = {least}, half of these poses by μ = {median}",
                     contact_in_words(&pair.fixed, &pair.moving)
                 ),
             );

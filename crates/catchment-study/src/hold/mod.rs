@@ -10,7 +10,7 @@
 //!
 //! The half rests in its mated pose, or in the rest that a given pose reaches, with a preload along −z
 //! through its centre of rotation. Lateral forces act through the face centre of the moving half or
-//! [`Settings::lever`] above it, torques about the centre of rotation. Each is computed in two ways
+//! [`HoldSettings::lever`] above it, torques about the centre of rotation. Each is computed in two ways
 //! ([`catchment_core::method::descent::Holding`]):
 //!
 //! - **guided**: the half can move only in the direction of the load and up. This is the preload times the

@@ -90,7 +90,7 @@ pub struct System {
     pub name: String,
     /// Source of the row.
     pub source: RowSource,
-    /// The printed values by [`Attribute::index`]; `None` if table 1.1 does not list it.
+    /// The printed values by [`CatalogAttribute::index`]; `None` if table 1.1 does not list it.
     pub attributes: Option<[String; 11]>,
     /// The published area.
     pub published: Option<PublishedZraa>,

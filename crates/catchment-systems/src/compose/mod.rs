@@ -15,9 +15,9 @@
 //! A's, they can dock if the two swept regions meet: A ∩ (B' + d) ≠ ∅, which is **d ∈ A ⊕ (−B')**, the
 //! Minkowski sum with one region reflected; B' is B as mounted.
 //!
-//! - [`Frames::Own`]: both are drawn facing +y, and B is mounted by a half turn, as everywhere in catchment:
+//! - [`RegionFrames::Own`]: both are drawn facing +y, and B is mounted by a half turn, as everywhere in catchment:
 //!   B' = −B, rotated by the heading, and the result is **A ⊕ B**, without a reflection.
-//! - [`Frames::World`]: B is drawn in its position before A: B' = B, and the result is **A ⊕ (−B)**.
+//! - [`RegionFrames::World`]: B is drawn in its position before A: B' = B, and the result is **A ⊕ (−B)**.
 //!
 //! The plane is the plane of motion of the robots: lateral offset *and gap*. It is not the (x, y) of a pose
 //! error, because the approach is inside the region. With a relative heading ψ, B' is rotated by ψ; over a

@@ -15,7 +15,7 @@
 //!   ────────────────────────────┘
 //! ```
 //!
-//! [`Latch`] is the content of a design file, [`Geometry`] the outline that follows from it, [`rules()`] the
+//! [`LatchDesign`] is the content of a design file, [`Geometry`] the outline that follows from it, [`rules()`] the
 //! requirements on the outline with their reasons. [`force`] computes the forces to latch and to break, from
 //! the nine measured designs of [`measured`]; [`press`] simulates the pressing of two halves. [`drawing`]
 //! writes the files for a laser cutter.

@@ -9,7 +9,7 @@
 //! [`WELD`] of the model's size are merged, and an edge is divided if a corner of its neighbours lies on it
 //! within the same distance. The winding matters: counter-clockwise seen from outside. A mesh that is then
 //! closed, wound outward and free of self-intersections is used unchanged. Any other mesh is repaired if the
-//! [`Treatment`] allows it, and the report lists the repairs. If defects remain, each of them is reported
+//! [`MeshPreparation`] allows it, and the report lists the repairs. If defects remain, each of them is reported
 //! with its place. Messages give coordinates in those of the source. Triangles in memory are never repaired.
 //! Coplanar triangles become polygons.
 //!

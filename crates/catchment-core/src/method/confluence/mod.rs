@@ -18,7 +18,7 @@
 //! A budget of motions or of time stops this early: lower cells are then decided, higher cells are undecided,
 //! and no outcome is guessed.
 //!
-//! With friction ([`descent::Settings::friction`]) the first of the three steps is skipped, because the
+//! With friction ([`descent::DescentSettings::friction`]) the first of the three steps is skipped, because the
 //! motion departs from the direction of descent.
 //!
 //! **Not guaranteed:** an inherited label may differ from the outcome of the centre's own motion if a feature
@@ -26,7 +26,7 @@
 //! are followed to their end. For 5-D grids of the pyramid and the 3-D X-Face it is one or two in ten
 //! thousand. Outcomes hold at the centres of cells, not between two of them.
 //!
-//! Memory: 10 bytes per kept cell (height, sides, order, label; [`Falls`] keeps a half or a quarter of a
+//! Memory: 10 bytes per kept cell (height, sides, order, label; [`DescentDirections`] keeps a half or a quarter of a
 //! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue
 //! 1987: here the map is the motion itself. Lengths in D, angles in radians.
 

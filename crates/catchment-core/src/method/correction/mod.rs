@@ -11,7 +11,7 @@
 //!
 //! The Sum is the measure of the accepted set in the *continuous* error box. In strata with reliable labels
 //! hardly any pose is misclassified, and few motions suffice to show it; most motions go to strata along the
-//! border. The Sum is unbiased whether the grid is right or wrong ([`Corrected::ci95`] gives the method): a
+//! border. The Sum is unbiased whether the grid is right or wrong ([`UnbiasedSum::ci95`] gives the method): a
 //! bad grid only widens the interval.
 //!
 //! Pose j of stratum s is a function only of the seed, s and j. A cell of the stratum is drawn by its rank,

@@ -10,7 +10,7 @@
 //! surfaces. If walls of the halves face each other closely (a peg in its hole), motion proceeds from event
 //! to event (`sliding`), in all other pairs by plain steps (`step`).
 //!
-//! With friction ([`Settings::friction`]) the contact forces lie in friction cones instead of along the
+//! With friction ([`DescentSettings::friction`]) the contact forces lie in friction cones instead of along the
 //! normals (`coulomb`), and motion ends if they balance the push; [`sticking()`] gives the friction
 //! coefficients at which this is possible.
 //!

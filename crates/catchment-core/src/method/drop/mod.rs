@@ -25,7 +25,7 @@
 //! is discrete; poses near the border of the accepted set may have either outcome. To the engine, meshes with
 //! undercuts are surfaces without an interior: a body that is pushed through one stays there.
 //!
-//! Units: D, s, kg; see [`Settings`]. Engine: rapier, with results that are bit-identical for any threads or
+//! Units: D, s, kg; see [`DropSettings`]. Engine: rapier, with results that are bit-identical for any threads or
 //! machine. Source of the test: the dissertation, section 4.2.
 
 mod engine;

@@ -8,11 +8,11 @@
 //!      jam    mated
 //! ```
 //!
-//! 1. Every cell drains to the lowest of its 3ⁿ − 1 neighbours ([`Rule::Lowest`]), or to the steepest
-//!    ([`Rule::Steepest`]). Cells without contact form a separate basin, the outside.
+//! 1. Every cell drains to the lowest of its 3ⁿ − 1 neighbours ([`DrainageRule::Lowest`]), or to the steepest
+//!    ([`DrainageRule::Steepest`]). Cells without contact form a separate basin, the outside.
 //! 2. The merge tree ([`MergeTree`]) holds the depth of every minimum and the pass across which it merges, so
 //!    that the result is known for every tolerance at once.
-//! 3. Basins shallower than [`Settings::depth_tolerance`] are merged. Its default lies in the widest gap
+//! 3. Basins shallower than [`FloodSettings::depth_tolerance`] are merged. Its default lies in the widest gap
 //!    between the depths (see [`Choice`]).
 //!
 //! The mated pose is lower than all poses around it. If it falls between cell centres (an even number of

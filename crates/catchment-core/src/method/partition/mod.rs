@@ -13,7 +13,7 @@
 //!
 //! The rotation between slices is approximate (a corner runs along its chord), and so is the ravine rule for
 //! three errors and more. Not promised: convergence of the watersheds at a fixed number of strips, see
-//! [`Settings::strips`].
+//! [`PartitionSettings::strips`].
 //!
 //! Source: dissertation, sections 5.1 and 5.2, figures 5.5–5.8.
 

@@ -16,15 +16,15 @@
 //! *Ends* are cells without a downhill neighbour: the mated pose, jams, and the hollows into which a grid
 //! divides a narrow ravine. Exact descent from their centres distinguishes them, so that nothing must be
 //! merged and no tolerance must be chosen. If motion leaves the error box, exact descent also decides if the
-//! grid's surface has at most [`Settings::followed_out`] cells; on larger grids it counts as missed at a
+//! grid's surface has at most [`TransportSettings::followed_out`] cells; on larger grids it counts as missed at a
 //! border of x or y, as jammed at a border of an angle, and a warning reports it.
 //!
 //! **Not guaranteed:** u strictly between 0 and 1 is numerical diffusion, not a probability of docking. At 30
 //! cells per axis in five dimensions a tenth of the box is ambiguous (0.02 < u < 0.98) and contains most of
-//! the misclassified cells; [`Arrival::is_ambiguous`] identifies them, so that exact descent can decide them
+//! the misclassified cells; [`ArrivalFractions::is_ambiguous`] identifies them, so that exact descent can decide them
 //! or a sample can correct their Sum.
 //!
-//! Memory: 10 bytes per cell, 2.5 to 5 for symmetric pairs ([`Relief`]). Sources: upwind membership,
+//! Memory: 10 bytes per cell, 2.5 to 5 for symmetric pairs ([`GradientField`]). Sources: upwind membership,
 //! Gyulassy, Bremer and Pascucci 2012; D-infinity, Tarboton 1997; simplices, Freudenthal 1942. Lengths in D,
 //! angles in radians.
 

@@ -15,7 +15,7 @@
 //! disturbed the flow, and the computation is repeated with a coarser seam; if no seam agrees, the result is
 //! an error.
 //!
-//! Exact up to rounding and [`Settings::seam`] for the solids as given; a cone is the polygon that
+//! Exact up to rounding and [`ZraaSettings::seam`] for the solids as given; a cone is the polygon that
 //! approximates it. Sets without area (the ridge of a roof) are not decided. Source: the dissertation,
 //! section 2.2 (ZRAA); Nilsson for the bounds of planar faces.
 

@@ -14,7 +14,7 @@
 //!   If it is zero, the rest is *level*, and friction or chance decides the final position on it.
 //! - **Order**: first- or second-order immobility by its contacts ([`crate::method::descent::immobility()`]).
 //! - **Escape path**: upper bound on the escape height, up to a point from which motion leads lower: the
-//!   smallest climb of all straight paths tried. A curved path may be lower. [`Settings::certified`] adds a
+//!   smallest climb of all straight paths tried. A curved path may be lower. [`JamsSettings::certified`] adds a
 //!   lower bound.
 //!
 //! Not promised: rests with fewer than about one in N sampled poses, and the true minimum of any search. Rise
