@@ -130,7 +130,7 @@ def of_class(module: Module, kind: ast.ClassDef) -> str:
         text += f"*A kind of {', '.join(f'`{base}`' for base in bases)}.*\n\n"
     text += said + "\n"
     if rows := attributes(module, kind):
-        text += "\n| attribute | type | what it is |\n|---|---|---|\n"
+        text += "\n| attribute | type | description |\n|---|---|---|\n"
         for name, of, words in rows:
             text += f"| `{name}` | {f'`{of}`'.replace('|', chr(92) + '|') if of else ''} | {words.replace('|', chr(92) + '|')} |\n"
     for method in methods:
@@ -168,7 +168,7 @@ def page(made: str) -> str:
                 text += "\n" + of_function(name, node, "###")
             else:
                 text += f"\n### {name}\n\n```python\n{ast.unparse(node)}\n```\n\n{module.said_above(node)}\n"
-    text += "\n## Types of arguments\n\n| name | type | what it stands for |\n|---|---|---|\n"
+    text += "\n## Types of arguments\n\n| name | type | meaning |\n|---|---|---|\n"
     for module, node in ((modules[name], node) for name in ("_arguments", "_meshes") for node in modules[name].body):
         if isinstance(node, ast.AnnAssign) and ast.unparse(node.annotation) == "TypeAlias":
             of = ast.unparse(node.value).replace("|", "\\|")

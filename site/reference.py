@@ -111,12 +111,12 @@ def measurements() -> str:
     stored = json.loads((ROOT / "crates/catchment-core/benches/rates.json").read_text(encoding="utf-8"))
     text = f"""# Measurements
 
-{MADE}What `cargo bench -- --store` stored last, a table for each bench, with the machine and the commit it was measured on. `cargo bench` prints today's beside them, and every
-bench asserts its result before it counts. How right the methods are, and how far off, is measured in [accuracy](../accuracy.md) and [coverage](../accuracy-coverage.md);
-what no method promises stands in [limits](../limits.md).
+{MADE}Rates that the last `cargo bench -- --store` stored, in a table per bench, with the machine and the commit. `cargo bench` prints current rates beside the stored ones, and every
+bench asserts its result before the rate counts. For the error of the methods see [accuracy](../accuracy.md) and [coverage](../accuracy-coverage.md);
+for the guarantees that no method gives see [limits](../limits.md).
 """
     for name, bench in stored.items():
-        text += f"\n## {name}\n\n{bench['machine']}, {bench['date']}, commit {bench['commit']}\n\n| what | per second |\n|---|---:|\n"
+        text += f"\n## {name}\n\n{bench['machine']}, {bench['date']}, commit {bench['commit']}\n\n| benchmark | per second |\n|---|---:|\n"
         for what, rate in bench["per_second"].items():
             grouped = f"{rate:,.0f}".replace(",", " ")
             text += f"| {cell(what)} | {grouped} |\n"

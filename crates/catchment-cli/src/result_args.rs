@@ -41,7 +41,7 @@ pub(crate) struct PrintArgs {
     /// Print the table as CSV, in D and radians
     #[arg(long, hide_short_help = true, help_heading = "Output")]
     csv: bool,
-    /// Print details as well: the grid, its re-checks, further figures of merit
+    /// Print details as well
     #[arg(short, long, help_heading = "Output")]
     verbose: bool,
     /// Exit with code 1 unless the JSON report meets this, such as "onaa.edge>=0.2"; may be repeated

@@ -1,4 +1,4 @@
-//! Runs, whole and in parts, and what they found.
+//! Runs, whole and in parts, and their results.
 
 use crate::problem::Problem;
 use crate::refusal::Refusal;
@@ -11,7 +11,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// The answer of a run.
+/// The result of a run.
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Answer {
     inner: run::Answer,
@@ -25,7 +25,7 @@ impl Problem {
         Ok(Answer { inner })
     }
 
-    /// Decides one part of a run: JSON for `merge`.
+    /// Decides a part of a run; returns JSON for `merge`.
     fn part(&self, py: Python<'_>, run: &str, number: usize, of: usize, how: How) -> PyResult<String> {
         work(py, &how, |exec| {
             let part = read(run)?.part(&self.inner, RunPart { number, of }, exec)?;
@@ -33,7 +33,7 @@ impl Problem {
         })
     }
 
-    /// Puts the parts of a run together, and goes on as `run` does.
+    /// Merges the parts of a run, and continues as `run` does.
     fn merge(&self, py: Python<'_>, run: &str, parts: Vec<String>, how: How) -> PyResult<Answer> {
         let inner = work(py, &how, |exec| {
             let parts = parts.iter().map(|part| serde_json::from_str(part));
@@ -44,7 +44,7 @@ impl Problem {
     }
 }
 
-/// A run that was written by `plan`.
+/// Parses a run that `plan` wrote.
 fn read(run: &str) -> Result<Run, Refusal> {
     Ok(serde_json::from_str(run)?)
 }
@@ -56,18 +56,18 @@ impl Answer {
         Report::of_answer(&self.inner).to_json().map_err(|error| Refusal::from(error).raise(py))
     }
 
-    /// The report for eyes.
+    /// The report as a table to read.
     fn table(&self) -> String {
         Report::of_answer(&self.inner).table()
     }
 
-    /// The code of every outcome, the first axis fastest: 1 aligned, 2 jammed, 3 missed, 4 undecided.
+    /// The code of every outcome: 1 aligned, 2 jammed, 3 missed, 4 undecided. The first axis varies fastest.
     fn outcomes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
         let codes = self.inner.acceptance.outcomes.iter().map(|outcome| *outcome as u8).collect();
         PyArray1::from_vec(py, codes)
     }
 
-    /// Heights of first contact over the grid, in D, where they were kept.
+    /// Heights of first contact over the grid, in D; `None` unless they were kept.
     fn heights<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f32>>> {
         self.inner
             .by_products
@@ -76,7 +76,7 @@ impl Answer {
             .map(|landscape| PyArray1::from_slice(py, &landscape.heights))
     }
 
-    /// The requirements that are not met, as sentences.
+    /// Unmet requirements, as sentences.
     fn unmet(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let verdicts = Report::of_answer(&self.inner)
             .verdicts(&self.inner.run.requirements)
@@ -84,7 +84,7 @@ impl Answer {
         Ok(verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect())
     }
 
-    /// Every picture: its name, SVG and PNG.
+    /// Draws every picture: its name, SVG and PNG.
     fn draw(&self, py: Python<'_>, how: How) -> PyResult<Vec<(&'static str, String, Vec<u8>)>> {
         work(py, &how, |exec| {
             let drawn = DrawnFigures::of(&self.inner, exec)?.pictures;
@@ -96,7 +96,7 @@ impl Answer {
         })
     }
 
-    /// Writes everything into a folder, or the Zarr group alone where the path ends with `.zarr`.
+    /// Writes everything into a folder, or only the Zarr group if the path ends with `.zarr`.
     fn save(&self, py: Python<'_>, path: PathBuf, how: How) -> PyResult<()> {
         work(py, &how, |exec| {
             if path.extension().is_some_and(|ending| ending == "zarr") {

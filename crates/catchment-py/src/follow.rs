@@ -1,4 +1,4 @@
-//! Single poses and arrays of them, followed exactly.
+//! Motions of single poses and of arrays of poses.
 
 use crate::plan::method;
 use crate::problem::Problem;
@@ -14,25 +14,25 @@ use catchment::run::EndContacts;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Outcome codes, last pose errors, and z of the COR there.
+/// Outcome codes, final pose errors, and z of the COR in the final states.
 type Ends<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// Two features in contact, of the fixed and of the moving half, and where they touch.
+/// A contact: the features of the fixed and of the moving half, and the contact point.
 type Touching = (String, String, [f64; 3]);
 
-/// Where a pose ends: outcome, last pose error, z of the COR, what touches.
+/// The final state of a motion: outcome, pose error, z of the COR, contacts.
 type Ended = (&'static str, [f64; 5], Option<f64>, Vec<Touching>);
 
 #[pymethods]
 impl Problem {
-    /// A pose error as a person writes it, in D and radians.
+    /// Parses a pose error; the result is in D and radians.
     fn pose(&self, py: Python<'_>, text: &str) -> PyResult<[f64; 5]> {
         let read = parse_pose(text, self.inner.design());
         read.map(PoseError::to_array)
             .map_err(|diagnostics| Refusal::of_argument("pose", diagnostics).raise(py))
     }
 
-    /// Where one pose ends: its outcome, the last pose error, z of the COR there, and what touches.
+    /// Follows a pose; returns its outcome, and the pose error, z of the COR and contacts of its final state.
     fn follow(
         &self,
         py: Python<'_>,
@@ -52,8 +52,8 @@ impl Problem {
         })
     }
 
-    /// Where every row of an array ends. Nothing is copied: poses are read where they lie, and the three arrays that come back
-    /// are those that were written into.
+    /// Follows every row of an array. Nothing is copied: poses are read in place, and the motions write directly into the three
+    /// returned arrays.
     fn follow_many<'py>(
         &self,
         py: Python<'py>,
@@ -81,7 +81,7 @@ impl Problem {
         Ok((PyArray1::from_vec(py, outcomes), ends, PyArray1::from_vec(py, heights)))
     }
 
-    /// The way of one pose, from first contact to where it rests.
+    /// The trajectory of a pose, from first contact to rest.
     fn trace(&self, py: Python<'_>, pose: [f64; 5], friction: f64, how: How) -> PyResult<Rendered> {
         work(py, &how, |_| {
             let problem = &self.inner;
@@ -98,7 +98,7 @@ impl Problem {
 }
 
 impl Problem {
-    /// Exact motions write where they end; other methods hand their ends over.
+    /// Exact motions write their final states into the rows; the final states of other methods are copied.
     fn rows(&self, by: &Method, rows: Rows<'_>, exec: &catchment::exec::Exec) -> Result<(), Refusal> {
         if by.name() == "descent" {
             return Ok(descent::rests_of_rows(self.inner.pair(), rows, &by.motions(), exec)?);

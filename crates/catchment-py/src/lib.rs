@@ -1,17 +1,17 @@
-//! The module that Python loads: the library's `Problem` and `Run`, their reports, and arrays. What people see of it is
-//! the package `python/catchment`, which adds names, units and docstrings; `_catchment.pyi` says what is here.
+//! The module that Python loads: `Problem` and `Run` of the library, their reports, and arrays. Its public interface is
+//! the package `python/catchment`, which adds names, units and docstrings; `_catchment.pyi` lists the contents of the module.
 //!
 //! ```text
 //!   catchment (Python)  ──▶ _catchment.Problem ──▶ catchment::problem::Problem      geometry, checked once
-//!     arguments, units          .plan → Run as JSON ──▶ .run → Answer               what changes an answer is data
+//!     arguments, units          .plan → Run as JSON ──▶ .run → Answer               a run is data
 //!     docstrings, pictures      .follow_many      arrays in, arrays out, no copies
 //!                               .window …  ──▶ Rendered: JSON, table, CSV, picture     the reports of the command line
 //! ```
 //!
-//! Every computation leaves the interpreter free, tells its progress, and ends on Ctrl-C ([`work`]). Refusals are
+//! Every computation releases the interpreter, reports its progress, and ends on Ctrl-C ([`work`]). Errors are
 //! Python exceptions with places ([`refusal`]).
 //!
-//! Not promised: anything to who imports `_catchment` without the package around it.
+//! Not promised: a stable interface for code that imports `_catchment` without the package.
 
 #![expect(clippy::needless_pass_by_value, reason = "Python hands arguments over as values")]
 
@@ -28,7 +28,7 @@ mod work;
 
 use pyo3::prelude::*;
 
-/// The module.
+/// The module `_catchment`.
 #[pymodule]
 fn _catchment(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

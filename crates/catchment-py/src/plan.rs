@@ -1,4 +1,4 @@
-//! The arguments of a run as a `Run`, which travels as JSON.
+//! Conversion of the arguments of a run to a `Run`, which is passed as JSON.
 
 use crate::problem::Problem;
 use crate::refusal::Refusal;
@@ -12,24 +12,24 @@ use pyo3::prelude::*;
 use serde_json::{Map, Value};
 use std::time::Duration;
 
-/// Every method: its name, and what it does in a line.
+/// Every method: its name, and a description in a single line.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<(&'static str, &'static str)> {
     REGISTRY.iter().map(|entry| (entry.info.name, entry.info.summary)).collect()
 }
 
-/// A method with some of its settings changed.
+/// The method of this name, with the given settings.
 pub(crate) fn method(name: &str, settings: &str) -> Result<Method, Refusal> {
     let settings: Map<String, Value> = serde_json::from_str(settings)?;
     Ok(name.parse::<Method>()?.with(&settings)?)
 }
 
-/// A resolution, as written.
+/// Parses a resolution.
 pub(crate) fn resolution(text: Option<&str>) -> Result<Option<Resolution>, Refusal> {
     Ok(text.map(str::parse::<Resolution>).transpose()?)
 }
 
-/// The errors that a person expects.
+/// Expected pose errors of a robot.
 #[derive(FromPyObject)]
 pub(crate) struct Expected {
     #[pyo3(item)]
@@ -39,7 +39,7 @@ pub(crate) struct Expected {
 }
 
 impl Expected {
-    /// Their distribution, in D and radians.
+    /// The distribution of the errors, in D and radians.
     pub(crate) fn distribution(
         &self,
         problem: &catchment::problem::Problem,
@@ -60,7 +60,7 @@ impl Expected {
     }
 }
 
-/// What a run is asked for.
+/// Arguments of a run.
 #[derive(FromPyObject)]
 pub(crate) struct Asked {
     #[pyo3(item)]
@@ -89,9 +89,9 @@ pub(crate) struct Asked {
     window: bool,
 }
 
-/// The smallest tolerance: 10¹⁰ descents would not reach it.
+/// The smallest tolerance; 10¹⁰ exact motions would not reach it.
 const SMALLEST_SHARE: f64 = 1e-5;
-/// The longest time, in seconds.
+/// The largest time budget, in seconds.
 const LONGEST_S: f64 = 1e7;
 
 impl Asked {
@@ -121,7 +121,7 @@ impl Asked {
         })
     }
 
-    /// The run that it means for a problem.
+    /// The run of a problem with these arguments.
     pub(crate) fn run(
         &self,
         problem: &catchment::problem::Problem,
@@ -148,7 +148,7 @@ impl Asked {
 
 #[pymethods]
 impl Problem {
-    /// What was asked for as a run: JSON, refused now if it cannot be made.
+    /// The arguments as a run in JSON. Raises if the run is impossible.
     fn plan(&self, py: Python<'_>, asked: Asked, expected: Expected) -> PyResult<String> {
         let plan = || -> Result<String, Refusal> {
             let run = asked.run(&self.inner, &expected)?;

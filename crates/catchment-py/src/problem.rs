@@ -1,4 +1,4 @@
-//! A problem from the text of a design, with its files on disk or in memory.
+//! A problem built from the text of a design, with its files on disk or in memory.
 
 use crate::refusal::Refusal;
 use crate::work::{How, work};
@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// The text of a design file.
 ///
 /// # Errors
-/// `DesignError` where it cannot be read.
+/// `DesignError` if the file cannot be read.
 #[pyfunction]
 pub(crate) fn read_text(py: Python<'_>, path: PathBuf) -> PyResult<String> {
     load(&path).map_err(|error| Refusal::from(ProblemError::from(error)).raise(py))
 }
 
-/// What is changed in a design for a call, as options of the command line are.
+/// Values that override those of a design, as the options of the command line do.
 #[derive(FromPyObject, Clone, Default)]
 pub(crate) struct Changes {
     #[pyo3(item)]
@@ -32,7 +32,7 @@ pub(crate) struct Changes {
 }
 
 impl Changes {
-    /// What is changed: its name, and the key that it stands for.
+    /// The overridden values: name of the argument, and key of the design file.
     pub(crate) fn keys(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         [
             ("free", "alignment.free", self.free.is_some()),
@@ -44,7 +44,7 @@ impl Changes {
         .filter_map(|(name, key, is_given)| is_given.then_some((name, key)))
     }
 
-    /// The draft with them.
+    /// The draft with these values.
     pub(crate) fn apply(&self, mut draft: Draft) -> Result<Draft, ProblemError> {
         if let Some(free) = &self.free {
             draft = draft.change("free", |design| design.with_free(parse_dofs(free)?))?;
@@ -63,7 +63,7 @@ impl Changes {
     }
 }
 
-/// An alignment problem, ready to be decided.
+/// An alignment problem, with its geometry built and its mated pose checked.
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Problem {
     pub(crate) inner: catchment::problem::Problem,
@@ -90,12 +90,12 @@ impl Problem {
         Ok(Self { inner, source, changes })
     }
 
-    /// What the design is called.
+    /// Name of the design.
     fn name(&self) -> &str {
         &self.inner.design().name
     }
 
-    /// SHA-256 of all that may change an answer.
+    /// SHA-256 of everything that can change a result.
     fn digest(&self) -> &str {
         self.inner.digest()
     }
@@ -105,18 +105,18 @@ impl Problem {
         serde_json::to_string(self.inner.design()).map_err(|error| Refusal::from(error).raise(py))
     }
 
-    /// What speaks against the mated pose, as sentences.
+    /// Warnings about the mated pose, as sentences.
     fn doubts(&self) -> Vec<String> {
         self.inner.objections()
     }
 
-    /// Names of the free errors, and the half-widths of the error box, in D and radians.
+    /// Names of the free errors, with the half-widths of the error box, in D and radians.
     fn error_box(&self) -> Vec<(&'static str, f64)> {
         let alignment = self.inner.alignment();
         alignment.free.iter().map(|dof| (dof.name(), alignment.half_range(dof))).collect()
     }
 
-    /// Every file that the halves come from, with what is in it, by its path from the folder of the design.
+    /// Every source file of the halves: its path relative to the folder of the design, and its content.
     fn files(&self, py: Python<'_>) -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
         let read = |path: &Path| match self.source.files.get(path) {
             Some(bytes) => Ok(bytes.clone()),
@@ -128,7 +128,7 @@ impl Problem {
         files.collect::<Result<_, std::io::Error>>().map_err(|error| Refusal::from(error).raise(py))
     }
 
-    /// Both halves, apart in space and mated in section, as SVG and PNG.
+    /// Both halves, separated in space and mated in section, as SVG and PNG.
     fn picture(&self, py: Python<'_>) -> PyResult<(String, Vec<u8>)> {
         let drawn = py.detach(|| {
             let picture = figure::pair(&self.inner)?;
@@ -140,7 +140,7 @@ impl Problem {
 }
 
 impl Problem {
-    /// The files that the halves come from.
+    /// The source files of the halves.
     fn paths(&self) -> BTreeSet<PathBuf> {
         let ConnectorSpec::Own(own) = &self.inner.design().connector else { return BTreeSet::new() };
         let of = |half: &HalfSpec| -> Vec<PathBuf> {

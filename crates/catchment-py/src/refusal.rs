@@ -1,4 +1,4 @@
-//! Why something is refused, as an exception of the package: facts with their places and advice.
+//! Errors, as exceptions of the package: diagnostics with their places and advice.
 
 use catchment::advice::{Advice, Advised};
 use catchment::design::{Diagnostic, Diagnostics};
@@ -12,31 +12,31 @@ use pyo3::prelude::*;
 use std::any::Any;
 use std::error::Error;
 
-/// What is wrong, by whose fault.
+/// An error, by its cause.
 #[derive(Debug)]
 pub(crate) enum Refusal {
-    /// What the design says.
+    /// The text of the design.
     Design(Diagnostics),
-    /// The geometry that it describes.
+    /// The geometry of the design.
     Geometry(Diagnostics),
     /// An argument of a call.
     Argument(Diagnostics),
-    /// It does not fit into memory, with what helps.
+    /// The memory budget is too small; with advice.
     Memory(String),
-    /// There is no answer.
+    /// There is no result.
     Compute(String),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     Cancelled,
 }
 
 impl Refusal {
-    /// An argument is wrong.
+    /// An argument is invalid.
     pub(crate) fn argument(name: &str, message: impl ToString) -> Self {
         let list = vec![Diagnostic::new(format!("{name}: {}", message.to_string()), None)];
         Self::Argument(Diagnostics { source: None, list, omitted: 0 })
     }
 
-    /// Everything that is wrong with the text of an argument.
+    /// All errors in the text of an argument.
     pub(crate) fn of_argument(name: &str, mut diagnostics: Diagnostics) -> Self {
         for diagnostic in &mut diagnostics.list {
             diagnostic.message = format!("{name}: {}", diagnostic.message);
@@ -44,7 +44,7 @@ impl Refusal {
         Self::Argument(diagnostics)
     }
 
-    /// The problem was read and is not built.
+    /// The problem was read, but cannot be built.
     pub(crate) fn of_geometry(error: ProblemError) -> Self {
         match error {
             ProblemError::Diagnostics(diagnostics) => Self::Geometry(diagnostics),
@@ -52,7 +52,7 @@ impl Refusal {
         }
     }
 
-    /// As the exception.
+    /// The Python exception of this error.
     pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
         let (class, diagnostics, message) = match self {
             Self::Cancelled => return PyKeyboardInterrupt::new_err(()),
@@ -69,7 +69,7 @@ impl Refusal {
     }
 }
 
-/// `class(message, diagnostics, omitted, path)` of `catchment._errors`; a finding is `(message, advice, line, column)`.
+/// `class(message, diagnostics, omitted, path)` of `catchment._errors`; a diagnostic is `(message, advice, (line, column))`.
 fn exception<'py>(
     py: Python<'py>,
     class: &str,
@@ -133,7 +133,7 @@ impl<E: Error + 'static> From<E> for Refusal {
     }
 }
 
-/// An error that has no place: its message, and those of its causes that it does not repeat.
+/// An error without a place: its message, and the messages of its causes that it does not repeat.
 fn explained(error: &(dyn Error + 'static)) -> Refusal {
     let mut message = error.to_string();
     let mut is_memory = false;
@@ -150,7 +150,7 @@ fn explained(error: &(dyn Error + 'static)) -> Refusal {
     if is_memory { Refusal::Memory(message) } else { Refusal::Compute(message) }
 }
 
-/// The error, if it is a `T`.
+/// Takes the error if it is a `T`.
 fn taken<E: 'static, T: 'static>(error: &mut Option<E>) -> Option<T> {
     (error as &mut dyn Any).downcast_mut::<Option<T>>().and_then(Option::take)
 }

@@ -7,32 +7,32 @@ use catchment::report::{ReportEnvelope, csv};
 use pyo3::prelude::*;
 use serde::Serialize;
 
-/// Pixels per unit of a picture: as the command line draws them.
+/// Pixels per unit of a picture, as in the command line.
 pub(crate) const PNG_SCALE: f32 = 2.0;
 
-/// JSON, the table for eyes, the records for programs and the picture of one report.
+/// A report as JSON, as a table to read, as CSV for programs, and as a picture.
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Rendered {
     /// The report, as the command line prints it.
     #[pyo3(get)]
     json: String,
-    /// For eyes.
+    /// The report as a table to read.
     #[pyo3(get)]
     table: String,
-    /// For programs.
+    /// The report as CSV, for programs.
     #[pyo3(get)]
     csv: String,
     picture: Option<Picture>,
 }
 
 impl Rendered {
-    /// Of a report without a picture.
+    /// Renders a report without a picture.
     pub(crate) fn of<B: Printed + Serialize>(report: &ReportEnvelope<B>) -> Result<Self, Refusal> {
         let csv = String::from_utf8_lossy(&csv(&report.records())?).into_owned();
         Ok(Self { json: report.to_json()?, table: report.table(), csv, picture: None })
     }
 
-    /// The same with its picture, where there is something to draw.
+    /// Adds the picture, if there is something to draw.
     pub(crate) fn with(mut self, picture: Result<Picture, FigureError>) -> Result<Self, Refusal> {
         self.picture = match picture {
             Ok(picture) => Some(picture),

@@ -1,4 +1,4 @@
-//! Studies of one problem, and two beside each other: each tells the report of its command.
+//! Studies of a problem, and comparisons of two: each returns the report of its command.
 
 use crate::plan::{Expected, method, resolution};
 use crate::problem::Problem;
@@ -17,7 +17,7 @@ use catchment::run::{Run, jams};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// How long it took, on how many threads.
+/// Wall-clock time, and number of threads.
 fn timing(started: &Stopwatch, exec: &catchment::exec::Exec) -> Timing {
     Timing { total_s: started.seconds(), threads: exec.threads() }
 }
@@ -28,7 +28,7 @@ fn doubts(problem: &catchment::problem::Problem) -> Vec<WarningReport> {
 
 #[pymethods]
 impl Problem {
-    /// The largest box of errors that all dock.
+    /// Finds the tolerance window: the largest box of errors that all dock.
     #[expect(clippy::too_many_arguments, reason = "Python's package gives each its name")]
     fn window(
         &self,
@@ -66,7 +66,7 @@ impl Problem {
         })
     }
 
-    /// Where it jams instead of docking, and on which features.
+    /// Finds the jams: rests that do not dock, with their features.
     #[expect(clippy::too_many_arguments, reason = "Python's package gives each its name")]
     fn jams(
         &self,
@@ -102,7 +102,7 @@ impl Problem {
         })
     }
 
-    /// Offsets that are corrected by sliding alone, exactly.
+    /// Computes exactly the offsets corrected with all rotations locked (ZRAA).
     fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let problem = &self.inner;
@@ -117,16 +117,16 @@ impl Problem {
     }
 }
 
-/// A problem with its name and method and settings, or a stored result.
+/// A side of a comparison: a problem with its name, method and settings, or a stored result.
 #[derive(FromPyObject)]
 pub(crate) enum Side<'py> {
-    /// Where a result lies.
+    /// Path of a stored result.
     Stored(PathBuf),
-    /// Its name for people, the problem, the method and its settings.
+    /// Displayed name, problem, method, and settings of the method.
     Fresh(String, PyRef<'py, Problem>, String, String),
 }
 
-/// Two acceptances beside each other.
+/// Compares two areas of acceptance.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,

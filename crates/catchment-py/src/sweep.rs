@@ -1,7 +1,8 @@
-//! A sweep, whole or design by design: what is found elsewhere is put together here, to the bytes of one machine.
+//! A sweep, whole or design by design. Results that were computed elsewhere are merged here into the report of a single
+//! machine, byte for byte.
 //!
 //! ```text
-//!   Sweep ──▶ key(k) ──▶ kept? ──no──▶ design(k), anywhere ──▶ (key, JSON) ──▶ keep ──▶ report()
+//!   Sweep ──▶ key(k) ──▶ stored? ──no──▶ design(k), anywhere ──▶ (key, JSON) ──▶ keep ──▶ report()
 //! ```
 
 use crate::plan::{Asked, Expected};
@@ -21,7 +22,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::PathBuf;
 
-/// The designs of a sweep, read and not yet computed.
+/// The designs of a sweep, parsed and not yet computed.
 #[pyclass(frozen, module = "catchment._catchment")]
 pub(crate) struct Sweep {
     plan: SweepPlan,
@@ -29,7 +30,7 @@ pub(crate) struct Sweep {
     output: Option<PathBuf>,
 }
 
-/// What was found elsewhere, and what is kept beside the result.
+/// Results that were computed elsewhere, and results stored beside the output.
 struct Both<'a> {
     found: BTreeMap<String, DesignResult>,
     kept: Option<&'a FinishedDesigns>,
@@ -45,7 +46,7 @@ impl DesignStore for Both<'_> {
     }
 }
 
-/// Why there is no sweep, at the argument that it is about.
+/// The error of a sweep, at the argument that causes it.
 fn refused(error: SweepError) -> Refusal {
     match error {
         SweepError::Problem(error) => error.into(),
@@ -96,7 +97,7 @@ impl Sweep {
         self.plan.len()
     }
 
-    /// The numbers of the designs that are not kept yet.
+    /// The numbers of the designs without a stored result.
     fn missing(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
         let Some(parts) = &self.parts else { return Ok((0..self.plan.len()).collect()) };
         let missing = |number: &usize| match self.plan.key(*number) {
@@ -109,7 +110,7 @@ impl Sweep {
         Ok(numbers.map_err(|error| refused(error).raise(py))?.into_iter().flatten().collect())
     }
 
-    /// Computes one design: its key and its figures as JSON; none where its halves do not build.
+    /// Computes a design: its key and its results as JSON; `None` if its halves cannot be built.
     fn design(&self, py: Python<'_>, number: usize, how: How) -> PyResult<Option<(String, String)>> {
         if number >= self.plan.len() {
             let message = format!("there is no design {number} of {}", self.plan.len());
@@ -121,7 +122,7 @@ impl Sweep {
         })
     }
 
-    /// Keeps what was found elsewhere, where results are kept.
+    /// Stores the result of a design that was computed elsewhere, if results are stored.
     fn keep(&self, py: Python<'_>, key: &str, found: &str) -> PyResult<()> {
         let keep = || -> Result<(), Refusal> {
             let found: DesignResult = serde_json::from_str(found)?;
@@ -130,7 +131,7 @@ impl Sweep {
         keep().map_err(|refusal| refusal.raise(py))
     }
 
-    /// Computes what neither `found` nor the folder has, and tells the whole.
+    /// Computes the designs that are neither in `found` nor in the folder; returns the report of all designs.
     fn run(&self, py: Python<'_>, found: Vec<(String, String)>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let started = Stopwatch::start();
@@ -158,7 +159,7 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// Writes what the command line writes.
+    /// Writes the same files as the command line.
     fn save(&self, report: &SweepReport, path: &std::path::Path, exec: &Exec) -> Result<(), Refusal> {
         let mut drawn = Vec::new();
         drawn.extend(figure::sweep_map(report).map(|picture| ("sweep", picture)));

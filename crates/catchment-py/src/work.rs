@@ -1,13 +1,13 @@
-//! A computation beside the interpreter.
+//! Runs a computation in a thread beside the interpreter.
 //!
 //! ```text
-//!   Python's thread   waits, and 20 times a second: Ctrl-C? ──▶ the cancel flag;  progress(fraction, stage)
-//!   a thread          work(&Exec) ──▶ whole or nothing
+//!   Python's thread   waits, and 20 times a second: Ctrl-C? ──▶ cancel flag;  progress(fraction, stage)
+//!   a thread          work(&Exec) ──▶ complete result or nothing
 //! ```
 //!
-//! A process that was forked from one that has computed is refused: `fork` copies no threads.
+//! A process that was forked after a computation is refused: `fork` copies no threads.
 //!
-//! The interpreter is free while it waits. Not promised: that a stop comes at once; rooms look for it once per pose.
+//! The interpreter is released during the wait. Not promised: an immediate stop; computations check the cancel flag once per pose.
 
 use crate::refusal::Refusal;
 use catchment::exec::Exec;
@@ -19,21 +19,21 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How long Python's thread waits between two looks.
+/// Interval at which Python's thread checks for Ctrl-C and progress.
 const PATIENCE: Duration = Duration::from_millis(50);
-/// As much as a main thread has.
+/// Stack of the computing thread: the size of the stack of a main thread.
 const STACK_BYTES: usize = 8 << 20;
 
-/// How to run: nothing here changes a bit of a result.
+/// Execution settings: they change no bit of a result.
 #[derive(FromPyObject)]
 pub(crate) struct How {
-    /// Worker threads; 0: one per core.
+    /// Worker threads; 0 uses every core.
     #[pyo3(item)]
     threads: u16,
-    /// Bytes that a result may take; none: three quarters of what is free.
+    /// Memory budget of a result, in bytes; `None`: three quarters of the free memory.
     #[pyo3(item)]
     memory: Option<u64>,
-    /// Called with the share that is done and the name of the stage.
+    /// Callback that takes the completed share and the name of the stage.
     #[pyo3(item)]
     progress: Option<Py<PyAny>>,
 }
@@ -48,11 +48,11 @@ impl How {
     }
 }
 
-/// The number of the process that computed first. A fork has its memory and none of its threads: whoever waits for one there waits
-/// for ever.
+/// Id of the first process that computed. A fork has its memory and no threads: a wait for a thread in the fork never
+/// ends.
 static OWNER: OnceLock<u32> = OnceLock::new();
 
-/// Refuses to compute in a fork.
+/// Returns an error in a forked process.
 fn ensure_not_forked() -> Result<(), Refusal> {
     if *OWNER.get_or_init(std::process::id) == std::process::id() {
         return Ok(());
@@ -62,10 +62,10 @@ fn ensure_not_forked() -> Result<(), Refusal> {
     Err(Refusal::Compute(message.to_owned()))
 }
 
-/// The last thing that was reported.
+/// The last reported progress.
 type LastProgress = Arc<Mutex<Option<(f64, &'static str)>>>;
 
-/// Passes on what was reported, and looks whether Python wants to stop.
+/// Passes the reported progress to the callback, and checks for signals such as Ctrl-C.
 fn look(py: Python<'_>, reported: &LastProgress, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     py.check_signals()?;
     let last = reported.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -75,7 +75,7 @@ fn look(py: Python<'_>, reported: &LastProgress, progress: Option<&Py<PyAny>>) -
     Ok(())
 }
 
-/// Does work that may take long.
+/// Runs a long task; the interpreter stays responsive.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     how: &How,
@@ -96,7 +96,7 @@ pub(crate) fn work<T: Send>(
             let (done, finished) = mpsc::channel::<()>();
             let exec = &exec;
             let task = move || {
-                // Gone with the thread, also where it panics: that is what wakes the other.
+                // Dropped when the thread ends, even by a panic; the drop wakes the waiting thread.
                 let _done = done;
                 task(exec)
             };

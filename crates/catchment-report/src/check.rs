@@ -1,6 +1,6 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
-use super::document::Printed;
+use super::document::{Printed, error_box};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
@@ -314,15 +314,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
     if alignment.symmetry > 1 {
         row("symmetry", &format!("{}-fold", alignment.symmetry));
     }
-    for (k, dof) in alignment.free.iter().enumerate() {
-        let half_range = alignment.half_range(dof);
-        let range = if dof.is_rotation() {
-            format!("{} deg", rounded(half_range.to_degrees()))
-        } else {
-            length(half_range)
-        };
-        row(if k == 0 { "error box" } else { "" }, &format!("{} ±{range}", dof.name()));
-    }
+    row("error box", &error_box(design));
 }
 
 /// Name of a unit vector, if it has one.
@@ -417,7 +409,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
-        assert!(text.contains("                     pitch ±90 deg\n"), "{text}");
+        assert!(text.contains("pitch ±90°\n"), "{text}");
     }
 
     #[test]

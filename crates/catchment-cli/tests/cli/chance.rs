@@ -110,7 +110,7 @@ fn the_way_of_a_trial_is_told_and_drawn() {
     let told = run(home.path(), &[&args[..], &["-o", "t.svg"]].concat());
     assert!(
         told.contains("time [s]")
-            && told.contains("  outcome        aligned\n")
+            && told.contains("  outcome        docked\n")
             && told.ends_with("--- stderr\nnext: catchment rests v.toml --jams\n"),
         "{told}"
     );

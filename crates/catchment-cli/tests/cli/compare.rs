@@ -140,7 +140,7 @@ fn every_method_that_applies_stands_beside_the_others() {
 fn the_kinematic_method_decides_planar_families_alone() {
     let home = home();
     let told = run(home.path(), &["run", "v.toml", "--method", "kinematic", "--resolution", "40"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("kinematic, 40 × 40"), "{told}");
+    assert!(told.starts_with("exit 0\n") && told.contains("kinematic, of a grid of 40 × 40"), "{told}");
     let design = designs().join("pyramid.toml");
     fs::copy(design, home.path().join("pyramid.toml")).unwrap();
     insta::assert_snapshot!(

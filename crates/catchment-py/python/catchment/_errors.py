@@ -10,11 +10,11 @@ from typing import NamedTuple
 class Finding(NamedTuple):
     """A diagnostic: an error in the input, with its place and advice."""
 
-    #: The error.
+    #: Description of the error.
     message: str
-    #: How to correct it, or None.
+    #: How to correct it, or `None`.
     advice: str | None
-    #: Line in the text of the design, from 1; None without a place.
+    #: Line in the text of the design, from 1; `None` without a place.
     line: int | None
     #: Column in that line, in characters from 1.
     column: int | None
@@ -87,7 +87,7 @@ class ArgumentError(Error, ValueError):
 
 
 class MemoryLimitError(Error, MemoryError):
-    """The result would exceed the memory budget; nothing was computed. The message gives a size that fits."""
+    """The result would exceed the memory budget; nothing was computed. The message advises how to make it fit."""
 
 
 class ComputeError(Error):

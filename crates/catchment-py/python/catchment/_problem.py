@@ -128,7 +128,7 @@ class Problem:
 
     @classmethod
     def from_text(cls, text: str, name: str = "design.toml") -> Problem:
-        """Builds the problem from the text of a design file. Messages use `name`; mesh paths are relative to its folder."""
+        """Builds the problem from the text of a design file. Messages call it `name`; mesh paths are relative to its folder."""
         return cls._made(name, text, [], NOTHING)
 
     @classmethod
@@ -281,10 +281,11 @@ class Problem:
         resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}.
         poses: number of random poses to decide instead of a grid.
         samples: number of sampled poses, followed exactly to correct the Sum; 0 leaves the Sum uncorrected.
-        budget: instead of samples, the time for sampling in seconds; the grid takes at most half of it.
+        budget: instead of samples, the time for grid and samples in seconds; the grid takes at most half of it.
         tolerance: instead of samples, sample until the 95 % interval is ± this share of the Sum.
         seed: seed of the sampled poses.
-        error_sigma, error_uniform: expected errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
+        error_sigma, error_uniform: expected errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds
+        `success`.
         require: conditions on the report, such as "onaa.edge>=0.3"; `Result.unmet` lists those that fail.
         heights: keep the heights of first contact.
         jams: add the most frequent jams, with their contacts, to the report.
@@ -458,7 +459,7 @@ def compare(
     memory: int | None = None,
     progress: Progress = False,
 ) -> Report[reports.ComparisonReport]:
-    """Compares two areas of acceptance: the poses at which they differ, and their share. `report["comparison"]`.
+    """Compares two areas of acceptance: location and size of their differences. `report["comparison"]`.
 
     first, second: problems, or folders (or NAME.zarr) of stored results. A problem alone is decided by two methods.
     methods: the method of each problem, in order, such as "descent,flood"; a single method applies to both.

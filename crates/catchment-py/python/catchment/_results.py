@@ -95,7 +95,7 @@ class Report(Generic[Fields]):
 
     @property
     def picture(self) -> Picture | None:
-        """The picture, or None if there is nothing to draw."""
+        """The picture, or `None` if there is nothing to draw."""
         return self._picture
 
     def __getstate__(self) -> dict[str, Any]:
@@ -122,8 +122,8 @@ class Report(Generic[Fields]):
 class Result(Report["reports.RunReport"]):
     """The result of a run: outcomes over the grid, the Sum with its confidence interval, figures of merit.
 
-    You can pickle a result. An unpickled result computes its pictures and the output of `save` again when you use them, unless the
-    pictures were already drawn; equal runs have equal results.
+    You can pickle a result. An unpickled result recomputes the output of `save`, and the pictures if they were not drawn before,
+    when you use them: equal runs have equal results.
     """
 
     def __init__(self, problem: Problem, run: str, answer: _catchment.Answer) -> None:
@@ -140,7 +140,7 @@ class Result(Report["reports.RunReport"]):
         outcomes, heights = answer.outcomes(), answer.heights()
         #: Codes of `OUTCOMES`, uint8; the shape is `[sizes of dims]`, as in the Zarr group, or (n,) for random poses.
         self.outcomes: NDArray[np.uint8] = outcomes.reshape(shape)
-        #: z of the centre of rotation at first contact, in D, float32, with the shape of `outcomes`; None unless you set
+        #: z of the centre of rotation at first contact, in D, float32, with the shape of `outcomes`; `None` unless you set
         #: `heights=True`, or the method needs them. Not finite without contact.
         self.heights: NDArray[np.float32] | None = None if heights is None else heights.reshape(shape)
         for array in (self.outcomes, self.heights):
@@ -168,7 +168,7 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def sum_ci95(self) -> tuple[float, float] | None:
-        """95 % confidence interval of the Sum, in `unit`; None without sampled poses."""
+        """95 % confidence interval of the Sum, in `unit`; `None` without sampled poses."""
         interval = self["acceptance"]["sum_ci95"]
         return None if interval is None else (interval[0], interval[1])
 
@@ -189,7 +189,7 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def onaa_edge(self) -> float | None:
-        """ONAA: edge of the largest axis-parallel cube inside the area of acceptance, 0 to 1 of the error box; None for random poses."""
+        """ONAA: edge of the largest axis-parallel cube in the accepted set, in [0, 1] of the error box; `None` for random poses."""
         return None if self["onaa"] is None else float(self["onaa"]["edge"])
 
     @property
@@ -199,7 +199,7 @@ class Result(Report["reports.RunReport"]):
 
     @property
     def success(self) -> float | None:
-        """Success probability for `error_sigma` or `error_uniform`; None without them."""
+        """Success probability for `error_sigma` or `error_uniform`; `None` without them."""
         return None if self["success"] is None else float(self["success"]["probability"])
 
     @property
@@ -297,7 +297,7 @@ class End(NamedTuple):
     outcome: str
     #: The final pose error: x, y in D, roll, pitch, yaw in radians; (5,).
     error: NDArray[np.float64]
-    #: z of the centre of rotation in the final state, in D; None if the moving half missed.
+    #: z of the centre of rotation in the final state, in D; `None` if the moving half missed.
     height: float | None
     #: The contacts in the final state.
     contacts: tuple[Touching, ...]

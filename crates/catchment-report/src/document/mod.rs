@@ -198,7 +198,7 @@ fn pose_errors(design: &Design) -> String {
 }
 
 /// The ranges of the free errors, those that are equal together: `x, y ±0.5 D; yaw ±45°`.
-fn error_box(design: &Design) -> String {
+pub(crate) fn error_box(design: &Design) -> String {
     let mut ranges: Vec<(Vec<&str>, String)> = Vec::new();
     for dof in design.alignment.free.iter() {
         let half = design.alignment.half_range(dof);

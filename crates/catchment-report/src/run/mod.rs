@@ -84,7 +84,7 @@ impl RunBody {
 
     /// The method and what it did to the halves, below the heading.
     fn describe_method(&self, document: &mut Document) {
-        document.row("method", format!("{}, of a {}", self.method_in_words(), self.domain()));
+        document.row("method", format!("{}, of {}", self.method_in_words(), self.domain()));
         let friction = self.friction();
         if friction > 0.0 {
             document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
@@ -157,10 +157,10 @@ impl RunBody {
     /// Its cells or poses.
     fn domain(&self) -> String {
         if self.axes.is_empty() {
-            return format!("sample of {} random poses", grouped(self.acceptance.cells));
+            return format!("{} random poses", grouped(self.acceptance.cells));
         }
         let cells: Vec<String> = self.axes.iter().map(|a| a.cells.to_string()).collect();
-        format!("grid of {} = {} poses", cells.join(" × "), grouped(self.acceptance.cells))
+        format!("a grid of {} = {} poses", cells.join(" × "), grouped(self.acceptance.cells))
     }
 
     fn describe_acceptance(&self, document: &mut Document) {
