@@ -145,7 +145,7 @@ fn balls_in_grooves_are_checked_and_answered() {
     assert!(told.starts_with("exit 0"), "{told}");
     assert!(told.contains("fixed half         cylinder, 3 × profile\n"), "{told}");
     assert!(told.contains("moving half        cylinder, 3 × ball\n"), "{told}");
-    assert!(told.contains("facets inside of them, by at most 0.001 D = 0.06 mm\n"), "{told}");
+    assert!(told.contains("their facets lie inside them, by at most 0.001 D = 0.06 mm\n"), "{told}");
     let told = run(&designs(), &["zraa", "kelvin-balls.toml"]);
     assert!(told.contains("= 86.602540 mm²"), "{told}");
 }
