@@ -18,16 +18,16 @@ fn a_facet_holds_everything_from_its_slope_on() {
     let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.1,0.3"]);
     assert!(
         told.starts_with("exit 0\n")
-            && told.contains("90 % dock      up to a friction of 0.199  (95 % CI 0.199 … 0.199)"),
+            && told.contains("90 %           up to μ = 0.199  (95 % CI 0.199 … 0.199)"),
         "{told}"
     );
     assert!(told.contains("contacts that stick first, of the first 20 poses to be lost"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     // A little above the slope all that is lost is hardly held, and that is said.
-    assert!(!told.contains("a tenth less"), "{told}");
+    assert!(!told.contains("dock at 0.9 of it"), "{told}");
     let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
     assert!(
-        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock with a tenth less of it"),
+        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock at 0.9 of it"),
         "{told}"
     );
 }

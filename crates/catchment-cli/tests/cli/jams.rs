@@ -109,10 +109,10 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     let folder = super::designs();
     let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600"]);
-    assert!(told.contains("held          by friction alone;"), "{told}");
+    assert!(told.contains("neighbours    held by friction alone;"), "{told}");
     assert!(!told.contains("ridge") && told.contains("friction      may stick from"), "{told}");
     let words: Vec<&str> = told.split_whitespace().collect();
-    assert!(words.join(" ").contains("it counts as docked where the design has symmetry = 4"), "{told}");
+    assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     let report = json(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600", "--json"]);
     let jams = report["jams"].as_array().unwrap();

@@ -25,7 +25,7 @@ fn a_mirrored_part_is_told_as_one() {
     // Where it tolerates a few millimetres, the error box does not reach to 30.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
-        text.contains("About four times what each error alone tolerates.") && text.contains("\nx = 0.18 # D"),
+        text.contains("About four times the single-axis limit of each error.") && text.contains("\nx = 0.18 # D"),
         "{text}"
     );
     let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);
@@ -181,8 +181,8 @@ fn metres_are_told_in_millimetres() {
     let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
     assert!(
         told.starts_with("exit 0")
-            && told.contains("6 mm deep, play 0.")
-            && told.contains(" mm to each side"),
+            && told.contains("6 mm deep, ±0.")
+            && told.contains(" mm of play half-way in"),
         "{told}"
     );
 }

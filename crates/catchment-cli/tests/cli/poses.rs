@@ -146,7 +146,7 @@ fn a_trace_tells_the_whole_way() {
     assert!((waypoints[0]["error"]["x"].as_f64().unwrap() - 0.16).abs() < 1e-12);
     let text = run(&folder, &pose);
     assert!(text.starts_with("exit 0\n") && text.contains("x [mm]"), "{text}");
-    assert!(text.contains("  outcome        aligned\n"), "{text}");
+    assert!(text.contains("  outcome        docked\n"), "{text}");
     assert!(text.ends_with("--- stderr\nnext: catchment rests pyramid-stl.toml --jams\n"), "{text}");
     // Each printed line is one of the waypoints; there are at most a screenful.
     assert!(text.lines().count() < 40, "{text}");

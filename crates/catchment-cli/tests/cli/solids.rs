@@ -60,7 +60,7 @@ fn watersheds_are_counted_before_merging_and_after() {
         assert_eq!(of("dams") > 0.0, method == "meyer");
         let required = ["--require", "watersheds.merged<=3", "--require", "watersheds.first>=2"];
         assert!(run(home.path(), &[&args[..], &required].concat()).starts_with("exit 0\n"));
-        let told = run(home.path(), &args);
+        let told = run(home.path(), &[&args[..], &["--verbose"]].concat());
         assert!(told.contains("first labels") && told.contains("of the cells joined another"), "{told}");
         let out = home.path().join(method);
         let folder = [&args[..], &["-o", out.to_str().unwrap()]].concat();

@@ -85,7 +85,7 @@ fn a_run_tells_of_the_window_what_the_command_does() {
     };
     let text = with("window.x>=24 mm");
     assert!(text.starts_with("exit 0\n") && text.contains("±24.97"), "{text}");
-    assert!(text.contains("0 failures in 300 000 sampled poses"), "{text}");
+    assert!(text.contains("0 failures in 300 000 poses sampled"), "{text}");
     assert!(with("window.x>=26 mm").starts_with("exit 1\n"));
     // Read back, it is the same.
     assert!(run(home.path(), &["compare", "out", "out"]).starts_with("exit 0\n"));
