@@ -96,7 +96,7 @@ def weighed(program, args, folder):
     while True:
         code, most, said = measured(program, [*args, "--memory", f"{budget}B"], folder)
         refused = re.search(r"needs ([\d.]+) (\w+) of memory", said)
-        if code != 2 or not refused:
+        if code != 5 or not refused:
             return code, most, needs
         part = float(refused[1]) * UNITS[refused[2]]
         needs = max(needs or 0.0, part / (1 << 20))

@@ -127,7 +127,7 @@ with tempfile.TemporaryDirectory() as home:
         (home / "bad.toml").write_text(DESIGN.replace("peg.step", f"{name}.step"))
         ran = run(home, "check", "bad.toml")
         said = " ".join(ran.stderr.replace("│", " ").split())
-        assert ran.returncode == 2 and complaint in said, ran.stderr
+        assert ran.returncode == 4 and complaint in said, ran.stderr
         assert "panicked" not in said and not ran.stdout, ran.stderr
 
 print("STEP files: volumes, heights, captured offsets, bodies and refusals as they must be")

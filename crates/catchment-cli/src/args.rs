@@ -3,6 +3,7 @@
 use crate::color::{self, Color};
 use crate::command::Command;
 use crate::exec_args::EXECUTION;
+use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::groups::grouped;
 use crate::setting::number;
@@ -25,8 +26,18 @@ use std::path::PathBuf;
     name = "catchment",
     version,
     arg_required_else_help = true,
-    after_help = "Common options: catchment COMMAND -h. All options, with examples: --help.",
-    after_long_help = "\
+    after_help = "Common options: catchment COMMAND -h. All options, with examples: --help."
+)]
+pub(crate) struct Cli {
+    /// Colours of the output [default: auto, or `CATCHMENT_COLOR`]
+    #[arg(long, global = true, value_enum, value_name = "WHEN", hide_short_help = true, help_heading = EXECUTION)]
+    color: Option<Color>,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What the long help ends with, above the exit codes.
+const AFTER: &str = "\
 Common options: catchment COMMAND -h. All options, with examples: --help.
 Version: catchment --version.
 
@@ -41,20 +52,12 @@ variable, and a variable overrides $XDG_CONFIG_HOME/catchment/config.toml or
   --color never       CATCHMENT_COLOR=never       color = \"never\"
 NO_COLOR=1 overrides the file, too.
 
-Exit codes: 0 done, 1 requirement not met, 2 could not compute,
-130 interrupted, 143 terminated."
-)]
-pub(crate) struct Cli {
-    /// Colours of the output [default: auto, or `CATCHMENT_COLOR`]
-    #[arg(long, global = true, value_enum, value_name = "WHEN", hide_short_help = true, help_heading = EXECUTION)]
-    color: Option<Color>,
-    #[command(subcommand)]
-    pub(crate) command: Command,
-}
+Exit codes:";
 
 /// The command line, before it is read.
 pub(crate) fn command() -> clap::Command {
-    grouped(Cli::command().color(color::of_help()))
+    let codes = ExitStatus::ALL.map(|(status, end)| format!("\n  {:>3}  {end}", status.code()));
+    grouped(Cli::command().color(color::of_help()).after_long_help(AFTER.to_owned() + &codes.concat()))
 }
 
 /// Reads a command line; its first word is the name of the program.
@@ -160,6 +163,7 @@ impl DesignArgs {
         problem.map(|problem| (problem, friction)).ok_or_else(|| {
             let help = "give the design instead".to_owned();
             Failure::with_help(format!("{}: {}", shown(path), notes.join("; ")), Some(help))
+                .ends(ExitStatus::BadInput)
         })
     }
 }

@@ -16,7 +16,7 @@ pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
         }
     }));
     // Nothing of the work is used after a panic.
-    panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(ExitStatus::Failed)
+    panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(ExitStatus::NotComputed)
 }
 
 /// What is said of a panic.
@@ -52,7 +52,7 @@ mod tests {
             ExitStatus::Done
         });
         let _ = panic::take_hook();
-        assert_eq!(ended, ExitStatus::Failed);
+        assert_eq!(ended, ExitStatus::NotComputed);
         let heard = heard.lock().unwrap();
         assert!(heard.contains("a bug of the program") && heard.contains("a \\u{1b}[2Jbug"), "{heard}");
         assert!(heard.contains("bug.rs:") && heard.contains(env!("CARGO_PKG_REPOSITORY")), "{heard}");

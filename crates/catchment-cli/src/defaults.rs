@@ -10,6 +10,7 @@
 use crate::color::{Color, no_color};
 use crate::command::unit;
 use crate::exec_args::{bytes, threads};
+use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::source::read_table;
 use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
@@ -17,8 +18,7 @@ use catchment::suggest::nearest;
 use catchment::terminal::escaped;
 use clap::ValueEnum;
 use std::env;
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use toml::de::{DeTable, DeValue};
 
@@ -84,7 +84,12 @@ pub(crate) fn get() -> Defaults {
 pub(crate) fn load() -> Result<(), Failure> {
     let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty());
     let mut defaults = match place(variable) {
-        Some(path) if is_there(&path) => of_file(&read_table(&path)?)?,
+        // The home of somebody else, as after `su`, has nothing of this user.
+        Some(path) if path.metadata().is_ok() => {
+            // Whatever is wrong with it: the command line would have said it.
+            let text = read_table(&path).map_err(|failure| failure.ends(ExitStatus::Usage))?;
+            of_file(&text).map_err(|findings| Failure::of_findings(findings).ends(ExitStatus::Usage))?
+        }
         _ => Defaults::default(),
     };
     if no_color() {
@@ -112,14 +117,6 @@ fn place(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<PathBu
     let base = variable("XDG_CONFIG_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
     let base = base.or_else(|| Some(PathBuf::from(home()?).join(".config")))?;
     Some(base.join(BELOW[0]).join(BELOW[1]))
-}
-
-/// Whether there is a file to read: one that cannot be looked at is there.
-fn is_there(path: &Path) -> bool {
-    match path.metadata() {
-        Err(error) => !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory),
-        Ok(_) => true,
-    }
 }
 
 /// The defaults of a file.
@@ -161,6 +158,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
 mod tests {
     use super::*;
     use std::ffi::OsString;
+    use std::path::Path;
 
     fn read(text: &str) -> Result<Defaults, Diagnostics> {
         of_file(&SourceText::new("config.toml", text))

@@ -15,23 +15,30 @@ use std::io::Write;
 pub(crate) struct Failure {
     reports: Vec<Report>,
     closing: Option<String>,
-    broken_pipe: bool,
+    /// How the command ends; done where the reader of stdout went away.
+    status: ExitStatus,
 }
 
 impl Failure {
     /// Reports and a closing line, such as their number.
-    pub(crate) fn many(reports: Vec<Report>, closing: Option<String>) -> Self {
-        Self { reports, closing, broken_pipe: false }
+    pub(crate) fn many(reports: Vec<Report>, closing: Option<String>, status: ExitStatus) -> Self {
+        Self { reports, closing, status }
     }
 
-    /// One message with advice.
+    /// A message with advice, about the command line unless [`Self::ends`] says so.
     #[expect(clippy::needless_pass_by_value, reason = "every caller makes it on the spot")]
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        Self {
-            reports: vec![Report::new(miette_diagnostic(&message, help))],
-            closing: None,
-            broken_pipe: false,
-        }
+        Self::many(vec![Report::new(diagnostic(&message, help))], None, ExitStatus::Usage)
+    }
+
+    /// An error of the library with advice of the command line.
+    pub(crate) fn explained<E: std::error::Error + 'static>(error: &E, help: Option<String>) -> Self {
+        Self::with_help(error.to_string(), help).ends(ExitStatus::of(error))
+    }
+
+    /// The same, with another end of the command.
+    pub(crate) fn ends(self, status: ExitStatus) -> Self {
+        Self { status, ..self }
     }
 
     /// Everything that is wrong with the text of an option.
@@ -42,12 +49,12 @@ impl Failure {
         });
         let shown: String = escaped(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
-        Self::many(reports.collect(), closing)
+        Self::many(reports.collect(), closing, ExitStatus::Usage)
     }
 
     /// The reader of stdout went away.
     pub(crate) fn broken_pipe() -> Self {
-        Self { reports: Vec::new(), closing: None, broken_pipe: true }
+        Self::many(Vec::new(), None, ExitStatus::Done)
     }
 
     /// What it says, without colours: for a page.
@@ -58,8 +65,8 @@ impl Failure {
 
     /// Prints it on stderr and says how the command ended.
     pub(crate) fn show(self) -> ExitStatus {
-        if self.broken_pipe {
-            return ExitStatus::Done;
+        if self.status == ExitStatus::Done {
+            return self.status;
         }
         let mut stderr = std::io::stderr().lock();
         // Nobody is left to tell when stderr itself is gone.
@@ -73,7 +80,7 @@ impl Failure {
         if let Some(closing) = self.closing {
             let _ = writeln!(stderr, "{closing}");
         }
-        ExitStatus::Failed
+        self.status
     }
 }
 
@@ -87,8 +94,8 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
         if let Some(diagnostics) = taken::<_, Diagnostics>(&mut error) {
             return Self::of_diagnostics(diagnostics);
         }
-        let Some(error) = error else { return Self::many(Vec::new(), None) };
-        Self::with_help(with_causes(&error), advice::of(&error))
+        let Some(error) = error else { return Self::many(Vec::new(), None, ExitStatus::NotComputed) };
+        Self::with_help(with_causes(&error), advice::of(&error)).ends(ExitStatus::of(&error))
     }
 }
 

@@ -199,7 +199,10 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::broken_pipe()),
-        Err(error) => Err(Failure::with_help(format!("cannot write to stdout: {error}"), None)),
+        Err(error) => {
+            let failure = Failure::with_help(format!("cannot write to stdout: {error}"), None);
+            Err(failure.ends(ExitStatus::NotComputed))
+        }
         Ok(()) => Ok(()),
     }
 }

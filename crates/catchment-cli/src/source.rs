@@ -1,6 +1,7 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
-use crate::failure::{Failure, miette_diagnostic};
+use crate::exit::ExitStatus;
+use crate::failure::{Failure, diagnostic};
 use catchment::design::{Diagnostic, Diagnostics, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;
@@ -22,12 +23,16 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
         File::open(path).map_err(TextError::from).and_then(read_text)
     };
     read.map(|text| SourceText::new(named, text)).map_err(|error| {
-        let (message, help) = match &error {
-            TextError::Read(_) => (format!("cannot read {name}: {error}"), None),
-            TextError::TooLarge => (format!("{name} is {error}"), Some("split the table")),
-            TextError::NotUtf8 { .. } => (format!("{name}, {error}"), Some("save it as UTF-8")),
+        let (message, help, status) = match &error {
+            TextError::Read(_) => (format!("cannot read {name}: {error}"), None, ExitStatus::NoSuchFile),
+            TextError::TooLarge => {
+                (format!("{name} is {error}"), Some("split the table"), ExitStatus::BadInput)
+            }
+            TextError::NotUtf8 { .. } => {
+                (format!("{name}, {error}"), Some("save it as UTF-8"), ExitStatus::BadInput)
+            }
         };
-        Failure::with_help(message, help.map(ToOwned::to_owned))
+        Failure::with_help(message, help.map(ToOwned::to_owned)).ends(status)
     })
 }
 
@@ -129,7 +134,11 @@ impl Failure {
         };
         let place = source.as_ref().map(|source| shown(&source.path));
         let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{part}"));
-        Self::many(list.into_iter().map(|diagnostic| report(source.as_ref(), diagnostic)).collect(), closing)
+        // Of a design that an option changes, the option may be what is wrong.
+        let is_of_options = list.iter().all(|diagnostic| diagnostic.message.starts_with("--"));
+        let status = if is_of_options { ExitStatus::Usage } else { ExitStatus::BadInput };
+        let reports = list.into_iter().map(|diagnostic| report(source.as_ref(), diagnostic)).collect();
+        Self::many(reports, closing, status)
     }
 }
 
@@ -137,7 +146,7 @@ impl Failure {
     /// Why there is no problem to decide.
     pub(crate) fn of_problem(error: ProblemError) -> Self {
         match error {
-            ProblemError::Load(error) => Self::with_help(error.to_string(), None),
+            ProblemError::Load(error) => Self::explained(&error, None),
             ProblemError::Diagnostics(diagnostics) => Self::of_diagnostics(diagnostics),
         }
     }

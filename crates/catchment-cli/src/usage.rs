@@ -18,12 +18,14 @@ pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
             Some(text) => io::stderr().write_all(text.as_bytes()),
             None => usage.print(),
         };
-        return ExitStatus::Failed;
+        return ExitStatus::Usage;
     }
     match usage.print().and_then(|()| io::stdout().flush()) {
         // A reader that has gone away is no trouble.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Failure::with_help(format!("cannot write to stdout: {error}"), None).show()
+            Failure::with_help(format!("cannot write to stdout: {error}"), None)
+                .ends(ExitStatus::NotComputed)
+                .show()
         }
         _ => ExitStatus::Done,
     }

@@ -26,7 +26,7 @@ def test_the_wheel_puts_the_command_on_the_path() -> None:
     assert done.stdout == f"catchment {catchment.__version__}\n"
     module = subprocess.run([sys.executable, "-m", "catchment", "--version"], capture_output=True, text=True, check=True)
     assert module.stdout == done.stdout
-    for words, code in ((["run", "no-such.toml"], 2), (["no-such-command"], 2)):
+    for words, code in ((["run", "no-such.toml"], 3), (["no-such-command"], 2)):
         done = subprocess.run([own, *words], capture_output=True, text=True, check=False)
         assert (done.returncode, done.stdout) == (code, "") and done.stderr
     unmet = ["run", "designs/v-face.toml", "--resolution", "9", "--require", "onaa.edge>=1"]

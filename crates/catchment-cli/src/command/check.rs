@@ -54,7 +54,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
         Err(ProblemError::Diagnostics(diagnostics)) if args.result.is_json() => {
             let output = if problem.is_some() { output } else { output.without_picture() };
             output.finish(&CheckReport::bad(&diagnostics), picture)?;
-            Ok(ExitStatus::Failed)
+            Ok(ExitStatus::BadInput)
         }
         Err(error) => {
             if problem.is_some() {

@@ -109,7 +109,7 @@ fn region(path: &Path, exec: &Exec) -> Result<ParsedRegion, Failure> {
     read(read_table(path)?, exec).map_err(|error| match error {
         ReadError::Diagnostics(diagnostics) => diagnostics.into(),
         ReadError::Problem(problem) => problem.into(),
-        error => Failure::with_help(format!("{}: {error}", shown(path)), None),
+        error => Failure::with_help(format!("{}: {error}", shown(path)), None).ends(ExitStatus::BadInput),
     })
 }
 

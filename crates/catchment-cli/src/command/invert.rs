@@ -107,7 +107,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
             let help = "want heights on a coarser grid".to_owned();
             let count = report.pieces_d.len();
             let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
-            return Err(Failure::with_help(message, Some(help)));
+            return Err(Failure::with_help(message, Some(help)).ends(ExitStatus::NotComputed));
         }
         output.write_own(design_file(design, &found).as_bytes())?;
     }

@@ -134,7 +134,7 @@ impl Batch<'_> {
         let beside = place.map(|path| format!("they are in {}", shown(&path)));
         let lines = std::iter::once("interrupted".to_owned()).chain(notes).chain(beside);
         to_stderr(&lines.collect::<Vec<_>>());
-        Ok(signals::received().unwrap_or(ExitStatus::Failed))
+        Ok(signals::received().unwrap_or(ExitStatus::NotComputed))
     }
 }
 

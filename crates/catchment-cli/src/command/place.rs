@@ -143,7 +143,8 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     absent.dedup();
     if !absent.is_empty() {
         let help = "name two files: STL, OBJ, PLY, 3MF or STEP".to_owned();
-        return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
+        let failure = Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help));
+        return Err(failure.ends(ExitStatus::NoSuchFile));
     }
     let mut parts = [part(files[0], place)?, part(files[1], place)?];
     if args.moving.is_none() {
@@ -241,7 +242,8 @@ fn beside(said: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
             let path = Path::new(text);
             if !path.exists() {
                 let help = "name a file, or write a part as a design has it: 'sphere = { radius = 6 }, at = [21, 0, 8]'";
-                return Err(Failure::with_help(format!("there is no file {text}"), Some(help.to_owned())));
+                let failure = Failure::with_help(format!("there is no file {text}"), Some(help.to_owned()));
+                return Err(failure.ends(ExitStatus::NoSuchFile));
             }
             return Ok(PartDetail::File(part(path, place)?));
         }
@@ -293,7 +295,10 @@ fn refused(error: ProposalError) -> Failure {
         }
         ProposalError::Problem(_) | ProposalError::Cancelled(_) => return error_of(error),
     };
-    Failure::with_help(error.to_string(), Some(help))
+    let failure = Failure::with_help(error.to_string(), Some(help));
+    // A missing unit is an option that is missing.
+    let is_usage = matches!(error, ProposalError::NoUnit { .. });
+    failure.ends(if is_usage { ExitStatus::Usage } else { ExitStatus::NotComputed })
 }
 
 fn error_of(error: ProposalError) -> Failure {

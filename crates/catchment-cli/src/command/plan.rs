@@ -302,7 +302,7 @@ fn refused(error: TrialPlanError) -> Failure {
         _ => None,
     };
     match help {
-        Some(help) => Failure::with_help(error.to_string(), Some(help.to_owned())),
+        Some(help) => Failure::explained(&error, Some(help.to_owned())),
         None => error.into(),
     }
 }

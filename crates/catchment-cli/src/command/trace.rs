@@ -166,8 +166,10 @@ fn finish(
     if let Some(ending) = output.own() {
         let motion =
             if ending == "glb" { gltf::glb(report, connector) } else { vtk::motion(report, connector) };
-        let bytes = motion
-            .ok_or_else(|| Failure::with_help("the halves never met, there is no path".to_owned(), None))?;
+        let bytes = motion.ok_or_else(|| {
+            let failure = Failure::with_help("the halves never met, there is no path".to_owned(), None);
+            failure.ends(ExitStatus::NotComputed)
+        })?;
         output.write_own(&bytes)?;
     }
     output.finish(report, || Ok(figure::trajectory(problem.design(), connector, path)?))

@@ -158,7 +158,7 @@ fn halves_that_do_not_mate_are_refused_in_their_place() {
     let home = tempfile::tempdir().unwrap();
     fs::write(home.path().join("cubes.toml"), text).unwrap();
     let report = run(home.path(), &["run", "cubes.toml", "-o", "out"]);
-    assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{report}");
+    assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{report}");
     assert!(report.contains("nothing but a plane") && report.contains("cubes.toml:1"), "{report}");
     assert_eq!(entries(home.path()), ["cubes.toml"]);
 }

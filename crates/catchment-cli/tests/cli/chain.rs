@@ -206,7 +206,7 @@ fn collisions_are_refused_at_their_step() {
     let home = with(&format!("[chain]\nmodules = 6\n{steps}"));
     let told = run(home.path(), &["chain", "c.toml", "-o", "out.svg"]);
     // The third step, at line 11.
-    assert!(told.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{told}");
+    assert!(told.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{told}");
     assert!(
         told.contains("at 2 s module 5 is sent into the cell of module 1") && told.contains("c.toml:11"),
         "{told}"
@@ -215,7 +215,7 @@ fn collisions_are_refused_at_their_step() {
     // A fold of 130° lays a module against its neighbour: no cell is shared, the sweep collides.
     let home = with("[chain]\nmodules = 6\n[[step]]\ntime = 1\njoint = 3\ncommand = \"130 deg\"\n");
     let told = run(home.path(), &["chain", "c.toml"]);
-    assert!(told.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{told}");
+    assert!(told.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{told}");
     assert!(told.contains("at 1 s module 4 hits module 2") && told.contains("c.toml:3"), "{told}");
 }
 

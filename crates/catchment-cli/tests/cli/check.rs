@@ -80,7 +80,7 @@ fn a_design_with_problems_has_no_picture() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("design.toml"), SIX_PROBLEMS).unwrap();
     let said = run(dir.path(), &["check", "design.toml", "-o", "a.svg"]);
-    assert!(said.starts_with("exit 2\n"), "{said}");
+    assert!(said.starts_with("exit 4\n"), "{said}");
     assert!(!dir.path().join("a.svg").exists());
 }
 
@@ -98,7 +98,7 @@ fn halves_that_do_not_mate_are_drawn() {
     ] {
         fs::write(dir.path().join("design.toml"), text).unwrap();
         let told = run(dir.path(), &["check", "design.toml", "-o", "a.svg", "--force"]);
-        assert!(told.starts_with("exit 2\n") && told.contains(said), "{told}");
+        assert!(told.starts_with("exit 4\n") && told.contains(said), "{told}");
         assert!(fs::read_to_string(dir.path().join("a.svg")).unwrap().contains(words));
     }
 }

@@ -113,7 +113,7 @@ fn nothing_is_written_of_what_is_refused() {
     let before = entries(home.path());
     let output =
         catchment(home.path()).args(["compose", "bow.csv", "bow.csv", "-o", "a.svg"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(output.status.code(), Some(4));
     assert!(output.stdout.is_empty());
     assert_eq!(entries(home.path()), before);
 }

@@ -153,7 +153,7 @@ fn left_overs_of_a_killed_run_go() {
     fs::rename(home.path().join("out"), home.path().join(".out.1.old")).unwrap();
     fs::create_dir(home.path().join(".out.1.tmp")).unwrap();
     // Restored before anything is computed, so that a run that fails finds it, too.
-    assert!(run(home.path(), &["run", "nowhere.toml", "-o", "out"]).starts_with("exit 2\n"));
+    assert!(run(home.path(), &["run", "nowhere.toml", "-o", "out"]).starts_with("exit 3\n"));
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
     does(home.path(), &whole);
     assert_eq!(entries(home.path()), ["out", "v.toml"]);

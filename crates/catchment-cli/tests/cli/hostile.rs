@@ -166,7 +166,7 @@ fn names_in_what_is_refused_reach_none_either() {
     ];
     for args in bad {
         let (code, text) = said(home.path(), args);
-        assert_eq!(code, Some(2), "{args:?}: {text}");
+        assert!(matches!(code, Some(2..=4)), "{args:?}: {code:?}, {text}");
         assert!(!text.is_empty() && !steers(&text), "{args:?}: {text:?}");
     }
 }
@@ -187,9 +187,9 @@ fn a_name_begins_no_line() {
     let few = ["--method", "flood", "--resolution", "5"];
     let out = format!("{name}.out");
     for (args, code) in [
-        (&["check", "@"][..], 2),
-        (&["check", "@.none"], 2),
-        (&["check", "@.bad"], 2),
+        (&["check", "@"][..], 4),
+        (&["check", "@.none"], 3),
+        (&["check", "@.bad"], 4),
         (&["check", "@.toml"], 0),
         (&["run", "@.toml", "-o", "@none/@"], 2),
         (&[&["run", "@.toml", "-o", &out][..], &few].concat(), 0),
@@ -201,24 +201,24 @@ fn a_name_begins_no_line() {
         (&["run", "@.toml", "--@"], 2),
         (&["sweep", "@.toml", "--over", "@=1"], 2),
         (&["@"], 2),
-        (&["compare", "@.out", "@.none"], 2),
+        (&["compare", "@.out", "@.none"], 3),
         (&["slices", "@.toml", "-o", "@.csv"], 2),
-        (&["outcome", "@.toml", "--poses", "@back.csv"], 2),
-        (&["outcome", "@.toml", "--poses", "@.none"], 2),
+        (&["outcome", "@.toml", "--poses", "@back.csv"], 4),
+        (&["outcome", "@.toml", "--poses", "@.none"], 3),
         (&["outcome", "@.toml", "--poses", "@.csv", "-o", "@.csv"], 2),
         (&["trace", "@.toml", "--pose", "@=@"], 2),
         (&["export", "@.toml", "--pose", "x=0.1", "-o", "@trial"], 0),
         (&["export", "@.out", "-o", "@.vti"], 0),
-        (&["place", "@.csv", "@.csv", "--unit", "mm"], 2),
-        (&["place", "@.none", "@.none"], 2),
+        (&["place", "@.csv", "@.csv", "--unit", "mm"], 4),
+        (&["place", "@.none", "@.none"], 3),
         (&["place", "@.obj", "@.ply", "--unit", "mm", "--name", "n", "-o", "@.place.toml"], 0),
-        (&["report", "@.none", "-o", "@bad.html"], 2),
-        (&["success", "@.toml", "--robots", "@.bad"], 2),
-        (&["validate", "@.none", "@.toml", "--accuracy", "x=0.01"], 2),
+        (&["report", "@.none", "-o", "@bad.html"], 3),
+        (&["success", "@.toml", "--robots", "@.bad"], 4),
+        (&["validate", "@.none", "@.toml", "--accuracy", "x=0.01"], 3),
         (&["invert", "@.toml", "--heights", "@.obj"], 2),
-        (&["compose", "@back.csv", "@.bad"], 2),
-        (&["latch", "@.bad"], 2),
-        (&["chain", "@.bad"], 2),
+        (&["compose", "@back.csv", "@.bad"], 4),
+        (&["latch", "@.bad"], 4),
+        (&["chain", "@.bad"], 4),
         (&["reproduce", "2.1", "-o", "@tables"], 0),
     ] {
         let args: Vec<String> = args.iter().map(|arg| arg.replace('@', &name)).collect();

@@ -115,7 +115,7 @@ fn a_design_may_come_from_a_pipe_but_needs_to_come() {
     let told = run(home.path(), &["latch"]);
     assert!(told.starts_with("exit 2") && told.contains("<DESIGN>"), "{told}");
     let told = run(home.path(), &["latch", "no.toml"]);
-    assert!(told.starts_with("exit 2") && told.contains("cannot read no.toml"), "{told}");
+    assert!(told.starts_with("exit 3") && told.contains("cannot read no.toml"), "{told}");
     assert_eq!(entries(home.path()).len(), 0);
     assert!(Path::new(&designs().join("systems/latch.toml")).exists());
 }

@@ -3,7 +3,7 @@
 
 #![cfg(target_os = "linux")]
 
-use crate::{catchment, entries, home};
+use crate::{catchment, entries, home, starter};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -66,7 +66,7 @@ fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
     let keeper = Keeper::of(home.path());
     let output = catchment(home.path()).args(EXPORT).output().unwrap();
     let (said, other) = (said(&output), keeper.0.id());
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert_eq!(output.status.code(), Some(5), "{said}");
     assert!(said.contains(&format!("cannot write out: process {other} (")), "{said}");
     assert!(said.contains("has kept the folder locked for 5 s"), "{said}");
     assert!(said.contains(&format!("end it (kill {other}), or choose another folder")), "{said}");
@@ -80,7 +80,7 @@ fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
 fn a_program_that_was_started_with_the_lock_says_so() {
     let home = exported();
     for own in [&[][..], &["-o"]] {
-        let output = Command::new("flock")
+        let output = starter("flock")
             .args(own)
             .args(["out", env!("CARGO_BIN_EXE_catchment")])
             .args(EXPORT)
@@ -89,7 +89,7 @@ fn a_program_that_was_started_with_the_lock_says_so() {
             .output()
             .unwrap();
         let said = said(&output);
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert_eq!(output.status.code(), Some(5), "{said}");
         assert!(said.contains("(flock), which started this program, keeps the folder locked"), "{said}");
         assert!(said.contains("lock a file beside the folder"), "{said}");
     }

@@ -11,6 +11,7 @@ mod check;
 mod compare;
 mod compose;
 mod defaults;
+mod exits;
 mod files;
 mod friction;
 mod hold;
@@ -61,6 +62,23 @@ fn catchment(folder: &Path) -> Command {
         .env("TERM", "xterm")
         // STEP files are meshed by nobody, whatever is installed here.
         .env("CATCHMENT_PYTHON", "no/python3");
+    command
+}
+
+/// A program of the system that starts the binary: nothing of the tester's own defaults reaches it.
+fn starter(program: &str) -> Command {
+    const OF_THE_TESTER: [&str; 6] = [
+        "HOME",
+        "XDG_CONFIG_HOME",
+        "CATCHMENT_THREADS",
+        "CATCHMENT_MEMORY",
+        "CATCHMENT_UNIT",
+        "CATCHMENT_COLOR",
+    ];
+    let mut command = Command::new(program);
+    for name in OF_THE_TESTER {
+        command.env_remove(name);
+    }
     command
 }
 

@@ -50,7 +50,7 @@ fn refused(name: &str, spoil: impl Fn(&Path), said: &str) {
         assert_eq!(*report, reports[0], "{name}");
         // Long lines are broken between words.
         let words = report.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
-        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{name}: {report}");
+        assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{name}: {report}");
         assert_eq!(words.matches(said).count(), 1, "{name}: {words}");
         assert_eq!(words.matches('×').count(), 1, "{name}: more than one message: {report}");
     }
@@ -190,7 +190,7 @@ fn a_spoilt_mesh_is_repaired_and_told() {
     )
     .unwrap();
     let said = run(spoilt.path(), &["check", "design.toml"]);
-    assert!(said.starts_with("exit 2") && said.contains("has no area") && said.contains(" mm"), "{said}");
+    assert!(said.starts_with("exit 4") && said.contains("has no area") && said.contains(" mm"), "{said}");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn parts_that_do_not_dock_are_told_and_nothing_is_written() {
     let output =
         catchment(home.path()).args(parts).args(["-o", "d.toml", "--figure", "d.png"]).output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert_eq!(output.status.code(), Some(5), "{told}");
     assert!(told.contains("the parts dock in no direction") && told.contains("--facing-moving"), "{told}");
     assert_eq!(entries(home.path()), ["parts"]);
 }
@@ -108,7 +108,7 @@ fn a_bar_that_balances_is_not_proposed_to_tip() {
     let home = two_parts(&obj(&[(&v, [-10.0, 10.0], deep)]), &obj(&[(&bar, [-5.0, 5.0], deep)]));
     let told = run(home.path(), &[&ASSEMBLED[..], &["--free", "x,pitch"]].concat());
     assert!(
-        told.starts_with("exit 2") && told.contains("does not hold") && told.contains(" mm deeper"),
+        told.starts_with("exit 5") && told.contains("does not hold") && told.contains(" mm deeper"),
         "{told}"
     );
     assert_eq!(entries(home.path()), ["fixed.obj", "moving.obj"]);
@@ -200,7 +200,7 @@ fn files_are_placed_with_fewer_triangles() {
     fs::write(home.path().join("many.stl"), many).unwrap();
     let told = run(home.path(), &["place", "many.stl", "parts/plug.stl", "--unit=mm"]);
     assert!(
-        told.starts_with("exit 2") && told.contains("--simplify") && !told.contains("beside the file"),
+        told.starts_with("exit 4") && told.contains("--simplify") && !told.contains("beside the file"),
         "{told}"
     );
     let told =
@@ -227,5 +227,5 @@ fn a_blocked_approach_is_told_in_millimetres() {
     let home = home();
     let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
     let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat()).unbroken();
-    assert!(told.starts_with("exit 2") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
+    assert!(told.starts_with("exit 5") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
 }

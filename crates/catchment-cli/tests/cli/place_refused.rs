@@ -32,7 +32,7 @@ fn a_mirrored_part_is_told_as_one() {
     fs::write(home.path().join("moving.obj"), on_a_plate(&mirrored)).unwrap();
     let told = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");
     assert!(
-        told.starts_with("exit 2") && told.contains("a mirror image of the moving part would dock"),
+        told.starts_with("exit 5") && told.contains("a mirror image of the moving part would dock"),
         "{told}"
     );
     assert!(!home.path().join("m.toml").exists());
@@ -55,7 +55,7 @@ fn a_web_in_the_way_is_pointed_at() {
     for words in
         ["something narrow of the fixed part is in the way", "6) mm of the fixed", "about 6 mm deeper"]
     {
-        assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
+        assert!(told.starts_with("exit 5") && told.contains(words), "{words}\n{told}");
     }
     // A design that somebody wrote says the same, on the moving half as well.
     for (fixed, moving, whose) in [("fixed", "moving", "fixed"), ("moving", "fixed", "moving")] {
@@ -69,7 +69,7 @@ fn a_web_in_the_way_is_pointed_at() {
         let told = run(home.path(), &["check", "d.toml"]).replace("\n        ", " ");
         let words = format!("something narrow of the {whose} part is in the way");
         assert!(
-            told.starts_with("exit 2") && told.contains(&words) && told.contains("deeper, into a seat"),
+            told.starts_with("exit 4") && told.contains(&words) && told.contains("deeper, into a seat"),
             "{told}"
         );
     }
@@ -97,7 +97,7 @@ fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
         let home = two_parts(&fixed, &moving);
         let told = run(home.path(), &TWO).unbroken();
         for words in words {
-            assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
+            assert!(told.starts_with("exit 5") && told.contains(words), "{words}\n{told}");
         }
         assert!(!home.path().join("d.toml").exists());
     }
@@ -120,7 +120,7 @@ fn a_lid_as_large_as_its_recess_is_told() {
     for args in [&parts[..], &TWO[..]] {
         let printed = run(home.path(), args).unbroken();
         let cause = printed.split("no play: ").nth(1).unwrap_or_default();
-        assert!(printed.starts_with("exit 2") && cause.contains("6 mm into the other"), "{printed}");
+        assert!(printed.starts_with("exit 5") && cause.contains("6 mm into the other"), "{printed}");
         assert!(
             !printed.contains("flat: ") || printed.find("no play: ") < printed.find("flat: "),
             "{printed}"
@@ -137,7 +137,7 @@ fn mistakes_in_the_files_are_named() {
     let refused = |fixed: &str, moving: &str, more: &[&str]| {
         let home = two_parts(fixed, moving);
         let told = run(home.path(), &[&TWO[..], more].concat()).unbroken();
-        assert!(told.starts_with("exit 2"), "{told}");
+        assert!(told.starts_with("exit 5"), "{told}");
         told
     };
     let plate = on_a_plate(&[]);
@@ -146,7 +146,7 @@ fn mistakes_in_the_files_are_named() {
     assert!(told.contains("both files hold the same part: name the file of the other half"), "{told}");
     let home = two_parts(&plate, &plate);
     let told = run(home.path(), &["place", "fixed.obj", "fixed.obj", "--unit=mm"]).unbroken();
-    assert!(told.starts_with("exit 2") && told.contains("both halves are the same file"), "{told}");
+    assert!(told.starts_with("exit 5") && told.contains("both halves are the same file"), "{told}");
     // Both halves in one file.
     let two = obj(&[
         (&rectangle([-15.0, 15.0], [-15.0, 15.0]), [-5.0, 0.0], flat),
@@ -160,7 +160,7 @@ fn mistakes_in_the_files_are_named() {
     // Alone it must hold two.
     let home = two_parts(&plug(7.0, [0.0, 8.0]), "");
     let told = run(home.path(), &["place", "fixed.obj", "--unit=mm"]).unbroken();
-    assert!(told.starts_with("exit 2") && told.contains("there is no body 2: the file holds 1"), "{told}");
+    assert!(told.starts_with("exit 4") && told.contains("there is no body 2: the file holds 1"), "{told}");
 }
 
 /// Inches that are read as millimetres make parts of a few millimetres.
@@ -204,6 +204,6 @@ fn step_without_a_python_is_told_once() {
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert_eq!(output.status.code(), Some(4), "{told}");
     assert_eq!(told.matches("CATCHMENT_PYTHON").count(), 1, "{told}");
 }

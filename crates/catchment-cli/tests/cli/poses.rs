@@ -124,7 +124,7 @@ fn everything_that_is_wrong_with_a_table_at_once() {
     ] {
         fs::write(dir.path().join("poses.csv"), content).unwrap();
         let report = report(&[]);
-        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n") && report.contains(said), "{report}");
+        assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n") && report.contains(said), "{report}");
     }
     // A file of holes takes no room; it is refused after the limit, not after its end.
     fs::File::create(dir.path().join("poses.csv")).unwrap().set_len(8 << 30).unwrap();
@@ -262,12 +262,12 @@ fn near_names_are_refused_and_carried_columns_named() {
     for name in ["x mm", "dx", "X_mm", "rol", "delta_x", "x.mm", "x\0"] {
         let output = outcome(&format!("{name},yaw\n9,0\n"), &[]);
         let stderr = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}: {stderr}");
+        assert_eq!(output.status.code(), Some(4), "{name}: {stderr}");
         assert!(!stderr.contains(['\0', '\u{1b}']), "{stderr:?}");
     }
     // A byte order mark that does not begin the file is part of a name.
     let output = outcome("yaw,\u{feff}x_mm\n0,90\n", &[]);
-    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(output.status.code(), Some(4));
     let ends = ["x_mm", "x [mm]", "x (mm)"].map(|name| {
         let output = outcome(&format!("part,{name},time\nA,90,1\n"), &[]);
         let stderr = String::from_utf8(output.stderr).unwrap();
@@ -286,8 +286,8 @@ fn offsets_are_measured_where_it_is_said() {
         let table = format!("x,y,pitch,yaw\n0,{y},0.3,0.2\n");
         outcome(&table, &[&locked[..], &["--offsets-at", at]].concat()).status.code()
     };
-    assert_eq!([code(y, "face"), code(y + 1e-4, "face")], [Some(0), Some(2)]);
-    assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(2)]);
+    assert_eq!([code(y, "face"), code(y + 1e-4, "face")], [Some(0), Some(4)]);
+    assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(4)]);
 }
 
 /// What `outcome` leaves that is interrupted soon after it began, on more poses than it decides until then.

@@ -162,7 +162,7 @@ fn one_file_may_hold_both_halves() {
     fs::write(home.path().join("third.toml"), third).unwrap();
     let refused = run(home.path(), &["check", "third.toml"]).unbroken();
     assert!(
-        refused.starts_with("exit 2") && refused.contains("there is no body 3: the file holds 2"),
+        refused.starts_with("exit 4") && refused.contains("there is no body 3: the file holds 2"),
         "{refused}"
     );
 }

@@ -90,7 +90,7 @@ fn a_seated_peg_with_play_is_docked_and_says_how_far_off_it_rests() {
 
 fn refused(folder: &Path) -> String {
     let text = run(folder, &["check", "peg.toml"]);
-    assert!(text.starts_with("exit 2"), "{text}");
+    assert!(text.starts_with("exit 4"), "{text}");
     text
 }
 
@@ -171,6 +171,8 @@ fn a_bar_that_balances_is_not_mated() {
     ] {
         let told = run(home.path(), args);
         let words = told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
-        assert!(words.starts_with("exit 2") && words.contains("does not hold"), "{args:?}: {told}");
+        // Of a sweep every design is sound by itself; none can be computed.
+        let code = if args[0] == "sweep" { "exit 5" } else { "exit 4" };
+        assert!(words.starts_with(code) && words.contains("does not hold"), "{args:?}: {told}");
     }
 }

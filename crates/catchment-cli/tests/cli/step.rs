@@ -42,7 +42,7 @@ fn without_python_it_is_said_what_to_install() {
     ];
     for command in commands {
         let report = run(dir.path(), command);
-        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{report}");
+        assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{report}");
         let said = words(&report);
         assert!(said.contains("`no/python3` cannot be started"), "{said}");
         assert!(said.contains("python3 -m pip install cadquery-ocp-novtk"), "{said}");
@@ -168,7 +168,7 @@ fn whatever_the_program_does_it_is_a_message() {
             .output()
             .unwrap();
         let stderr = words(&String::from_utf8_lossy(&output.stderr));
-        assert_eq!(output.status.code(), Some(2), "{script}: {stderr}");
+        assert_eq!(output.status.code(), Some(4), "{script}: {stderr}");
         assert!(stderr.contains(said), "{script}: {stderr}");
         assert!(output.stdout.is_empty(), "{script}");
     }

@@ -129,7 +129,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         let help =
             "--resolution 8 computes a grid, however long it takes; -o DIR or -o FILE.csv writes the poses"
                 .to_owned();
-        return Err(Failure::with_help(message, Some(help)));
+        return Err(Failure::with_help(message, Some(help)).ends(ExitStatus::NotComputed));
     }
     // Whoever chooses a resolution knows what it takes.
     let said = match args.resolution {

@@ -59,6 +59,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
         let help = "name another --port, or none".to_owned();
         Failure::with_help(format!("cannot listen on 127.0.0.1:{}: {error}", args.port), Some(help))
+            .ends(ExitStatus::NotComputed)
     })?;
     let port = listener.local_addr()?.port();
     let token = token();
