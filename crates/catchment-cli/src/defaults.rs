@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::source::read_table;
 use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
 use catchment::suggest::nearest;
-use catchment::terminal::escaped;
+use catchment::terminal::{escaped, shown};
 use clap::ValueEnum;
 use std::env;
 use std::path::PathBuf;
@@ -88,7 +88,8 @@ pub(crate) fn load() -> Result<(), Failure> {
         Some(path) if path.metadata().is_ok() => {
             // Whatever is wrong with it: the command line would have said it.
             let text = read_table(&path).map_err(|failure| failure.ends(ExitStatus::Usage))?;
-            of_file(&text).map_err(|findings| Failure::of_findings(findings).ends(ExitStatus::Usage))?
+            of_file(&text)
+                .map_err(|diagnostics| Failure::of_diagnostics(diagnostics).ends(ExitStatus::Usage))?
         }
         _ => Defaults::default(),
     };
@@ -126,7 +127,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
         refused(vec![Diagnostic { message: error.message().to_owned(), help: None, span: error.span() }])
     })?;
     let (mut defaults, mut list) = (Defaults::default(), Vec::new());
-    let name = source.path.display().to_string();
+    let name = shown(&source.path).to_string();
     for (key, value) in table.get_ref() {
         let written = key.get_ref().as_ref();
         let Some(known) = KEYS.iter().find(|known| known.name == written) else {

@@ -14,7 +14,7 @@ use catchment::merit::comparison::ComparisonError;
 use catchment::method::descent::FrictionOutOfRange;
 use catchment::method::drop::DropError;
 use catchment::method::drop::export::ExportError;
-use catchment::method::kinematic::Unfit;
+use catchment::method::kinematic::UnsuitableDesign;
 use catchment::method::partition::{PartitionError, SolidError};
 use catchment::method::zraa::ZraaError;
 use catchment::method::{DecideError, MethodError, NotApplicable};
@@ -32,13 +32,13 @@ use catchment::study::chance::ChanceError;
 use catchment::study::convergence::ConvergenceError;
 use catchment::study::friction::FrictionError;
 use catchment::study::hold::HoldError;
-use catchment::study::plan::PlanError;
+use catchment::study::plan::TrialPlanError;
 use catchment::study::slices::SlicesError;
 use catchment::study::success::SuccessError;
 use catchment::study::trials::TrialsError;
 use catchment::study::validate::ValidateError;
 use catchment_systems::catalog::ClassifyError;
-use catchment_systems::chain::study::StudyError as ChainError;
+use catchment_systems::chain::study::ChainError;
 use catchment_systems::compose::ComposeError;
 use catchment_systems::invert::InvertError;
 use catchment_systems::latch::GeometryError;
@@ -131,7 +131,7 @@ fn is_usage(error: &(dyn Error + 'static)) -> bool {
         || error.is::<FrictionOutOfRange>()
         || error.is::<FacesError>()
         || error.is::<ComparisonError>()
-        || error.is::<Unfit>()
+        || error.is::<UnsuitableDesign>()
         || is(error, |error: &ThreadsError| matches!(error, ThreadsError::Environment { .. }));
     of_any_kind || is(error, in_the_way) || is_setting_of_run(error) || is_setting_of_study(error)
 }
@@ -225,8 +225,8 @@ fn is_setting_of_study(error: &(dyn Error + 'static)) -> bool {
             JamsError::Cancelled(_) => false,
             _ => true,
         })
-        || is(error, |error: &PlanError| {
-            use PlanError::{Cancelled, FarFromBorder, NoBorder, NotDocked};
+        || is(error, |error: &TrialPlanError| {
+            use TrialPlanError::{Cancelled, FarFromBorder, NoBorder, NotDocked};
             !matches!(error, Cancelled(_) | FarFromBorder | NoBorder | NotDocked)
         })
         || is(error, |error: &ValidateError| {

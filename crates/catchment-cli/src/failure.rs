@@ -28,7 +28,7 @@ impl Failure {
     /// A message with advice, about the command line unless [`Self::ends`] says so.
     #[expect(clippy::needless_pass_by_value, reason = "every caller makes it on the spot")]
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        Self::many(vec![Report::new(diagnostic(&message, help))], None, ExitStatus::Usage)
+        Self::many(vec![Report::new(miette_diagnostic(&message, help))], None, ExitStatus::Usage)
     }
 
     /// An error of the library with advice of the command line.

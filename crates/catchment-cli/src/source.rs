@@ -1,7 +1,7 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
 use crate::exit::ExitStatus;
-use crate::failure::{Failure, diagnostic};
+use crate::failure::{Failure, miette_diagnostic};
 use catchment::design::{Diagnostic, Diagnostics, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;

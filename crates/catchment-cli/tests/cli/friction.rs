@@ -26,10 +26,7 @@ fn a_facet_holds_everything_from_its_slope_on() {
     // A little above the slope all that is lost is hardly held, and that is said.
     assert!(!told.contains("dock at 0.9 of it"), "{told}");
     let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
-    assert!(
-        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock at 0.9 of it"),
-        "{told}"
-    );
+    assert!(told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock at 0.9 of it"), "{told}");
 }
 
 #[test]

@@ -25,7 +25,8 @@ fn a_mirrored_part_is_told_as_one() {
     // Where it tolerates a few millimetres, the error box does not reach to 30.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
-        text.contains("About four times the single-axis limit of each error.") && text.contains("\nx = 0.18 # D"),
+        text.contains("About four times the single-axis limit of each error.")
+            && text.contains("\nx = 0.18 # D"),
         "{text}"
     );
     let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);

@@ -200,7 +200,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
         .filter(|dof| !seat.free.contains(*dof) && !seat.dont_care.contains(*dof))
         .collect();
     line(match (settings.free, left.is_empty()) {
-        (Some(_), _) => "# Free errors, as given by --free; all others are locked at 0.",
+        (Some(_), _) => "# Free errors, as you gave them; all others are locked at 0.",
         (None, true) => "# Free errors: the seat corrects all five.",
         (None, false) => "# Free errors: those that the seat corrects; all others are locked at 0.",
     });
