@@ -354,6 +354,10 @@ KINDS = {
 }
 
 
+# Subcommands that have a new name; the old ones still work.
+OLD = {"outcome": "trace", "jams": "rests", "chance": "dynamics"}
+
+
 def subcommands(program):
     """Those that the program lists in its help."""
     listed = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
@@ -470,7 +474,7 @@ class Storm:
         dice.calm = dice.random() < 0.4
         kind = dice.choices(list(KINDS), weights=[weight for weight, _ in KINDS.values()])[0]
         args = kind(dice)
-        assert kind is words or args[0] in KINDS[kind][1], args
+        assert kind is words or OLD.get(args[0], args[0]) in KINDS[kind][1], args
         design = dice.choice(self.designs)
         if dice.calm:
             design = self.design if kind in (compare, chance, page) else dice.choice(self.sound)

@@ -7,6 +7,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::groups::grouped;
 use crate::setting::number;
+use crate::source::read_design;
 use catchment::design::{DesignDefect, Quantity, parse_dofs};
 use catchment::exec::Exec;
 use catchment::pose::DofSet;
@@ -78,7 +79,7 @@ const DESIGN: &str = "Design overrides";
 /// A design file, and what to change in it for this run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct DesignArgs {
-    /// Design file (TOML)
+    /// Design file (TOML); - reads stdin
     #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
     pub(crate) path: PathBuf,
     /// Free pose errors, such as x,y,yaw; the others are locked
@@ -101,12 +102,12 @@ pub(crate) struct DesignArgs {
 impl DesignArgs {
     /// Reads the file and applies the changes.
     pub(crate) fn draft(&self) -> Result<Draft, ProblemError> {
-        self.change(Draft::open(&self.path)?)
+        self.change(Draft::read(read_design(&self.path)?)?)
     }
 
     /// The same, given up where a stop is asked for.
     pub(crate) fn draft_on(&self, exec: &Exec) -> Result<Draft, ProblemError> {
-        self.change(Draft::open_on(&self.path, exec)?)
+        self.change(Draft::read_on(read_design(&self.path)?, exec)?)
     }
 
     /// Options that change the design, and the keys that they change.

@@ -3,6 +3,7 @@
 use crate::color::is_coloured;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use crate::source::is_stream;
 use catchment::report::document::Style;
 use catchment::report::figure::Picture;
 use catchment::report::write::{self, WriteError};
@@ -15,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 /// Where a text goes.
 #[derive(Debug, Args)]
 pub(crate) struct OutputArgs {
-    /// Write to this file instead of stdout
+    /// Write to this file instead of stdout; - is stdout
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -29,9 +30,19 @@ impl OutputArgs {
         Self { output, force }
     }
 
+    /// The file, if there is one.
+    fn file(&self) -> Option<&Path> {
+        file(self.output.as_deref())
+    }
+
+    /// Whether stdout is named.
+    pub(crate) fn names_stdout(&self) -> bool {
+        self.output.as_deref().is_some_and(is_stream)
+    }
+
     /// Refuses what cannot be written in the end, before anything is computed.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        self.output.as_deref().map_or(Ok(()), |path| check_place(path, self.force))
+        self.file().map_or(Ok(()), |path| check_place(path, self.force))
     }
 
     /// Refuses what cannot be written where the command is interrupted.
@@ -52,23 +63,28 @@ impl OutputArgs {
 
     /// The file beside the one to write.
     fn partial(&self) -> Option<PathBuf> {
-        let mut path = self.output.clone()?.into_os_string();
+        let mut path = self.file()?.to_owned().into_os_string();
         path.push(".partial");
         Some(path.into())
     }
 
     /// Whether it is printed, so that parts of it can be told before the whole is there.
-    pub(crate) const fn is_printed(&self) -> bool {
-        self.output.is_none()
+    pub(crate) fn is_printed(&self) -> bool {
+        self.file().is_none()
     }
 
     /// Writes `text` where it should go.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
-        match &self.output {
+        match self.file() {
             Some(path) => write_file(path, text.as_bytes(), self.force),
             None => to_stdout(text),
         }
     }
+}
+
+/// The file that `-o` names: `-` is stdout.
+pub(crate) fn file(output: Option<&Path>) -> Option<&Path> {
+    output.filter(|path| !is_stream(path))
 }
 
 /// A file beside what is printed; the end of its name says what is in it.
@@ -90,7 +106,7 @@ impl FileArgs {
     /// Which of the `known` endings the file has, where one is asked for. Refuses what cannot be written in the
     /// end, before anything is computed.
     pub(crate) fn kind(&self, known: &[&'static str]) -> Result<Option<&'static str>, Failure> {
-        let Some(path) = &self.output else { return Ok(None) };
+        let Some(path) = file(self.output.as_deref()) else { return Ok(None) };
         let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let Some(kind) = known.iter().find(|k| k.eq_ignore_ascii_case(ending)) else {
             let help = format!("let its name end in .{}", known.join(", ."));
@@ -110,7 +126,7 @@ impl FileArgs {
 
     /// Writes the file, if one is asked for.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        self.output.as_deref().map_or(Ok(()), |path| write_file(path, bytes, self.force))
+        file(self.output.as_deref()).map_or(Ok(()), |path| write_file(path, bytes, self.force))
     }
 }
 

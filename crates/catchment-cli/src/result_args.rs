@@ -13,7 +13,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{
-    OutputArgs, check_apart, check_place, image, style, to_stderr, to_stdout, write_file, written,
+    OutputArgs, check_apart, check_place, file, image, style, to_stderr, to_stdout, write_file, written,
 };
 use catchment::document::Subject;
 use catchment::exec::Exec;
@@ -55,12 +55,16 @@ pub(crate) struct ResultArgs {
     #[command(flatten)]
     print: PrintArgs,
     /// Also write this file (.json, .csv, .md, .html, .txt, .png, .svg), or a folder with all of them
+    ///
+    /// `-` is stdout: nothing is written.
     #[arg(short, long, value_name = "PATH", value_hint = clap::ValueHint::AnyPath, help_heading = "Output")]
     output: Option<PathBuf>,
     /// Also draw the result into this .png or .svg file
     #[arg(long, hide_short_help = true, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Output")]
     figure: Option<PathBuf>,
     /// Replace files that exist
+    ///
+    /// A folder that catchment wrote is replaced without it, and no other folder.
     #[arg(long, help_heading = "Output")]
     force: bool,
 }
@@ -157,10 +161,10 @@ impl ResultArgs {
                 "leave it out, or follow one pose: --pose",
             );
         }
-        if self.force && self.output.is_none() {
+        if self.force && self.output().is_none() {
             return refused(NOTHING_TO_REPLACE, "leave it out, or give -o");
         }
-        let kind = self.output.as_deref().and_then(|path| Kind::of(path, true, own).ok());
+        let kind = self.output().and_then(|path| Kind::of(path, true, own).ok());
         if kind.is_some_and(|kind| kind.is_picture() || matches!(kind, Kind::Own(_))) {
             return refused("a table of poses has no picture", "let the name of -o end in .csv or .json");
         }
@@ -175,7 +179,7 @@ impl ResultArgs {
 
     /// The file or the folder to write.
     pub(crate) fn output(&self) -> Option<&Path> {
-        self.output.as_deref()
+        file(self.output.as_deref())
     }
 
     /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
@@ -211,8 +215,8 @@ impl ResultArgs {
         own: &[&'static str],
     ) -> Result<Output<'_>, Failure> {
         self.print.check(report, &[])?;
-        let file = match &self.output {
-            Some(path) => Some((path.as_path(), Kind::of(path, drawable, own)?)),
+        let file = match self.output() {
+            Some(path) => Some((path, Kind::of(path, drawable, own)?)),
             None => None,
         };
         let figure = match &self.figure {
@@ -229,7 +233,7 @@ impl ResultArgs {
             },
             None => None,
         };
-        check_apart(self.figure.as_deref(), self.output.as_deref())?;
+        check_apart(self.figure.as_deref(), self.output())?;
         for (path, kind) in file.iter().chain(&figure) {
             match kind {
                 Kind::Folder => StudyFolder { path, name }.check(&Exec::new())?,
@@ -250,8 +254,8 @@ impl ResultArgs {
 
     /// Whether a file is named that holds a picture.
     pub(crate) fn names_picture(&self) -> bool {
-        let of = |path: &PathBuf| Kind::of(path, true, &[]).is_ok_and(Kind::is_picture);
-        self.figure.is_some() || self.output.as_ref().is_some_and(of)
+        let of = |path: &Path| Kind::of(path, true, &[]).is_ok_and(Kind::is_picture);
+        self.figure.is_some() || self.output().is_some_and(of)
     }
 
     /// Refuses requirements on items that a list of the report does not have.
@@ -270,6 +274,7 @@ impl<'a> Output<'a> {
     pub(crate) fn of(
         print: &'a PrintArgs,
         path: Option<&'a Path>,
+        force: bool,
         report: &'static str,
     ) -> Result<Self, Failure> {
         print.check(report, &[])?;
@@ -279,21 +284,15 @@ impl<'a> Output<'a> {
         };
         match file {
             Some((path, Kind::Folder)) => StudyFolder { path, name: report }.check(&Exec::new())?,
-            Some((path, _)) => check_place(path, false)?,
+            Some((path, _)) => check_place(path, force)?,
             None => {}
         }
-        Ok(Self { print, force: false, file, figure: None, name: report, drawable: true })
+        Ok(Self { print, force, file, figure: None, name: report, drawable: true })
     }
 
     /// The folder, for a command that fills it itself.
-    pub(crate) fn take_folder(&mut self) -> Result<Option<&'a Path>, Failure> {
-        let folder = self.file.take_if(|(_, kind)| *kind == Kind::Folder);
-        if folder.is_some() && self.force {
-            let help =
-                "leave it out: a folder that this command wrote is replaced without it, and no other is";
-            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
-        }
-        Ok(folder.map(|(path, _)| path))
+    pub(crate) fn take_folder(&mut self) -> Option<&'a Path> {
+        self.file.take_if(|(_, kind)| *kind == Kind::Folder).map(|(path, _)| path)
     }
 
     /// The ending of the file that the command writes itself, if there is one.

@@ -2,20 +2,72 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::{Failure, miette_diagnostic};
-use catchment::design::{Diagnostic, Diagnostics, SourceText};
+use catchment::design::{Diagnostic, Diagnostics, LARGEST_FILE, LoadError, SourceText, load};
 use catchment::poses::{TextError, read_text};
-use catchment::problem::ProblemError;
+use catchment::problem::{Draft, Problem, ProblemError};
 use catchment::terminal::{shown, steers};
 use miette::{LabeledSpan, MietteError, MietteSpanContents, Report, SourceCode, SourceSpan, SpanContents};
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
+use std::sync::OnceLock;
+
+/// Whether a path stands for stdin, or for stdout: a file of that name is `./-`.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// What messages call stdin.
+const STDIN: &str = "stdin";
+
+/// The design that came from stdin: it is read once, and kept for whoever reads the design again.
+static DESIGN: OnceLock<String> = OnceLock::new();
+
+/// Reads the text of a design file, or of stdin for `-`; paths in that are taken from the current folder.
+pub(crate) fn read_design(path: &Path) -> Result<SourceText, ProblemError> {
+    if !is_stream(path) {
+        return Ok(SourceText::new(path, load(path)?));
+    }
+    let named = Path::new(STDIN);
+    if DESIGN.get().is_none() {
+        // Whoever is first keeps it.
+        let _ = DESIGN.set(text_of_design(io::stdin().lock(), named)?);
+    }
+    let text = DESIGN.get().cloned().unwrap_or_default();
+    Ok(SourceText::new(named, text))
+}
+
+/// The text of a design, as [`load`] takes it from a file.
+fn text_of_design(from: impl Read, named: &Path) -> Result<String, LoadError> {
+    let path = || named.to_path_buf();
+    let mut bytes = Vec::new();
+    let read = from.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|source| LoadError::Io { path: path(), source })?;
+    if bytes.len() > LARGEST_FILE {
+        return Err(LoadError::TooLarge { path: path() });
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|error| LoadError::NotText { path: path(), offset: error.utf8_error().valid_up_to() })?;
+    if text.trim().is_empty() { Err(LoadError::Empty { path: path() }) } else { Ok(text) }
+}
+
+/// Reads a design, or that of stdin for `-`.
+pub(crate) fn open_design(path: &Path) -> Result<Problem, ProblemError> {
+    Draft::read(read_design(path)?)?.build()
+}
 
 /// Reads the text of a table from a file, or from stdin for `-`.
 pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
-    let stdin = path.as_os_str() == "-";
-    let named = if stdin { Path::new("stdin") } else { path };
+    let stdin = is_stream(path);
+    if stdin && DESIGN.get().is_some() {
+        let help = "give the design or the table as a file".to_owned();
+        return Err(Failure::with_help(
+            "stdin is read once, and the design came from it".to_owned(),
+            Some(help),
+        ));
+    }
+    let named = if stdin { Path::new(STDIN) } else { path };
     let name = shown(named);
     let read = if stdin {
         read_text(io::stdin().lock())

@@ -5,6 +5,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, OutputArgs, style, to_stdout};
 use crate::result_args::{ResultArgs, no_picture};
+use crate::source::open_design;
 use catchment::problem::Problem;
 use catchment::report::document::text;
 use catchment::report::{ReportBody, csv, figure as figures};
@@ -150,7 +151,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     let conditions: Result<Vec<Condition>, UnknownError> =
         args.conditions.iter().map(|text| catalog.condition(text)).collect();
     let conditions = conditions.map_err(|error| unknown(&error))?;
-    let problems: Result<Vec<Problem>, _> = args.append.iter().map(Problem::open).collect();
+    let problems: Result<Vec<Problem>, _> = args.append.iter().map(|path| open_design(path)).collect();
     let problems = problems?;
     if kind.is_some() || !problems.is_empty() {
         let running = args.exec.start()?;

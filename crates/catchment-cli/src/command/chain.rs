@@ -5,7 +5,8 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::result_args::ResultArgs;
-use catchment::design::{Quantity, SourceText, load};
+use crate::source::read_design;
+use catchment::design::Quantity;
 use catchment::exec::Stopwatch;
 use catchment::report::ReportBody;
 use catchment::report::schema::Timing;
@@ -36,7 +37,7 @@ Examples:
 `probability` is for the chain of the file: for every docking of its sequence,
 or for its last face if it stays straight.")]
 pub(crate) struct ChainArgs {
-    /// Chain file (TOML)
+    /// Chain file (TOML); - reads stdin
     #[arg(value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     path: PathBuf,
     /// Also compute straight chains of so many modules, such as 2..20 or 4,8,12
@@ -101,7 +102,7 @@ fn angles(text: &str) -> Result<Angles, String> {
 
 pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     let output = args.result.check(ChainBody::KIND, true)?;
-    let file = ChainFile::read(SourceText::new(&args.path, load(&args.path)?))?;
+    let file = ChainFile::read(read_design(&args.path)?)?;
     let settings = ChainSettings {
         chains: args.samples,
         seed: args.seed,

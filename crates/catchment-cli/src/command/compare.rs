@@ -13,9 +13,9 @@ use crate::failure::Failure;
 use crate::method_args::method_parser;
 use crate::output::to_stderr;
 use crate::result_args::{Pictures, ResultArgs};
+use crate::source::open_design;
 use catchment::landscape::Resolution;
 use catchment::method::Method;
-use catchment::problem::Problem;
 use catchment::report::compare::{ComparisonResult, ComparisonSource, compare};
 use catchment::report::figure::FigureError;
 use catchment::report::{ComparisonBody, ReportBody};
@@ -37,7 +37,7 @@ Examples:
       a stored result against a fresh one
   catchment compare a.zarr b.zarr --json | jq .comparison.jaccard")]
 pub(crate) struct CompareArgs {
-    /// Design, folder written by `run -o`, or its NAME.zarr
+    /// Design (- reads stdin), folder written by `run -o`, or its NAME.zarr
     #[arg(value_name = "A", value_hint = clap::ValueHint::AnyPath)]
     first: PathBuf,
     /// The second; without it, --methods names two methods for A
@@ -101,7 +101,7 @@ fn sources(args: &CompareArgs) -> Result<[ComparisonSource; 2], Failure> {
         if stored[k] {
             return Ok(ComparisonSource::Stored(path));
         }
-        let problem = Problem::open(&path)?.checked()?;
+        let problem = open_design(&path)?.checked()?;
         let method = methods.next().unwrap_or_else(|| all.clone());
         method.applies_to(problem.design())?;
         let run = Box::new(Run::by(method));

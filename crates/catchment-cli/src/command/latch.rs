@@ -64,7 +64,7 @@ fn of_table(args: &LatchArgs) -> Result<ExitStatus, Failure> {
 
 fn of_design(args: &LatchArgs, design: &Path) -> Result<ExitStatus, Failure> {
     let mut output = args.result.check(LatchBody::KIND, true)?;
-    let folder = output.take_folder()?;
+    let folder = output.take_folder();
     // A pipe may be waited for, which does not listen.
     let source = read_table(design)?;
     let exec = Exec::new();

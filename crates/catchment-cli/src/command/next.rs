@@ -9,6 +9,7 @@
 //! After `hold` comes `plan`, which needs numbers that only the reader has.
 
 use super::Command;
+use crate::source::is_stream;
 use catchment::terminal::shown;
 use std::path::Path;
 
@@ -16,12 +17,13 @@ impl Command {
     /// The usual next command, if there is one.
     pub(crate) fn next(&self) -> Option<String> {
         let of = |command: &str, path: &Path, more: &str| {
-            Some(format!("catchment {command} {}{more}", quoted(path)))
+            // What came from stdin is not there any more.
+            (!is_stream(path)).then(|| format!("catchment {command} {}{more}", quoted(path)))
         };
         match self {
-            Self::Place(args) => of("run", args.output.as_deref()?, " -o out"),
+            Self::Place(args) => of("run", args.output()?, " -o out"),
             Self::Check(args) => of("run", &args.design.path, " -o out"),
-            Self::Run(args) => match args.place.output.as_deref() {
+            Self::Run(args) => match args.place.output() {
                 Some(out) if out.extension().is_none() => of("report", out, " -o page.html"),
                 _ => of("window", &args.design.path, ""),
             },

@@ -5,7 +5,7 @@ use crate::defaults;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
+use crate::output::{check_apart, check_place, file, image, to_stderr, to_stdout, write_file};
 use catchment::design::{DesignDefect, LengthScale, LengthUnit, Quantity, QuantityUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
@@ -90,9 +90,9 @@ pub(crate) struct PlaceArgs {
     /// Name of the design
     #[arg(long, hide_short_help = true, help_heading = FOUND)]
     name: Option<String>,
-    /// Write the design to this file instead of stdout; paths in it are relative to its folder
+    /// Write the design to this file instead of stdout (-); paths in it are relative to its folder
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
-    pub(super) output: Option<PathBuf>,
+    output: Option<PathBuf>,
     /// Also draw the halves, apart and mated (.svg, .png)
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     figure: Option<PathBuf>,
@@ -118,6 +118,11 @@ enum Drawn {
 }
 
 impl PlaceArgs {
+    /// The file that receives the design, if it is not printed.
+    pub(super) fn output(&self) -> Option<&Path> {
+        file(self.output.as_deref())
+    }
+
     /// The files of the fixed and the moving half.
     fn files(&self) -> [&Path; 2] {
         [&self.fixed, self.moving.as_ref().unwrap_or(&self.fixed)]
@@ -136,7 +141,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     if kind.is_some() {
         figure::ensure_fits(0, &running.exec)?;
     }
-    let place = args.output.as_deref().unwrap_or_else(|| Path::new("design.toml"));
+    let place = args.output().unwrap_or_else(|| Path::new("design.toml"));
     let files = args.files();
     let mut absent: Vec<String> =
         files.iter().filter(|path| !path.exists()).map(|path| shown(path).to_string()).collect();
@@ -173,7 +178,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     if let Some((path, bytes)) = args.figure.as_deref().zip(picture) {
         write_file(path, &bytes, args.force)?;
     }
-    match &args.output {
+    match args.output() {
         Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
         None => to_stdout(&found.text)?,
     }
@@ -184,8 +189,8 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
 /// Refuses what cannot be written in the end; what kind of picture is asked for.
 fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     const KINDS: [&str; 2] = ["svg", "png"];
-    check_apart(args.output.as_deref(), args.figure.as_deref())?;
-    for path in args.output.iter().chain(&args.figure) {
+    check_apart(args.output(), args.figure.as_deref())?;
+    for path in args.output().into_iter().chain(args.figure.as_deref()) {
         for part in args.files() {
             check_apart(Some(path), Some(part))?;
         }

@@ -140,8 +140,8 @@ impl MadeArgs {
 }
 
 pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
-    if args.output.is_printed() {
-        let help = "name the file: -o page.html".to_owned();
+    if args.output.is_printed() && !args.output.names_stdout() {
+        let help = "name the file: -o page.html, or -o - for stdout".to_owned();
         return Err(Failure::with_help("a page is a file to open in a browser".to_owned(), Some(help)));
     }
     args.output.check()?;

@@ -4,7 +4,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout, written};
+use crate::output::{file, to_stderr, to_stdout, written};
 use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
@@ -14,7 +14,7 @@ use catchment_validation::study::{COVERAGE, FIGURE, Request};
 use catchment_validation::tables::TABLES;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Recompute published tables beside the printed values
@@ -49,11 +49,18 @@ pub(crate) struct ReproduceArgs {
     /// Add the exact value of every entry, by descent (seconds to a minute per table)
     #[arg(long)]
     exact: bool,
-    /// Write pictures, tables.csv and report.json into this folder
+    /// Also write pictures, tables.csv and report.json into this folder; - is stdout
     #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, conflicts_with = "markdown")]
     output: Option<PathBuf>,
     #[command(flatten)]
     exec: ExecArgs,
+}
+
+impl ReproduceArgs {
+    /// The folder to write.
+    fn output(&self) -> Option<&Path> {
+        file(self.output.as_deref())
+    }
 }
 
 /// How the result is printed.
@@ -102,17 +109,17 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         Request::of(&args.tables, ReproduceSettings { exact: args.exact || args.form.markdown });
     // The page of the documentation has everything but the study that is no table.
     request.figure |= args.tables.is_empty() && args.form.markdown;
-    if request.coverage && (args.form.csv || args.form.markdown || args.output.is_some()) {
+    if request.coverage && (args.form.csv || args.form.markdown || args.output().is_some()) {
         let help = Some("print it as text or with --json".to_owned());
         return Err(Failure::with_help(format!("{COVERAGE} is no table of published entries"), help));
     }
-    if let Some(path) = &args.output {
+    if let Some(path) = args.output() {
         folder::check(path, &Exec::new())?;
     }
     let running = args.exec.start()?;
     let found = request.run(&running.exec)?;
     let mut notes = Vec::new();
-    if let Some(path) = &args.output {
+    if let Some(path) = args.output() {
         notes.push(folder::save(&found, path, VERSION, &running.exec)?);
         written(path);
     }

@@ -10,7 +10,7 @@ use crate::method_args::{Choice, MethodArgs};
 use crate::output::kept;
 use crate::result_args::ResultArgs;
 use crate::signals;
-use catchment::design::SourceText;
+use crate::source::read_design;
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
@@ -113,7 +113,7 @@ fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
         let message = format!("{option} and --over {key} both say what it is");
         return Err(Failure::with_help(message, Some("leave out one of them".to_owned())));
     }
-    let source = SourceText::new(&args.design.path, catchment::design::load(&args.design.path)?);
+    let source = read_design(&args.design.path)?;
     let base = args.design.change(catchment::problem::Draft::read(source.clone())?)?;
     let run = Run {
         method: args.how.settings.of(method)?,

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::method_args::pose_method_parser;
 use crate::result_args::{ResultArgs, warnings};
 use crate::setting::{Change, with_changes};
+use crate::source::read_design;
 use catchment::design::Design;
 use catchment::document::Subject;
 use catchment::exec::Exec;
@@ -100,7 +101,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     // Rotations play no part, so whether the mated pose holds against them is of no interest here.
     let mut problems = vec![args.design.halves()?];
     for path in &args.more {
-        problems.push(args.design.change(Draft::open(path)?)?.build()?);
+        problems.push(args.design.change(Draft::read(read_design(path)?)?)?.build()?);
     }
     let running = args.exec.start()?;
     if output.wants_picture() {

@@ -38,6 +38,7 @@ mod run_regressions;
 mod seat;
 mod solids;
 mod step;
+mod streams;
 mod studies;
 mod success;
 mod sweep;

@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::output::written;
 use crate::result_args::{PrintArgs, warnings};
 use crate::signals;
+use crate::source::is_stream;
 use catchment::exec::Exec;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
 use catchment::pose::DofSet;
@@ -65,9 +66,13 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     at: Option<String>,
     /// Write into this folder; of a result, into this file
+    ///
+    /// `-` is stdout, which takes the table of a result.
     #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::AnyPath)]
     output: PathBuf,
-    /// Of a result: replace the file if it exists
+    /// Replace a file that exists
+    ///
+    /// A folder that catchment wrote is replaced without it, and no other folder.
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -88,7 +93,12 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     if args.design.path.is_dir() {
         return set::run(args, &exec);
     }
-    let of_a_result = [("--axes", args.axes.is_some()), ("--at", args.at.is_some()), ("--force", args.force)];
+    if is_stream(&args.output) {
+        let help = "name a folder: -o trial".to_owned();
+        let message = "a drop test is several files, which stdout does not take".to_owned();
+        return Err(Failure::with_help(message, Some(help)));
+    }
+    let of_a_result = [("--axes", args.axes.is_some()), ("--at", args.at.is_some())];
     if let Some((option, _)) = of_a_result.into_iter().find(|(_, given)| *given) {
         let help = "name a folder that `run -o` wrote, or its NAME.zarr".to_owned();
         return Err(Failure::with_help(format!("{option} is about a stored result"), Some(help)));

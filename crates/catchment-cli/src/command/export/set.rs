@@ -4,6 +4,7 @@ use super::ExportArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{check_place, tell, write_file};
+use crate::source::is_stream;
 use catchment::exec::Exec;
 use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
@@ -14,7 +15,9 @@ use catchment::report::zarr;
 use catchment::terminal::shown;
 
 pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure> {
-    let Some(kind) = SetFileKind::of(&args.output) else {
+    // A table is the only text among them.
+    let is_printed = is_stream(&args.output);
+    let Some(kind) = SetFileKind::of(&args.output).or(is_printed.then_some(SetFileKind::Table)) else {
         let message = format!("cannot tell what to write into {}", shown(&args.output));
         return Err(Failure::with_help(
             message,
@@ -32,7 +35,9 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
         let help = "leave --axes and --at out, or write .vti".to_owned();
         return Err(Failure::with_help("a table has every axis of the result".to_owned(), Some(help)));
     }
-    check_place(&args.output, args.force)?;
+    if !is_printed {
+        check_place(&args.output, args.force)?;
+    }
     let path = group(&args.design.path);
     let (report, acceptance) = zarr::read(&path, exec)?;
     let at = match &args.at {
@@ -46,6 +51,9 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     };
     let view = View::new(&acceptance, heights.as_deref(), args.axes, &at)?;
     let bytes = kind.bytes(&view, &acceptance, heights.as_deref(), exec)?;
+    if is_printed {
+        return tell(&String::from_utf8_lossy(&bytes), &[]);
+    }
     write_file(&args.output, &bytes, args.force)?;
     let told = if kind == SetFileKind::Table { String::new() } else { view.table() };
     tell(&told, &[format!("wrote {}", shown(&args.output))])

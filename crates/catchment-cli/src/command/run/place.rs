@@ -2,12 +2,14 @@
 
 use crate::advice;
 use crate::failure::Failure;
-use crate::output::{check_place, write_file, written};
+use crate::output::{check_place, file, write_file, written};
 use crate::result_args::{self, rendered};
 use catchment::exec::Exec;
+use catchment::pose::PoseError;
 use catchment::report::figure::DrawnFigures;
 use catchment::report::folder::{POSES, REPORT, RESULT};
 use catchment::report::set::SetFileKind;
+use catchment::report::vtk::View;
 use catchment::report::write;
 use catchment::report::{self, Report, Target};
 use catchment::run::Answer;
@@ -21,15 +23,17 @@ pub(crate) struct PlaceArgs {
     /// Write report.json, result.zarr and pictures into this folder, or a single file by its ending
     ///
     /// NAME.zarr: only the Zarr group. NAME.vti, .vtp or .csv: only the set, for ParaView or as a table, as `export` writes it. NAME.json,
-    /// .md, .html or .txt: only the report.
+    /// .md, .html or .txt: only the report. `-` is stdout: nothing is written.
     #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
-    pub(in crate::command) output: Option<PathBuf>,
+    output: Option<PathBuf>,
     /// Write only the pictures into this folder
     #[arg(long, hide_short_help = true, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Output")]
     figures: Option<PathBuf>,
     /// Replace a file that exists
+    ///
+    /// A folder that catchment wrote is replaced without it, and no other folder.
     #[arg(long, requires = "output", help_heading = "Output")]
-    force: bool,
+    pub(super) force: bool,
 }
 
 /// Where a path leads, however it is written; its end need not exist.
@@ -45,15 +49,22 @@ fn real(path: &Path) -> Result<PathBuf, Failure> {
 /// Places that can be written, as far as can be known beforehand.
 pub(super) struct Targets<'a> {
     all: Vec<Target<'a>>,
-    /// A file for the report alone, and whether it may replace one.
-    report: Option<(&'a Path, result_args::Kind, bool)>,
+    /// A file for the report alone.
+    report: Option<(&'a Path, result_args::Kind)>,
+    /// Whether files may be replaced.
+    force: bool,
 }
 
 impl PlaceArgs {
+    /// The file or the folder to write.
+    pub(in crate::command) fn output(&self) -> Option<&Path> {
+        file(self.output.as_deref())
+    }
+
     /// Refuses places that cannot be written, before anything is computed.
     pub(super) fn targets(&self) -> Result<Targets<'_>, Failure> {
         let is_group = |path: &Path| path.extension().is_some_and(|ending| ending == "zarr");
-        let (output, figures) = (self.output.as_deref(), self.figures.as_deref());
+        let (output, figures) = (self.output(), self.figures.as_deref());
         if let (Some(output), Some(figures)) = (output, figures) {
             let [output, figures] = [real(output)?, real(figures)?];
             if output.starts_with(&figures) || figures.starts_with(&output) {
@@ -62,13 +73,9 @@ impl PlaceArgs {
                 return Err(Failure::with_help(message.to_owned(), help));
             }
         }
-        let report = output.and_then(|path| Some((path, result_args::Kind::of_text(path)?, self.force)));
-        if let Some((path, ..)) = report {
+        let report = output.and_then(|path| Some((path, result_args::SetFileKind::of_text(path)?)));
+        if let Some((path, _)) = report {
             check_place(path, self.force)?;
-        } else if self.force {
-            let help =
-                "leave it out: a folder that this command wrote is replaced without it, and no other is";
-            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
         }
         let output = output.filter(|_| report.is_none()).map(|path| match SetFileKind::of(path) {
             Some(kind) => Target::Set(path, kind),
@@ -76,14 +83,29 @@ impl PlaceArgs {
             None => Target::Folder(path),
         });
         let targets: Vec<Target> = figures.map(Target::Pictures).into_iter().chain(output).collect();
-        targets.iter().try_for_each(|target| target.check(&Exec::new()))?;
-        Ok(Targets { all: targets, report })
+        for target in &targets {
+            match target {
+                Target::Set(path, _) => check_place(path, self.force)?,
+                _ => target.check(&Exec::new())?,
+            }
+        }
+        Ok(Targets { all: targets, report, force: self.force })
     }
 
     /// Whether pictures alone are wanted.
     pub(super) const fn wants_figures_alone(&self) -> bool {
         self.figures.is_some()
     }
+}
+
+/// The set alone, as a file for another program.
+fn set(answer: &Answer, kind: Kind, exec: &Exec) -> Result<Vec<u8>, Failure> {
+    let heights = answer.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]);
+    if answer.grid().is_none() && kind == SetFileKind::Table {
+        return Ok(report::cells(&answer.acceptance, None, exec)?);
+    }
+    let view = View::new(&answer.acceptance, heights, None, &PoseError::default())?;
+    Ok(kind.bytes(&view, &answer.acceptance, heights, exec)?)
 }
 
 impl Targets<'_> {
@@ -115,8 +137,8 @@ impl Targets<'_> {
     ) -> Result<Vec<String>, Failure> {
         let drawn = if self.draw() { DrawnFigures::of(answer, exec)? } else { DrawnFigures::default() };
         let mut notes = drawn.left_out.clone();
-        if let Some((path, kind, replace)) = self.report {
-            write_file(path, &rendered(kind, report, &report.described_with(advice::flags))?, replace)?;
+        if let Some((path, kind)) = self.report {
+            write_file(path, &rendered(kind, report, &report.described_with(advice::flags))?, self.force)?;
         }
         for target in &self.all {
             notes.push(match target {
@@ -131,8 +153,7 @@ impl Targets<'_> {
                     format!("wrote {}", shown(path))
                 }
                 Target::Set(path, kind) => {
-                    report::save_set(answer, path, *kind, exec)?;
-                    written(path);
+                    write_file(path, &set(answer, *kind, exec)?, self.force)?;
                     format!("wrote {}", shown(path))
                 }
                 Target::Folder(path) => {

@@ -67,7 +67,7 @@ pub(super) fn study<T: Subject>(
     compute: impl FnOnce(&Problem, &Exec) -> Result<T, Failure>,
 ) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
-    let output = Output::of(&args.print, args.place.output.as_deref(), T::KIND)?;
+    let output = Output::of(&args.print, args.place.output(), args.place.force, T::KIND)?;
     let problem = args.design.problem()?;
     let running = args.exec.start()?;
     let exec = &running.exec;
