@@ -143,7 +143,8 @@ impl Printed for TraceBody {
     fn document(&self) -> Document {
         let mut document = Document::default();
         let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
-        document.row("method", self.method);
+        document
+            .row("method", if self.method == "descent" { "exact quasi-static motion" } else { self.method });
         document.row("outcome", format!("{}{reason}", self.outcome.word()));
         document.section(None);
         if self.waypoints.is_empty() {
@@ -153,7 +154,7 @@ impl Printed for TraceBody {
             let counts = (shown.rows.len(), self.waypoints.len());
             document.table(shown);
             document.paragraph(format!(
-                "{} of {} waypoints; height: z of the centre of rotation; path: turns count ρ per radian",
+                "{} of {} waypoints; height: z of the centre of rotation; path: lateral, with turns × ρ",
                 counts.0, counts.1
             ));
         }

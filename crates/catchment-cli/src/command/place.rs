@@ -280,10 +280,9 @@ fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
         "moving {moving} (pose errors and the centre of rotation are those of this half; if the other half moves, {other})"
     );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
-    let told = rows
-        .iter()
-        .enumerate()
-        .map(|(k, one)| format!("{} {}", if k == 0 { "taken " } else { "      " }, one.told(&rows, unit)));
+    let told = rows.iter().enumerate().map(|(k, one)| {
+        format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.told(&rows, unit))
+    });
     let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
     [head, halves].into_iter().chain(told).chain(doubts).collect()
 }
@@ -295,7 +294,7 @@ fn refused(error: ProposalError) -> Failure {
         ProposalError::NoSeat { remedy, advice, .. } => {
             let remedy = remedy.iter().cloned().chain(advice.iter().copied().filter_map(flags));
             remedy.map(|one| one + "; or ").collect::<String>()
-                + "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
+                + "name the directions (WAY: +x … -z): --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; free only what the seat holds: \
              --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"
         }
         ProposalError::Problem(_) | ProposalError::Cancelled(_) => return error_of(error),

@@ -92,7 +92,10 @@ fn parts_that_do_not_dock_are_told_and_nothing_is_written() {
         catchment(home.path()).args(parts).args(["-o", "d.toml", "--figure", "d.png"]).output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(5), "{told}");
-    assert!(told.contains("the parts dock in no direction") && told.contains("--facing-moving"), "{told}");
+    assert!(
+        told.contains("no docking direction along the axes was found") && told.contains("--facing-moving"),
+        "{told}"
+    );
     assert_eq!(entries(home.path()), ["parts"]);
 }
 

@@ -50,7 +50,7 @@ fn a_grid_that_sees_nothing_is_not_taken() {
     let printed = run(home.path(), &["run", "d.toml", "--free=x,y,yaw", "--samples=400"]);
     assert!(printed.starts_with("exit 0"), "{printed}");
     let words = printed.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("(descent), of 400 random poses"), "{printed}");
+    assert!(words.contains("motion of 400 random poses"), "{printed}");
     assert!(printed.contains("end early in the error box"), "{printed}");
     assert!(!printed.contains("mated pose itself"), "{printed}");
 }

@@ -153,12 +153,12 @@ impl Document {
     }
 }
 
-/// A method of exact motions in words: `exact quasi-static motion (descent) of 4 000 random poses, without friction`.
+/// The method of exact motions in words: `exact quasi-static motion of 4 000 random poses, without friction`.
 pub fn exact_motions(of: &str, friction: f64) -> String {
     if friction > 0.0 {
-        format!("exact quasi-static motion (descent) of {of}, μ = {friction} between the halves (Coulomb)")
+        format!("exact quasi-static motion of {of}, μ = {friction} between the halves (Coulomb)")
     } else {
-        format!("exact quasi-static motion (descent) of {of}, without friction")
+        format!("exact quasi-static motion of {of}, without friction")
     }
 }
 

@@ -144,11 +144,11 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
         ConnectorSpec::Family(f) => {
             format!("{}, height / width {}", f.family().name(), rounded(f.aspect_ratio()))
         }
-        ConnectorSpec::Own(_) => "your halves".to_owned(),
+        ConnectorSpec::Own(_) => "own geometry".to_owned(),
     };
     let width = design.unit.map_or_else(
         || "lengths in D, its width".to_owned(),
-        |u| format!("its width D = {} {}", design.width, u.symbol()),
+        |u| format!("width D = {} {}", design.width, u.symbol()),
     );
     let mut document = Document::default();
     document.row("connector", format!("{kind}; {width}"));

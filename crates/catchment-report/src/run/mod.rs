@@ -67,7 +67,9 @@ impl RunBody {
         let o = &a.outcomes;
         let open =
             if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
-        document.row("not docked", format!("jammed {}, missed {}{open}", share(o.jammed), share(o.missed)));
+        let by = if self.axes.is_empty() { "" } else { " (by the grid)" };
+        document
+            .row("not docked", format!("jammed {}, missed {}{open}{by}", share(o.jammed), share(o.missed)));
         document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
         if let Some(success) = &self.success {
             let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
@@ -84,7 +86,7 @@ impl RunBody {
 
     /// The method and what it did to the halves, below the heading.
     fn describe_method(&self, document: &mut Document) {
-        document.row("method", format!("{}, of {}", self.method_in_words(), self.domain()));
+        document.row("method", self.method_in_words());
         let friction = self.friction();
         if friction > 0.0 {
             document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
@@ -147,10 +149,13 @@ impl RunBody {
 
     /// The two methods that follow exact motions say so; the name stands beside it.
     fn method_in_words(&self) -> String {
+        let domain = self.domain();
         match self.method.as_str() {
-            "descent" => "exact quasi-static motion (descent)".to_owned(),
-            "confluence" => "exact quasi-static motion, shared by neighbours (confluence)".to_owned(),
-            other => other.to_owned(),
+            "descent" => format!("exact quasi-static motion of {domain}"),
+            "confluence" => {
+                format!("{domain}, by exact motions; paths that meet are followed once (confluence)")
+            }
+            other => format!("{other}, of {domain}"),
         }
     }
 
@@ -166,7 +171,8 @@ impl RunBody {
     fn describe_acceptance(&self, document: &mut Document) {
         let a = &self.acceptance;
         let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
-        let by = a.sum_ci95.map(|_| format!(" (95 % CI, {} sampled poses)", grouped(poses)));
+        let grid = if self.axes.is_empty() { "" } else { "the grid and " };
+        let by = a.sum_ci95.map(|_| format!(" (95 % CI, by {grid}{} sampled poses)", grouped(poses)));
         document.row("AA (Sum)", format!("{}{}", sum(a), by.unwrap_or_default()));
         document.more("area of acceptance: the measure of all pose errors that dock");
         let border = a.sum_bracket.map(|ends| ends.map(significant));
@@ -208,11 +214,11 @@ impl RunBody {
         match centered {
             Some(found) if found.followed => {
                 let all = found.sampled.map_or_else(
-                    || "every sampled pose docks".to_owned(),
-                    |poses| format!("all of {} sampled poses dock", grouped(poses)),
+                    || "every pose sampled inside it docks".to_owned(),
+                    |poses| format!("all of {} poses sampled inside it dock", grouped(poses)),
                 );
                 document.paragraph(format!(
-                    "tolerance window: all errors at once; the error box shrunk in proportion until {all} in it"
+                    "tolerance window: all errors at once; the error box shrunk in proportion until {all}"
                 ));
             }
             Some(_) => {

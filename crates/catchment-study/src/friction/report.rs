@@ -47,14 +47,14 @@ impl Subject for Friction {
         document.row(
             "method",
             format!(
-                "exact quasi-static motion (descent) of the same {} random poses at every μ",
+                "exact quasi-static motion of the same {} random poses at every μ",
                 grouped(self.motions)
             ),
         );
         document.section(None).table(self.table());
         document.paragraph(format!(
             "μ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this μ; gained: the other way \
-             round; may stick: dock, but could also stick by Coulomb's law; barely stuck: lost, but dock at 0.9 μ.",
+             round; may stick: dock, though Coulomb's law also lets them stick; barely stuck: lost, but dock at 0.9 μ.",
             grouped(self.motions)
         ));
         self.describe_kept(&mut document);
@@ -135,7 +135,7 @@ impl Friction {
             return;
         }
         document.titled(Some(format!(
-            "contacts that stick first, of the first {} to be lost (shares overlap)",
+            "contacts that stop the first {} that are lost (shares overlap)",
             poses(*count)
         )));
         for pair in features.iter().take(SHOWN) {
@@ -143,7 +143,7 @@ impl Friction {
             document.row(
                 tenths(pair.share),
                 format!(
-                    "{}: from μ = {least}, half of these poses by μ = {median}",
+                    "{}: from μ = {least} on, median μ = {median}",
                     contact_in_words(&pair.fixed, &pair.moving)
                 ),
             );

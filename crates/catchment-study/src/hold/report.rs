@@ -92,7 +92,7 @@ impl HoldingForces {
     }
 
     fn forces(&self) -> Table {
-        let mut table = self.table("from +x");
+        let mut table = self.table("angle from +x");
         let step = self.sideways.len().div_ceil(SHOWN).max(1);
         let scale = self.preload_n.unwrap_or(1.0);
         for side in self.sideways.iter().step_by(step) {

@@ -143,7 +143,7 @@ pub enum ProposalError {
         guess: LengthUnit,
     },
     /// The parts do not dock.
-    #[error("the parts dock in no direction along an axis{}", listed(tried))]
+    #[error("no docking direction along the axes was found{}", listed(tried))]
     NoSeat {
         /// The candidates tried, the best first, with the reasons.
         tried: Vec<String>,

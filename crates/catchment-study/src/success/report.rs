@@ -89,8 +89,7 @@ impl RobotDocking {
         }
         if self.outside_box > MUCH_OUTSIDE {
             warnings.push(format!(
-                "{:.1} % of its errors lie outside of the design's error box: they were followed like all others, while an area of \
-                 acceptance ends at the box",
+                "{:.1} % of the robot's errors lie outside the design's error box; the success includes them",
                 100.0 * self.outside_box
             ));
         }
@@ -193,7 +192,7 @@ impl RobotDocking {
             let along = failures.along.iter().find(|along| along.axis == axis)?;
             let (axis, failed, docked) = (axis.name(), along.failed?, along.docked?);
             Some(format!(
-                "; dominant error {axis} (mean size {failed:.1} σ in failures, {docked:.1} σ in successes)"
+                "; dominant error {axis} (mean |{axis}| {failed:.1} σ in failures, {docked:.1} σ in successes)"
             ))
         });
         document.row("failures", kinds.join(", ") + &along.unwrap_or_default());
@@ -231,7 +230,7 @@ impl RobotDocking {
             Column::new("σ"),
             Column::new("success with σ halved"),
             Column::new("gain (percentage points)"),
-            Column::new(format!("this σ alone for {required}")),
+            Column::new(format!("σ needed for {required}")),
         ]);
         let mut is_open = false;
         for improve in &self.improve {

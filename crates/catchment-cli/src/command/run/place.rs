@@ -73,7 +73,7 @@ impl PlaceArgs {
                 return Err(Failure::with_help(message.to_owned(), help));
             }
         }
-        let report = output.and_then(|path| Some((path, result_args::SetFileKind::of_text(path)?)));
+        let report = output.and_then(|path| Some((path, result_args::Kind::of_text(path)?)));
         if let Some((path, _)) = report {
             check_place(path, self.force)?;
         }
@@ -99,7 +99,7 @@ impl PlaceArgs {
 }
 
 /// The set alone, as a file for another program.
-fn set(answer: &Answer, kind: Kind, exec: &Exec) -> Result<Vec<u8>, Failure> {
+fn set(answer: &Answer, kind: SetFileKind, exec: &Exec) -> Result<Vec<u8>, Failure> {
     let heights = answer.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]);
     if answer.grid().is_none() && kind == SetFileKind::Table {
         return Ok(report::cells(&answer.acceptance, None, exec)?);

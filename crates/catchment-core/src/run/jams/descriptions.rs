@@ -116,10 +116,10 @@ impl<'a> RestDescriptions<'a> {
         above: f64,
         extent: &[Extent],
     ) {
-        document.row("  final pose", format!("{}{}", self.units.pose(pose), self.above(above)));
+        document.row("  example pose", format!("{}{}", self.units.pose(pose), self.above(above)));
         let wide = self.extent(pose, extent);
         if !wide.is_empty() {
-            document.row("  rests over", wide);
+            document.row("  rest range", wide);
         }
     }
 
@@ -173,27 +173,27 @@ impl<'a> RestDescriptions<'a> {
         let push = self.units.length(examined.push_d);
         let Examined { back, pushed, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
-            return format!("held by friction alone; {back} of {pushed} neighbouring poses end here, too");
+            return format!("held by friction alone; {back} of {pushed} poses moved by {push} end here, too");
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
                 format!(
-                    "almost level: displaced by {push} in its weakest direction it rises by {}",
+                    "almost level: moved {push} in its easiest direction, the COR rises {}",
                     self.units.fine(rise)
                 )
             }
             (Stability::Ridge, _) => {
                 format!(
-                    "unstable: displaced by {push} in its weakest direction it falls; the rest is on a ridge"
+                    "unstable: moved {push} in its easiest direction, the COR falls; the rest is on a ridge"
                 )
             }
             (_, Some(rise)) => {
                 let rise = self.units.fine(rise);
-                format!("stable: displaced by {push} in its weakest direction it rises by {rise}")
+                format!("stable: moved {push} in its easiest direction, the COR rises {rise}")
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {back} of {pushed} neighbouring poses end here, too")
+        format!("{rise}; {back} of {pushed} poses moved so end here, too")
     }
 
     /// The escape height, with the end of the escape path.
@@ -201,7 +201,7 @@ impl<'a> RestDescriptions<'a> {
         if climb < NOTHING {
             format!("0: pushed sideways it {to}")
         } else {
-            format!("{} or less; lifted so far it {to}", self.units.fine(climb))
+            format!("at most {}; lifted by this it {to}", self.units.fine(climb))
         }
     }
 
@@ -240,7 +240,7 @@ impl<'a> RestDescriptions<'a> {
             let mut at: Vec<String> = Vec::new();
             for contact in contacts.iter().filter(pair) {
                 let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-                let place = format!("at {fixed} of the fixed, {moving} of the moving half as drawn");
+                let place = format!("at {fixed} in the fixed, {moving} in the moving half's drawing");
                 if places.len() < MOST_CONTACTS && !places.contains(&place) {
                     places.push(place.clone());
                     at.push(place);

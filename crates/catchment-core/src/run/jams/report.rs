@@ -71,7 +71,7 @@ impl Jams {
     fn describe(&self, document: &mut Document, places: RestDescriptions<'_>, number: usize, jam: &Jam) {
         let images = match jam.places {
             0 | 1 => String::new(),
-            n => format!(", at {n} places that are images of each other"),
+            n => format!(", at {n} symmetric places"),
         };
         let expected = jam
             .expected

@@ -61,7 +61,7 @@ impl Rests {
         let places = RestDescriptions::of(design, 0.0);
         let images = match rest.places {
             0 | 1 => String::new(),
-            n => format!(", at {n} places that are images of each other"),
+            n => format!(", at {n} symmetric places"),
         };
         let docked = if rest.is_docked() { ", docked" } else { ", jammed" };
         let share = tenths_between(rest.of_box.share, rest.of_box.ci95);

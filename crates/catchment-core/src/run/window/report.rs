@@ -35,7 +35,7 @@ impl WindowDetails {
     pub fn describe(&self, document: &mut Document, design: &Design) {
         document.table(self.table(design));
         document.paragraph(
-            "tolerance window: all errors at once; the error box shrunk in proportion. single-axis limit: this error, all others zero. limit, \
+            "tolerance window: all errors at once; the error box shrunk in proportion until all poses sampled in it dock. single-axis limit: this error, all others zero. limit, \
              others in window: this error, the others anywhere in the window.",
         );
         if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
