@@ -40,7 +40,7 @@ pub(crate) struct DropArgs {
     /// Viscous damping rate of rotation in 1/s: torque -mass·rate·ρ²·ω [default: that of --damping]
     #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP, hide_short_help = true)]
     angular_damping: Option<f64>,
-    /// Coefficient of friction between the halves [default: 0]
+    /// Friction coefficient of the halves [default: 0]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
     /// End exact motions on slopes up to this height per length (ρ-metric), a simple model of friction [default: 0]

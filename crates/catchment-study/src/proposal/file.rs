@@ -201,7 +201,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
         .collect();
     line(match (settings.free, left.is_empty()) {
         (Some(_), _) => "# Free errors, as you gave them; all others are locked at 0.",
-        (None, true) => "# Free errors: the seat corrects all five.",
+        (None, true) => "# Free errors: the seat corrects each of them.",
         (None, false) => "# Free errors: those that the seat corrects; all others are locked at 0.",
     });
     line(&format!("free = {}", list(seat.free)));
