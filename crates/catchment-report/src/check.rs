@@ -409,7 +409,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
-        assert!(text.contains("pitch ±90°\n"), "{text}");
+        assert!(text.contains("pitch, yaw ±90°\n"), "{text}");
     }
 
     #[test]
