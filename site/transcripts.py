@@ -5,8 +5,8 @@
     python3 site/transcripts.py target/debug/catchment --check all    with the slow ones
 
 A block ```console whose first line begins with `$ catchment` holds commands and what they print, stderr among it. A command goes on in the next line after `\\`.
-The commands of a page run one after another, page after page, in one folder: it holds two STL files of the repository, its design files in designs/, and every block ```toml
-whose first line is `# NAME.toml`, under that name. A line that is only … stands for lines that are left out: as many as it takes that the block keeps its lines
+The commands of a page run one after another in a folder of their own (budget-to-window goes on in that of first-dock): it holds two STL files of the repository, its design
+files in designs/, and every block ```toml whose first line is `# NAME.toml`, under that name. A line that is only … stands for lines that are left out: as many as it takes that the block keeps its lines
 above it and below. A command without any output in its block runs, and is not compared.
 """
 
@@ -22,8 +22,9 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FIRST = [ROOT / "README.md", ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
-PAGES = [*FIRST, *(page for page in sorted((ROOT / "docs").glob("*.md")) if page not in FIRST)]
+#: Pages in the order of their reading; each list shares a folder.
+DOCK = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
+PAGES = [DOCK, [ROOT / "README.md"], *([page] for page in sorted((ROOT / "docs").glob("*.md")) if page not in DOCK)]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
 #: Commands that take more than some seconds of a debug build, by how they begin.
 SLOW = (
@@ -35,6 +36,8 @@ SLOW = (
     "catchment success designs/pyramid-stl.toml",
     "catchment rests",
     "catchment run designs/pyramid.toml",
+    "catchment run design.toml",
+    "catchment success my.toml",
     "catchment export out -o set.vti",
 )
 BLOCK = re.compile(r"^```(console|toml)\n(.*?)^```$", re.M | re.S)
@@ -77,9 +80,10 @@ def commands(block: str) -> list[tuple[list[str], list[str]]]:
 
 
 class Transcripts:
-    def __init__(self, program: str, folder: Path, with_slow: bool) -> None:
-        self.program, self.folder, self.with_slow = program, folder, with_slow
-        self.known: dict[str, list[str]] = {}
+    def __init__(self, program: str, with_slow: bool) -> None:
+        self.program, self.with_slow = program, with_slow
+        self.folder = Path()
+        self.ran = 0
         self.wrong: list[str] = []
         self.left_out = 0
 
@@ -89,6 +93,8 @@ class Transcripts:
             named = re.match(r"# (\S+\.toml)\n", block[2])
             if named:
                 (self.folder / named[1]).write_text(block[2], encoding="utf-8")
+            return block[0]
+        if not block[2].startswith("$ catchment "):
             return block[0]
         lines: list[str] = []
         for typed, shown in commands(block[2]):
@@ -102,14 +108,14 @@ class Transcripts:
         if command.startswith(SLOW) and not self.with_slow:
             self.left_out += 1
             return shown
-        if command not in self.known:
-            begun = time.monotonic()
-            self.known[command] = printed(self.program, self.folder, command)
-            if time.monotonic() - begun > 5:
-                print(f"{time.monotonic() - begun:.0f} s: {command}", file=sys.stderr)
+        begun = time.monotonic()
+        printed_lines = printed(self.program, self.folder, command)
+        self.ran += 1
+        if time.monotonic() - begun > 5:
+            print(f"{time.monotonic() - begun:.0f} s: {command}", file=sys.stderr)
         if not shown:
             return shown
-        said = cut(self.known[command], shown)
+        said = cut(printed_lines, shown)
         if said != shown:
             lines = difflib.unified_diff(shown, said, f"{page.name}: $ {command}", "what it prints", lineterm="", n=1)
             self.wrong.append("\n".join(lines))
@@ -120,20 +126,22 @@ def main() -> None:
     if len(sys.argv) not in (2, 3, 4) or sys.argv[2:] not in ([], ["--check"], ["--check", "all"]):
         raise SystemExit(__doc__)
     program, compares, every = sys.argv[1], len(sys.argv) > 2, sys.argv[2:] != ["--check"]
-    with tempfile.TemporaryDirectory() as home:
-        for part in PARTS:
-            shutil.copy(part, home)
-        shutil.copytree(ROOT / "designs", Path(home) / "designs")
-        transcripts = Transcripts(program, Path(home), every)
-        for page in PAGES:
-            text = page.read_text(encoding="utf-8")
-            whole = BLOCK.sub(lambda block, page=page: transcripts.again(page, block), text)
-            if not compares and whole != text:
-                page.write_text(whole, encoding="utf-8")
+    transcripts = Transcripts(program, every)
+    for pages in PAGES:
+        with tempfile.TemporaryDirectory() as home:
+            transcripts.folder = Path(home)
+            for part in PARTS:
+                shutil.copy(part, home)
+            shutil.copytree(ROOT / "designs", Path(home) / "designs")
+            for page in pages:
+                text = page.read_text(encoding="utf-8")
+                whole = BLOCK.sub(lambda block, page=page: transcripts.again(page, block), text)
+                if not compares and whole != text:
+                    page.write_text(whole, encoding="utf-8")
     if compares and transcripts.wrong:
         raise SystemExit("\n".join([*transcripts.wrong, f"python3 site/transcripts.py {program}"]))
     changed = "" if compares else f", {len(transcripts.wrong)} blocks changed"
-    print(f"transcripts: {len(transcripts.known)} commands of {len(PAGES)} pages, {transcripts.left_out} slow ones left out{changed}")
+    print(f"transcripts: {transcripts.ran} commands of {sum(map(len, PAGES))} pages, {transcripts.left_out} slow ones left out{changed}")
 
 
 if __name__ == "__main__":

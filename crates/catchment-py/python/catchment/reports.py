@@ -15,39 +15,39 @@ else:
 
 
 class Docked(TypedDict):
-    """What counts as docked. What it means for a pair of halves is `crate::contact::Seat`'s."""
+    """Docking tolerance. `crate::contact::Seat` defines its effect on a pair of halves."""
 
-    #: How far above the mated height a half may lie and be seated, in D.
+    #: Largest height above the mated height at which a half at rest counts as docked, in D.
     depth: float
-    #: The largest error at rest that counts, in the order of `Dof::ALL`: D and radians; none: whatever the seat allows.
+    #: Largest residual misalignment that counts as docked, in the order of `Dof::ALL`: D and radians; null: the play of the seat, limited.
     limits: list[float | None]
 
 
 class Alignment(TypedDict):
     """The alignment problem of a pair of halves. Stored with every result."""
 
-    #: Errors that occur, and that contact may correct. The others are locked: rotations at 0, translations at the COR.
+    #: Errors that occur and that contact may correct. The others are locked: rotations at 0, translations at the COR.
     free: list[Literal['x', 'y', 'roll', 'pitch', 'yaw']]
-    #: Rotations that do not matter (yaw of a round plug): locked in the motion, ignored in the verdict.
+    #: Rotations that do not count in the outcome (yaw of a round plug); they are locked during motion.
     dont_care: list[Literal['x', 'y', 'roll', 'pitch', 'yaw']]
     #: Signed distance of the COR in front of the face centre, in D.
     center_of_rotation: float
-    #: ρ: overdamped motion dissipates `\|v\|² + (ρD)²·\|ω\|²`, v at the COR. In D.
+    #: Characteristic length ρ: overdamped motion dissipates `\|v\|² + (ρD)²·\|ω\|²`, v at the COR. In D.
     rotation_length: float
     #: The half turn that mounts the moving half.
     mount: Literal['x', 'y']
-    #: n-fold symmetry about the approach axis: turned by 2π/n the pair is aligned as well.
+    #: n-fold symmetry about the approach axis: a pair rotated by a multiple of 2π/n also counts as docked.
     symmetry: int
-    #: Half-ranges of the error box in the order of `Dof::ALL`: D and radians. Only free ones count.
+    #: Half-ranges of the error box in the order of `Dof::ALL`: D and radians. Only those of free errors count.
     half_ranges: list[float]
-    #: What counts as docked.
+    #: Docking tolerance.
     docked: Docked
 
 
 class Design(TypedDict):
     """A checked design: lengths in D, angles in radians."""
 
-    #: What the person called it.
+    #: Name given by the user.
     name: str
     #: The two halves.
     connector: dict[str, Any]
@@ -62,7 +62,7 @@ class Design(TypedDict):
 class AxisReport(TypedDict):
     """One axis of the error grid."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
     #: `D` or `rad`.
     unit: Literal['D', 'rad']
@@ -77,35 +77,35 @@ class AxisReport(TypedDict):
 class Outcomes(TypedDict):
     """Poses per outcome."""
 
-    #: Contact brings the halves to the mated pose.
+    #: Docked: contact brings the halves to the mated pose.
     aligned: int
-    #: At rest in contact elsewhere.
+    #: The moving half rests in contact outside the seat.
     jammed: int
-    #: No contact, or slid off.
+    #: The halves never touch, or the moving half slides off.
     missed: int
-    #: The budget ran out.
+    #: The step budget ended before the motion did.
     undecided: int
 
 
 class Stratum(TypedDict):
-    """What was seen in one stratum."""
+    """Results of a stratum."""
 
-    #: What it holds.
+    #: Poses that the stratum contains.
     name: str
     #: Its share of the error box, in [0, 1]; exact.
     share: float
-    #: Poses followed in it.
+    #: Number of poses followed in the stratum.
     descents: int
-    #: How many of them aligned.
+    #: Number of them that docked.
     aligned: int
-    #: How many could not be followed to their end.
+    #: Number of them that could not be followed to their end.
     undecided: int
-    #: Estimated share of its poses that align, in [0, 1]: the mean over batches, near `aligned / descents`.
+    #: Estimated share of the stratum that docks, in [0, 1]: the mean over batches, close to `aligned / descents`.
     accepted: float
 
 
 class SampleReport(TypedDict):
-    """Random poses, followed exactly, that the Sum and its interval come from."""
+    """Sampled poses, followed exactly, behind the Sum and its interval."""
 
     #: Name of the method that followed them.
     method: str
@@ -113,43 +113,43 @@ class SampleReport(TypedDict):
     settings: Any
     #: Seed of the random numbers.
     seed: int
-    #: Poses followed.
+    #: Number of poses followed.
     descents: int
-    #: Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of versions that did not count it.
+    #: Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of older versions.
     differing: float
     #: Its 95 % interval.
     differing_ci95: list[float]
-    #: Where they lay.
+    #: The strata.
     strata: list[Stratum]
 
 
 class AcceptanceReport(TypedDict):
-    """The accepted set in numbers."""
+    """Measures of the accepted set."""
 
-    #: The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, what certainly docks where there is a `certificate`, else `sum_grid`.
+    #: The Sum, in `unit`: the unbiased estimate if there is a `sample`, the certified measure if there is a `certificate`, else `sum_grid`.
     sum: float
     #: Unit of `sum`, like `D²·rad³`.
     unit: str
-    #: 95 % interval of the true measure, from the poses of `sample` or the listed ones, drawn at random. Null if nothing was.
+    #: 95 % interval of the true measure, from the poses of `sample` or from listed poses sampled at random. Null without samples.
     sum_ci95: list[float] | None
-    #: The measure of the accepted cells; of listed poses, their share of the error box.
+    #: Measure of the accepted cells; for listed poses, their share of the error box.
     sum_grid: float
-    #: Where there is a `certificate`, what certainly docks, and that with what is undecided. Else `sum_grid` without the accepted cells that touch a rejected one, and with the rejected cells that touch an accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
+    #: With a `certificate`: the certified measure, and that plus the undecided measure. Without: `sum_grid` minus the accepted cells that touch a rejected cell, and plus the rejected cells that touch an accepted cell. This is the uncertainty of the resolution, not a confidence interval. Null for listed poses.
     sum_bracket: list[float] | None
     #: `sum` as a share of the error box, in [0, 1].
     fraction: float
-    #: Cells or poses tried.
+    #: Number of cells or poses decided.
     cells: int
-    #: How many met each outcome.
+    #: Number of cells or poses with each outcome.
     outcomes: Outcomes
-    #: Random poses, followed exactly, that correct the Sum; null if none were.
+    #: Sampled poses, followed exactly, that correct the Sum; null without samples.
     sample: SampleReport | None
 
 
 class Interval(TypedDict):
     """An interval along an axis."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
     #: Lower end, D or rad.
     lo: float
@@ -160,80 +160,80 @@ class Interval(TypedDict):
 class OnaaReport(TypedDict):
     """The largest axis-oriented n-cube in the accepted set."""
 
-    #: Its edge after each axis is divided by its range: in [0, 1].
+    #: Edge of the cube, with each axis divided by its range: in [0, 1].
     edge: float
-    #: Where it lies; empty if the edge is 0.
+    #: Bounds of the cube; empty if the edge is 0.
     bounds: list[Interval]
-    #: Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #: Whether exact motions determined the size, independently of the cells; false in reports of older versions.
     followed: bool
 
 
 class CenteredReport(TypedDict):
     """The largest n-cube around zero in the accepted set."""
 
-    #: Its edge after each axis is divided by its range: in [0, 1].
+    #: Edge of the cube, with each axis divided by its range: in [0, 1].
     edge: float
-    #: Where it lies.
+    #: Bounds of the cube.
     bounds: list[Interval]
-    #: The border of the error box stopped it: it may be larger.
+    #: Whether the border of the error box limits the cube, so that it may be larger.
     reaches_border: bool
-    #: Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #: Whether exact motions determined the size, independently of the cells; false in reports of older versions.
     followed: bool
-    #: How many random poses of it were followed last, all of which dock.
+    #: Number of sampled poses of the final cube, all of which dock.
     sampled: NotRequired[int | None]
 
 
 class ToleranceReport(TypedDict):
-    """How far one error may go alone."""
+    """Single-axis limits of an error."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
     #: `D` or `rad`.
     unit: Literal['D', 'rad']
-    #: Below zero; not negative.
+    #: Limit below zero; not negative.
     minus: float
-    #: Above zero; not negative.
+    #: Limit above zero; not negative.
     plus: float
-    #: Uncertainty of both: half a cell, or half the distance between a pose that docks and one that does not.
+    #: Uncertainty of both: half a cell, or half the distance between a success and a failure.
     half_cell: float
-    #: Whether poses were followed along the axis, so that it does not rest on cells; false in reports of versions that did not.
+    #: Whether exact motions along the axis determined the limits, independently of the cells; false in reports of older versions.
     followed: bool
-    #: The border of the error box stopped `minus`: it may be larger.
+    #: Whether `minus` ends at the border of the error box, so that it may be larger.
     minus_reaches_border: bool
-    #: The border of the error box stopped `plus`: it may be larger.
+    #: Whether `plus` ends at the border of the error box, so that it may be larger.
     plus_reaches_border: bool
 
 
 class UprightReport(TypedDict):
-    """What a connector tolerates whose roll and pitch are locked."""
+    """Figures of merit of the connector with roll and pitch locked."""
 
-    #: The largest box around zero all of which docks, in the proportions of the tolerances; its edge is a multiple of these.
+    #: The largest box around zero in which every sampled pose docks, in the proportions of the tolerances; its edge is a multiple of these.
     window: CenteredReport
-    #: How far each error may go alone.
+    #: Single-axis limits of each error.
     tolerances: list[ToleranceReport]
 
 
 class SuccessReport(TypedDict):
     """Success probability for a distribution of errors."""
 
-    #: How the errors are distributed.
+    #: Distribution of the errors.
     distribution: dict[str, Any]
     #: Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
     probability: float
-    #: The same with the cells at the border of the accepted set counted as failures, and as successes.
+    #: The probability with border cells of the accepted set counted as failures, and as successes.
     bracket: list[float]
-    #: 95 % interval of `probability`; null where it is an exact sum over cells.
+    #: 95 % interval of `probability`; null for an exact sum over cells.
     ci95: list[float] | None
     #: Probability of an error outside the error box.
     outside: float
 
 
 class Choice(TypedDict):
-    """The tolerance that was used, and why."""
+    """The tolerance that was used, and the reason for it."""
 
     #: Basins shallower than this were merged, in D.
     depth: float
-    #: Why this one.
+    #: Reason for this tolerance.
     reason: dict[str, Any]
 
 
@@ -255,15 +255,15 @@ class PoseError(TypedDict):
 class BasinReport(TypedDict):
     """A basin after merging."""
 
-    #: What becomes of its poses.
+    #: Outcome of its poses.
     outcome: Literal['aligned', 'jammed', 'missed', 'undecided']
     #: The pose error of its lowest cell.
     minimum: PoseError
-    #: Height there; null where nothing touches.
+    #: Height of its lowest cell; null without contact.
     height: float | None
-    #: How far the water must rise to reach a lower minimum; null if there is none.
+    #: Height that the water must rise to reach a lower minimum; null if no minimum is lower.
     depth: float | None
-    #: How far the water must rise to run over into any other basin; null where nothing touches, or for the only basin.
+    #: Height that the water must rise to overflow into any other basin; null without contact, or for a single basin.
     escape: float | None
     #: Cells that drain to it.
     cells: int
@@ -272,9 +272,9 @@ class BasinReport(TypedDict):
 
 
 class ToleranceStepReport(TypedDict):
-    """A step of the accepted share over the tolerance."""
+    """A step of the accepted share as a function of the tolerance."""
 
-    #: It holds for tolerances above this.
+    #: The step holds for tolerances above this.
     above: float
     #: Accepted cells.
     cells: int
@@ -287,26 +287,26 @@ class ToleranceStepReport(TypedDict):
 class BasinsReport(TypedDict):
     """Basins of a flooded landscape. Depths and heights in D."""
 
-    #: Basins shallower than `tolerance.depth` were merged, and why at that depth.
+    #: Depth below which basins were merged, and the reason for it.
     tolerance: Choice
     #: Minima before merging.
     minima: int
     #: Basins after merging.
     merged: int
-    #: The basins after merging that hold the most cells, the largest first, at most `LISTED`.
+    #: The basins after merging with the most cells, largest first, at most `LISTED`.
     largest: list[BasinReport]
-    #: What every tolerance accepts: each step holds for tolerances above its own, up to the next one's. Steps that change the accepted set by less than `SMALLEST_STEP` of the error box are left out.
+    #: The accepted set for every tolerance: each step holds for tolerances above its own, up to that of the next step. Steps that change the accepted set by less than `SMALLEST_STEP` of the error box are left out.
     staircase: list[ToleranceStepReport]
 
 
 class WatershedsReport(TypedDict):
-    """Watersheds of a flooded grid; that of the cells without contact is none of them."""
+    """Watersheds of a flooded grid, without the region of cells without contact."""
 
     #: Before merging.
     first: int
     #: After merging.
     merged: int
-    #: Cells between two of them, before merging.
+    #: Cells between two watersheds, before merging.
     dams: int
     #: Cells whose watershed was merged into another.
     moved: int
@@ -315,97 +315,97 @@ class WatershedsReport(TypedDict):
 
 
 class PartitionCounts(TypedDict):
-    """How much there was of everything."""
+    """Size of a partition."""
 
-    #: Polytopes of the Minkowski sum.
+    #: Number of polytopes of the Minkowski sum.
     polytopes: int
-    #: Cells of the contact space.
+    #: Number of cells of the contact space.
     cells: int
-    #: Parts of cells, each of which drains to one other.
+    #: Number of parts of cells; each part drains to a single other part.
     parts: int
-    #: Places of rest: base watersheds.
+    #: Number of rests: base watersheds.
     rests: int
 
 
 class PartitionReport(TypedDict):
     """A partition of the contact space."""
 
-    #: Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
+    #: Numbers of polytopes of the Minkowski sum, cells of the contact space, parts of cells, and rests.
     counts: PartitionCounts
-    #: Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
+    #: Measure of the accepted polytopes inside the error box, in the unit of the Sum, independent of any grid.
     sum: float
 
 
 class BoxCertificate(TypedDict):
-    """What is certain of an error box."""
+    """Certified shares of an error box."""
 
-    #: Share of the error box whose every pose docks.
+    #: Share of the error box in which every pose docks.
     yes: float
-    #: Share whose no pose docks.
+    #: Share in which no pose docks.
     no: float
-    #: Share that is left open.
+    #: Share that is undecided.
     undecided: float
     #: Measures of the three, Dᵃ·radᵇ.
     measures: list[float]
-    #: How high a seated half must be lifted before it can leave, above the mated height, in D: at least. Also the energy that it takes per unit of the force that holds it.
+    #: Certified lower bound on the retention: the height above the mated height that a seated half must reach before it can leave, in D. Also the energy per unit of the force that holds it.
     retention_at_least: float
-    #: At most; nothing where no way out was found.
+    #: Certified upper bound on the retention; null if no escape path was found.
     retention_at_most: float | None
-    #: The largest window that is certain: every pose docks of the error box, made smaller about zero by this factor, in [0, 1].
+    #: Certified window: every pose docks in the error box scaled about zero by this factor, in [0, 1].
     window: float
-    #: Boxes that were looked at.
+    #: Number of boxes examined.
     boxes: int
 
 
 class Joined(TypedDict):
-    """How many cells were decided by others, and how often that was wrong."""
+    """Number of cells with an inherited label, and how often that label was wrong."""
 
     #: Cells in contact; mirror images count once.
     cells: int
-    #: How many of them joined others, on their way or at once.
+    #: Cells that inherited their label, during their motion or at its start.
     joined: int
-    #: How many motions were followed, to their end or until they joined others.
+    #: Motions that were followed, to their end or until they inherited a label.
     motions: int
-    #: Cells that joined others, drawn at random and followed to their end.
+    #: Cells with an inherited label that were sampled at random and followed to their end.
     tried: int
-    #: How many of these end otherwise than they were labelled.
+    #: Number of these cells whose exact outcome differs from their label.
     wrong: int
-    #: 95 % interval of the share of the joined cells that do, in [0, 1].
+    #: 95 % interval of the share of misclassified cells among the inherited labels, in [0, 1].
     wrong_ci95: list[float]
 
 
 class JamsSettings(TypedDict):
-    """What changes the answer."""
+    """Settings that change the result."""
 
-    #: Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
+    #: Number of poses sampled from the error box. Default: 4000 for simple halves, fewer for halves with many facets.
     motions: int | None
-    #: Their seed, and that of every search.
+    #: Seed of the samples and of every search.
     seed: int
-    #: Errors that a robot makes: as many poses are drawn from them, too.
+    #: Pose-error distribution of a robot: if given, as many poses are also sampled from it.
     errors: dict[str, Any] | None
-    #: How many jams are examined, those with most of the poses.
+    #: Number of jams to examine, those with the largest basins first.
     examined: int
     #: Coefficient of friction between the halves.
     friction: float
-    #: A grid whose merge tree gives depths, too; none by default.
+    #: Grid whose merge tree also gives escape heights; null: no grid.
     resolution: str | None
-    #: Whether depths are bounded from below, too, by boxes of poses: of simple halves without friction, with one or two free errors as a rule.
+    #: Whether to certify lower bounds on escape heights by boxes of poses: for simple halves without friction, usually with one or two free errors.
     certified: bool
 
 
 class Share(TypedDict):
-    """A count as a share of all, with the uncertainty of a sample."""
+    """A count as a share of all, with its sampling uncertainty."""
 
-    #: How many.
+    #: The count.
     count: int
-    #: Their share of all, in [0, 1].
+    #: The count divided by the total, in [0, 1].
     share: float
-    #: Its 95 % interval (Wilson).
+    #: 95 % interval of the share (Wilson).
     ci95: list[float]
 
 
 class JamsOutcomes(TypedDict):
-    """Their outcomes."""
+    """Outcomes of the sampled poses."""
 
     aligned: NotRequired[Share]
     jammed: NotRequired[Share]
@@ -414,7 +414,7 @@ class JamsOutcomes(TypedDict):
 
 
 class JamsExpected(TypedDict):
-    """The same of poses drawn from the errors that a robot makes; null where none were given."""
+    """Outcomes of poses sampled from the errors of the robot; null if no errors were given."""
 
     aligned: NotRequired[Share]
     jammed: NotRequired[Share]
@@ -433,24 +433,24 @@ Extent = TypedDict(
 
 
 class NamedFeature(TypedDict):
-    """A feature of a half that touches."""
+    """A feature of a half in contact."""
 
     #: `face`, `edge` or `corner`.
     kind: Literal['face', 'edge', 'corner']
-    #: In words: `edge between top and wall`.
+    #: Description, such as `edge between top and wall`.
     name: str
-    #: The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
+    #: Number of its part in the design file, from 0; null if the half does not consist of parts with one surface each.
     part: int | None
-    #: Where it touches, in the coordinates in which its half was drawn, in D.
+    #: Contact point in the coordinates in which the half was drawn, in D.
     drawn_d: list[float]
 
 
 class FeatureContact(TypedDict):
-    """Two features that touch, and where."""
+    """A contact between two features."""
 
-    #: Where, in the world frame, in D: the places where it carries.
+    #: Contact points in the world frame, in D: the points that carry force.
     points_d: list[list[float]]
-    #: Unit normal at the first of them, from the fixed half to the moving one.
+    #: Contact normal at the first point: unit vector from the fixed half to the moving half.
     normal: list[float]
     #: The feature of the fixed half.
     fixed: NamedFeature
@@ -459,106 +459,106 @@ class FeatureContact(TypedDict):
 
 
 class Immobility(TypedDict):
-    """By which order a rest is held (Rimon and Burdick)."""
+    """Immobility of a rest by its contacts (Rimon and Burdick)."""
 
     #: `first`, `second`, `neutral` or `unstable`.
     order: Literal['first', 'second', 'neutral', 'unstable']
-    #: From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion; 0 where first order does not hold.
+    #: Bounds on the smallest slope of a first-order rest, in D per D of the metric of the motion; 0 if the rest is not first-order immobile.
     slope: list[float]
     #: Independent directions that are free to first order.
     free: int
-    #: The least curvature of the height among them, per D: pushed by s it rises by half of it times s². Null where none is free.
+    #: Smallest curvature of the height among these directions, per D: a displacement s raises it by half of this times s². Null if no direction is free.
     curvature_per_d: float | None
-    #: The direction of that: offsets in D and turns in radians; 0 where none is free.
+    #: The direction of smallest curvature: offsets in D and rotations in radians; 0 if no direction is free.
     weakest: PoseError
 
 
 class Sticking(TypedDict):
-    """From which friction on a half may stick where it touches, by Coulomb's law."""
+    """Friction coefficients at which a touching half may stick, by Coulomb's law."""
 
-    #: From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
+    #: Sticking threshold: from this friction coefficient on, forces exist that hold the half; 0 if the contacts hold it without friction; null: never.
     holds_from: float | None
-    #: Up to this friction there is a way to slip; null: at any.
+    #: Slipping threshold: up to this friction coefficient the half can slip; null: always.
     slips_until: float | None
-    #: From this friction on it wedges, and may hold against a pull straight out as well; null: at none.
+    #: From this friction coefficient on the half wedges and may also resist a straight pull; null: never.
     wedges_from: float | None
 
 
 class EscapePath(TypedDict):
-    """A way out of a jam."""
+    """An escape path from a jam."""
 
-    #: How far the half must be lifted to get out, at most, in D.
+    #: Upper bound on the escape height, in D.
     climb_at_most_d: float
-    #: Its outcome then: docked, off, or a rest that is lower.
+    #: Outcome at its end: docked, missed, or jammed at a lower rest.
     to: Literal['aligned', 'jammed', 'missed', 'undecided']
-    #: The pose error from which motion leads there.
+    #: The pose error on the path from which the motion to that end starts.
     over: PoseError
 
 
 class Examined(TypedDict):
-    """What was found out about a place of rest."""
+    """Results of the examination of a rest."""
 
     #: `sharp`, `rounded`, `level` or `ridge`.
     firmness: Literal['sharp', 'rounded', 'level', 'ridge']
-    #: By how much it is pushed aside, in the metric of the motion, in D.
+    #: Displacement of the test, in the metric of the motion, in D.
     push_d: float
-    #: The least rise found, in D: the true least is at most that. Null where walls stop it all around.
+    #: Smallest rise found, in D: an upper bound on the true minimum. Null if walls block every direction.
     rise_at_most_d: float | None
-    #: The direction of that push: offsets in D and turns in radians.
+    #: Direction of the smallest rise: offsets in D and rotations in radians.
     weakest: PoseError
-    #: By which order contacts alone hold it; null where they do not hold the load, as where friction does.
+    #: Immobility by the contacts alone; null if they do not balance the load without friction.
     immobility: Immobility | None
-    #: From which friction on it may stick; null where it touches nothing.
+    #: Friction thresholds for stiction; null if the half touches nothing.
     sticks: Sticking | None
-    #: The lowest way out that was found; null where none was.
+    #: Lowest escape path that was found; null if the search found no path.
     way_out: EscapePath | None
-    #: Poses a little off that were followed.
+    #: Number of nearby poses that were followed.
     pushed: int
-    #: How many of them came back.
+    #: Number of these that returned to the rest.
     back: int
 
 
 class Jam(TypedDict):
-    """A place, or places alike, where halves come to rest that do not dock."""
+    """A rest outside the seat, or several equivalent ones."""
 
-    #: How many poses of the error box end here, and which share that is.
+    #: Poses of the error box that end here: number and share.
     of_box: Share
-    #: Their share of the poses that jam.
+    #: Share of the jammed poses that end here.
     of_jams: float
-    #: Their share of the poses that do not dock.
+    #: Share of the failed poses that end here.
     of_failures: float
-    #: The same of the errors that a robot makes; null where none were given.
+    #: Poses from the errors of the robot that end here; null if no errors were given.
     expected: Share | None
-    #: The pose error of the rest in its middle.
+    #: Pose error of the central rest.
     pose: PoseError
-    #: From where to where its rests lie, per free error; images by symmetry laid upon each other.
+    #: Range of the rests in each free error, with symmetric images mapped onto each other.
     extent: list[Extent]
-    #: At how many places that are images of each other rests were seen.
+    #: Number of symmetric images of this place at which rests were observed.
     places: int
     #: z of the COR in the world frame, in D.
     height_d: float
-    #: How far it is above the mated pose, in D.
+    #: Height above the mated pose, in D.
     above_mated_d: float
-    #: It is the mated pose turned by a symmetry of the halves, and counts as docked where the design has `symmetry` of this; null where it is not.
+    #: The value of `symmetry` with which this rest would count as docked, because it is the mated pose rotated by a symmetry of the halves; null if it is no such pose.
     docked_with_symmetry: int | None
-    #: What touches.
+    #: The contacts.
     contacts: list[FeatureContact]
-    #: What was found out about it; null of jams that were not examined.
+    #: Results of the examination; null for a jam that was not examined.
     examined: Examined | None
-    #: The depth in the merge tree of a grid, in D: a bound from neither side; null without `resolution`, or where the tree does not have it.
+    #: Escape height in the merge tree of a grid, in D; neither an upper nor a lower bound; null without `resolution`, or if the tree does not contain the rest.
     depth_on_grid_d: float | None
-    #: At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null without `certified`, or where it is not known.
+    #: Certified lower bound on the escape height to another rest, in D; null without `certified`, or if no bound is known.
     depth_at_least_d: float | None
 
 
 class JammingPair(TypedDict):
-    """A pair of features, and how often it touches where halves jam."""
+    """A pair of features, and how often they are in contact in jams."""
 
-    #: Poses of the error box that jam on it.
+    #: Number of poses of the error box that jam on this pair.
     count: int
-    #: Their share of the poses that jam.
+    #: Share of the jammed poses.
     of_jams: float
-    #: Their share of the poses that do not dock.
+    #: Share of the poses that fail to dock.
     of_failures: float
     #: The feature of the fixed half.
     fixed: NamedFeature
@@ -567,34 +567,34 @@ class JammingPair(TypedDict):
 
 
 class Jams(TypedDict):
-    """Where motions rest that do not dock."""
+    """The jams of a pair: rests outside the seat."""
 
-    #: The settings, everything filled in.
+    #: The settings, with all defaults filled in.
     settings: JamsSettings
-    #: Random poses of the error box that were followed.
+    #: Number of poses sampled from the error box and followed.
     motions: int
-    #: Their outcomes.
+    #: Outcomes of the sampled poses.
     outcomes: JamsOutcomes
-    #: The same of poses drawn from the errors that a robot makes; null where none were given.
+    #: Outcomes of poses sampled from the errors of the robot; null if no errors were given.
     expected: JamsExpected | None
-    #: The table that those poses come from; null where they were not measured.
+    #: The table of measured errors from which those poses come; null if the errors were not measured.
     measured: str | None
-    #: The jams, the one with most of the poses first.
+    #: The jams, largest basin first.
     jams: list[Jam]
-    #: Which pairs of features touch in jams, the one that does so most often first.
+    #: Pairs of features in contact in jams, most frequent first.
     features: list[JammingPair]
 
 
 class WindowSettings(TypedDict):
-    """What changes the answer."""
+    """Settings that change the result."""
 
-    #: Half-widths that are given, in the order of `Dof::ALL`, in D and radians: these errors occur so far, and the others are asked about.
+    #: Given half-widths, in the order of `Dof::ALL`, in D and radians: these errors have this range, and the window is sought for the others.
     fixed: list[float | None]
-    #: Proportions of the others; the ranges of the error box where nothing is said. 0 for errors that do not occur.
+    #: Proportions of the other half-widths; by default the ranges of the error box. 0 for errors that do not occur.
     proportions: PoseError | None
-    #: Random poses of the certificate; 300 000 where nothing is said, of halves with many facets as many as can be followed in three core-seconds.
+    #: Number of samples for the certificate. Default: 300 000; for halves with many facets as many as can be followed in three core-seconds.
     motions: int | None
-    #: Their seed, and that of the search.
+    #: Seed of the samples and of the search.
     seed: int
     #: Coefficient of friction between the halves.
     friction: float
@@ -603,138 +603,138 @@ class WindowSettings(TypedDict):
 class WindowAxis(TypedDict):
     """One error of a window, in D or radians."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
-    #: ± so much is in the window.
+    #: Half-width of the window in this error.
     half_width: float
-    #: Whether that was given.
+    #: Whether the half-width was given.
     given: bool
-    #: ± so far with all others 0.
+    #: Single-axis limit: tolerance ± while all other errors are 0.
     alone: float
-    #: The error box ends there.
+    #: Whether the single-axis limit is the border of the error box.
     alone_reaches_border: bool
-    #: ± so far with all others anywhere within their half-widths.
+    #: Tolerance ± while all other errors vary within their half-widths.
     beside: float
-    #: The error box ends there.
+    #: Whether that tolerance ends at the border of the error box.
     beside_reaches_border: bool
 
 
 class Touch(TypedDict):
-    """A point where the halves touch."""
+    """A contact point of the halves."""
 
-    #: Where, in the world frame, in D.
+    #: Position in the world frame, in D.
     point_d: list[float]
-    #: Unit normal, from the fixed half to the moving one.
+    #: Contact normal: unit vector from the fixed half to the moving half.
     normal: list[float]
 
 
 class Worst(TypedDict):
-    """The pose nearest to zero, in proportions, that does not dock."""
+    """The nearest failure: the failing pose nearest to zero, in proportions of the window."""
 
     #: The pose error.
     error: PoseError
     #: Its outcome.
     outcome: Literal['aligned', 'jammed', 'missed', 'undecided']
-    #: Where it ends.
+    #: Pose error at the end of its motion.
     end: PoseError
-    #: What touches there, in the world frame of the fixed face centre, in D, with the normal towards the moving half; empty where the halves never meet.
+    #: Contacts at the end, in the world frame of the fixed face centre, in D, with normals towards the moving half; empty if the halves never touch.
     touches: list[Touch]
 
 
 class WindowCertificate(TypedDict):
-    """The evidence of random poses of the window: none of them failed."""
+    """The certificate: sampled poses of the window, none of which failed."""
 
-    #: How many poses.
+    #: Number of sampled poses.
     motions: int
-    #: At most this share of the window fails, with 95 % confidence; 1 if nothing was tried.
+    #: Upper bound on the failing share of the window, at 95 % confidence; 1 if no pose was sampled.
     failing_at_most: float
-    #: Windows before this one in which some random pose failed.
+    #: Number of earlier windows that were rejected because a sampled pose failed.
     redrawn: int
 
 
 class WindowSection(TypedDict):
-    """A window in the report of a run: its half-widths by name beside everything else that was found."""
+    """A window in the report of a run: its half-widths by name, and its details."""
 
     x: NotRequired[float]
     y: NotRequired[float]
     roll: NotRequired[float]
     pitch: NotRequired[float]
     yaw: NotRequired[float]
-    #: The settings, everything filled in.
+    #: The settings, with all defaults filled in.
     settings: WindowSettings
     #: Every free error.
     sides: list[WindowAxis]
-    #: Half-widths that were not given are so many times their proportions.
+    #: Factor between `proportions` and the half-widths that were not given.
     scale: float
-    #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
+    #: The error with the least room to its limit while all others vary within the window; null if every limit is the border of the error box.
     tightest: Literal['x', 'y', 'roll', 'pitch', 'yaw'] | None
-    #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
+    #: The nearest failure, measured in proportions of the window; null if the window reaches the error box.
     worst: Worst | None
-    #: The evidence of random poses.
+    #: The certificate from sampled poses.
     certificate: WindowCertificate
-    #: Exact motions in all.
+    #: Number of exact motions in total.
     motions: int
 
 
 class Play(TypedDict):
-    """How far one error may be off at rest."""
+    """Play of the seat in one error."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
-    #: Below zero; not negative. D or radians.
+    #: Play towards negative values, as a magnitude ≥ 0. D or radians.
     minus: float
-    #: Above zero; not negative. D or radians.
+    #: Play towards positive values, ≥ 0. D or radians.
     plus: float
 
 
 class Residual(TypedDict):
-    """How far off docked poses rest along one error, whichever way. D or radians."""
+    """Residual misalignment of docked poses in one error, as absolute values. D or radians."""
 
-    #: Which error.
+    #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
     #: Mean.
     mean: float
-    #: 95 % of the poses rest nearer.
+    #: 95 % of the poses have less.
     p95: float
-    #: The farthest.
+    #: Maximum.
     most: float
 
 
 class Deeper(TypedDict):
-    """A place of rest below the mated pose, in the same seat."""
+    """A rest below the mated pose, in the same seat."""
 
-    #: How much deeper, in D.
+    #: Depth below the mated pose, in D.
     sinks: float
-    #: Where.
+    #: Pose error of this rest.
     error: PoseError
 
 
 class Seating(TypedDict):
-    """The seat, and what comes to rest in it."""
+    """The seat, and the residual misalignment of docked poses."""
 
-    #: How far above its mated height a half may lie and be seated, in D.
+    #: Largest height above the mated height at which a half at rest counts as docked, in D.
     depth: float
-    #: How far off it may rest and lie as deep, per free error that matters; no less than what docked poses were seen to use.
+    #: Play of the seat per free error that counts; at least as large as the residual misalignment of the docked poses.
     play: list[Play]
-    #: Accepted poses that were followed until they had come to rest.
+    #: Number of accepted poses that were followed to rest.
     poses: int
-    #: How far off they rested, per free error that matters; empty if there were none.
+    #: Residual misalignment of these poses per free error that counts; empty if no pose was followed.
     residual: list[Residual]
-    #: The deepest of them, if it lay deeper than the mated pose, which then is none.
+    #: The deepest rest, if it lies below the mated pose, which is then not a rest itself.
     deeper: NotRequired[Deeper | None]
 
 
 class WarningReport(TypedDict):
-    """A doubt, for programs and for people. A kind of doubt that this version does not know is read as a `Warning::Note` of its sentence."""
+    """A warning, for programs and for people. A kind that this version does not know is read as a `Warning::Note` with its sentence."""
 
-    #: The doubt itself, with its `kind`.
+    #: The warning, with its `kind`.
     warning: dict[str, Any]
-    #: The same as a sentence.
+    #: The warning as a sentence.
     message: str
 
 
 class Timing(TypedDict):
-    """How long it took. The only part of a report that differs between equal runs."""
+    """Time of the computation. Only this part of a report differs between equal runs."""
 
     #: Wall-clock time of the computation, in seconds.
     total_s: float
@@ -749,13 +749,13 @@ class RunReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
-    #: Name of the method that decided.
+    #: Name of the method that decided the outcomes.
     method: str
-    #: The method's settings: what else changes the answer.
+    #: The settings of the method.
     settings: Any
     #: The axes of the error grid, the first one fastest; empty for listed poses.
     axes: list[AxisReport]
@@ -765,31 +765,31 @@ class RunReport(TypedDict):
     onaa: OnaaReport | None
     #: The largest cube around zero; null for listed poses.
     centered: CenteredReport | None
-    #: How far each error may go alone; empty for listed poses.
+    #: Single-axis limits of each error; empty for listed poses.
     tolerances: list[ToleranceReport]
-    #: The same with roll and pitch locked, where all five errors are free and motions were followed; null otherwise, and in reports of versions that did not ask.
+    #: Figures of merit with roll and pitch locked, if all five errors are free and motions were followed; null if not, and in reports of older versions.
     upright: UprightReport | None
-    #: Success probability for the errors asked about; null if none were.
+    #: Success probability for the given errors; null if no errors were given.
     success: SuccessReport | None
-    #: The basins behind the outcomes; null for methods that know none.
+    #: The basins behind the outcomes; null for methods without basins.
     basins: BasinsReport | None
-    #: The watersheds behind the outcomes, before merging and after; null for methods that flood nothing, and in reports of versions that did not count them.
+    #: The watersheds behind the outcomes, before and after merging; null for methods without flooding, and in reports of older versions.
     watersheds: WatershedsReport | None
     #: The polytopes behind the outcomes; null for all methods but `partition`.
     partition: PartitionReport | None
-    #: What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
+    #: Certified shares of the error box and certified retention; null for all methods but `certified`, and in reports of older versions.
     certificate: BoxCertificate | None
-    #: How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did not know it.
+    #: Number of cells with an inherited label, and how often it was wrong; null for all methods but `confluence`, and in reports of older versions.
     joined: Joined | None
-    #: Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
+    #: Rests outside the seat; null if not requested, and in reports of older versions.
     jams: Jams | None
-    #: The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
+    #: The tolerance window; null if not requested, if there is no window, and in reports of older versions.
     window: WindowSection | None
-    #: The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
+    #: The seat, and the residual misalignment of accepted poses; null in reports of older versions.
     seat: Seating | None
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
 
@@ -810,34 +810,34 @@ class WindowReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
-    #: ± so much of every free error, by its name, in D and radians.
+    #: Half-width of every free error, by its name, in D and radians.
     window: HalfWidths
-    #: The settings, everything filled in.
+    #: The settings, with all defaults filled in.
     settings: WindowSettings
     #: Every free error.
     sides: list[WindowAxis]
-    #: Half-widths that were not given are so many times their proportions.
+    #: Factor between `proportions` and the half-widths that were not given.
     scale: float
-    #: The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
+    #: The error with the least room to its limit while all others vary within the window; null if every limit is the border of the error box.
     tightest: Literal['x', 'y', 'roll', 'pitch', 'yaw'] | None
-    #: The nearest pose, in proportions, that does not dock; null where the window reaches the error box.
+    #: The nearest failure, measured in proportions of the window; null if the window reaches the error box.
     worst: Worst | None
-    #: The evidence of random poses.
+    #: The certificate from sampled poses.
     certificate: WindowCertificate
-    #: Exact motions in all.
+    #: Number of exact motions in total.
     motions: int
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
 
 class JamsReportOutcomes(TypedDict):
-    """Their outcomes."""
+    """Outcomes of the sampled poses."""
 
     aligned: NotRequired[Share]
     jammed: NotRequired[Share]
@@ -846,7 +846,7 @@ class JamsReportOutcomes(TypedDict):
 
 
 class JamsReportExpected(TypedDict):
-    """The same of poses drawn from the errors that a robot makes; null where none were given."""
+    """Outcomes of poses sampled from the errors of the robot; null if no errors were given."""
 
     aligned: NotRequired[Share]
     jammed: NotRequired[Share]
@@ -861,42 +861,42 @@ class JamsReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
-    #: The settings, everything filled in.
+    #: The settings, with all defaults filled in.
     settings: JamsSettings
-    #: Random poses of the error box that were followed.
+    #: Number of poses sampled from the error box and followed.
     motions: int
-    #: Their outcomes.
+    #: Outcomes of the sampled poses.
     outcomes: JamsReportOutcomes
-    #: The same of poses drawn from the errors that a robot makes; null where none were given.
+    #: Outcomes of poses sampled from the errors of the robot; null if no errors were given.
     expected: JamsReportExpected | None
-    #: The table that those poses come from; null where they were not measured.
+    #: The table of measured errors from which those poses come; null if the errors were not measured.
     measured: str | None
-    #: The jams, the one with most of the poses first.
+    #: The jams, largest basin first.
     jams: list[Jam]
-    #: Which pairs of features touch in jams, the one that does so most often first.
+    #: Pairs of features in contact in jams, most frequent first.
     features: list[JammingPair]
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
 
 class WaypointReport(TypedDict):
-    """One moment of a motion."""
+    """A waypoint of a motion."""
 
-    #: Path length since the first of them, in the ρ-metric, in D.
+    #: Path length since the first waypoint, in the ρ-metric, in D.
     travelled_d: float
-    #: Since it was let go, in s; null of quasi-static motions, which take no time.
+    #: Time since release, in s; null for quasi-static motions, which have no time.
     time_s: float | None
     #: The pose error.
     error: PoseError
     #: z of the COR in the world frame, in D.
     height_d: float
-    #: Where the halves touch.
+    #: Contacts.
     touches: list[Touch]
 
 
@@ -907,7 +907,7 @@ class TraceReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
@@ -915,19 +915,19 @@ class TraceReport(TypedDict):
     method: str
     #: Its settings.
     settings: Any
-    #: The pose error that the path starts from.
+    #: The pose error at the start.
     start: PoseError
-    #: How it ends.
+    #: Outcome of the motion.
     outcome: Literal['aligned', 'jammed', 'missed', 'undecided']
-    #: Why it does not dock; null where that is not known.
+    #: Reason for the failure to dock; null if it is not known.
     reason: Literal['crossed'] | None
     #: The last pose error; null if the halves never meet.
     end: PoseError | None
-    #: From first contact on; of a drop test from where it was let go.
+    #: Waypoints from first contact on; for a drop test from the release on.
     waypoints: list[WaypointReport]
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
 
@@ -936,37 +936,37 @@ ZraaReport = dict[str, Any]
 
 
 class MethodResult(TypedDict):
-    """What one method found."""
+    """Result of a method."""
 
     #: The measure of the accepted cells.
     sum_grid: float
-    #: The Sum: corrected where the method draws random poses.
+    #: The Sum; corrected if the method draws samples.
     sum: float
     #: Its 95 % interval, if there is one.
     sum_ci95: list[float] | None
-    #: The ONAA edge.
+    #: Edge of the ONAA cube.
     onaa_edge: float | None
     #: Wall-clock time, in seconds.
     seconds: float
 
 
 class ComparedMethod(TypedDict):
-    """One method of many."""
+    """Result of a single method."""
 
-    #: Its name.
+    #: Name of the method.
     method: str
-    #: What it found.
+    #: Result of the method; null without a result.
     result: MethodResult | None
-    #: Why it found nothing.
+    #: Reason for the missing result.
     left_out: str | None
 
 
 class PairAgreement(TypedDict):
-    """How two methods agree."""
+    """Agreement of two methods."""
 
     #: Share of the cells that both accept or both reject.
     agreement: float
-    #: Accepted by both over accepted by any.
+    #: Jaccard index: cells accepted by both, divided by cells accepted by either.
     jaccard: float
 
 
@@ -977,48 +977,48 @@ class MethodsReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The design, resolved: lengths in D, angles in radians.
     design: Design
-    #: Cells per axis, by axis.
+    #: Number of cells of each axis.
     cells: list[int]
-    #: Seconds that each method could take.
+    #: Time limit for each method, in seconds.
     time_limit_s: float
     #: Unit of the Sums.
     unit: str
-    #: Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
+    #: All methods. Seconds differ between equal runs, and so does the result of a method that the time limit stops.
     methods: list[ComparedMethod]
-    #: Of the methods that came to a result, in their order: how each two agree.
+    #: For the methods with a result, in their order: the agreement of each pair.
     agreement: list[list[PairAgreement]]
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
 
 class Compared(TypedDict):
-    """One of the two."""
+    """One side of a comparison."""
 
-    #: Where it comes from: the path that was given.
+    #: Path that was given for it.
     source: str
-    #: Everything about it, over its own grid.
+    #: Its report, over its own grid.
     report: RunReport
 
 
 class Quantiles(TypedDict):
-    """What a list of distances is like."""
+    """Quantiles of a list of distances."""
 
-    #: Half of them are at most this.
+    #: Half of the distances are at most this.
     median: float
-    #: 95 % of them are at most this.
+    #: 95 % of the distances are at most this.
     p95: float
-    #: The largest.
+    #: The largest distance.
     max: float
 
 
 class Distances(TypedDict):
-    """Distances of the cells that differ from the border of the first set."""
+    """Distances of the differing cells from the border of the first set."""
 
     #: In cells.
     cells: Quantiles
@@ -1027,31 +1027,31 @@ class Distances(TypedDict):
 
 
 class Comparison(TypedDict):
-    """How two acceptances compare."""
+    """Comparison of two acceptances."""
 
-    #: Poses compared.
+    #: Number of poses compared.
     poses: int
-    #: `confusion[i][j]`: poses with outcome i by the first and j by the second, in the order of `Outcome::ALL`.
+    #: `confusion[i][j]`: number of poses with outcome i in the first and j in the second, in the order of `Outcome::ALL`.
     confusion: list[list[int]]
-    #: Accepted by both, over accepted by any; 1 where nothing is accepted.
+    #: Jaccard index: poses accepted by both, divided by poses accepted by either; 1 if neither accepts a pose.
     jaccard: float
     #: Share of the poses that both accept or both reject.
     agreement: float
-    #: Poses that the first alone accepts.
+    #: Number of poses that only the first accepts.
     only_first: int
-    #: Poses that the second alone accepts.
+    #: Number of poses that only the second accepts.
     only_second: int
     #: Measure of each accepted set over these poses, Dᵃ·radᵇ.
     sums: list[float]
     #: The unit of the measures, like `D²·rad³`.
     unit: str
-    #: Second over first; null where the first accepts nothing.
+    #: Sum of the second divided by that of the first; null if the first accepts no pose.
     sum_ratio: float | None
     #: ONAA edges; null for listed poses.
     onaa_edges: list[float] | None
-    #: Second over first; null where the first accepts nothing, and for listed poses.
+    #: ONAA of the second divided by that of the first; null if the first accepts no pose, and for listed poses.
     onaa_ratio: float | None
-    #: How far from the border of the first set the two differ; null where they do not, where there is no border, and for listed poses.
+    #: Distances of the differing cells from the border of the first set; null if no cell differs, if there is no border, and for listed poses.
     distances: Distances | None
 
 
@@ -1062,17 +1062,17 @@ class ComparisonReport(TypedDict):
     schema: int
     #: Version of the program that wrote it.
     catchment: str
-    #: Which report this is.
+    #: Kind of the report.
     kind: str
     #: The first.
     first: Compared
     #: The second.
     second: Compared
-    #: The axes of the grid on which they are compared; empty for listed poses.
+    #: The axes of the common grid; empty for listed poses.
     axes: list[AxisReport]
-    #: How they compare.
+    #: The comparison.
     comparison: Comparison
     #: Warnings about the numbers: a code and a sentence each.
     warnings: list[WarningReport]
-    #: Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
