@@ -29,7 +29,7 @@ fn two_mirrored_rests_are_one_jam_and_shares_add_up() {
     assert_eq!(jams[0]["places"], 2);
     let told = run(home.path(), &["jams", "v.toml", "--motions", "1000"]);
     assert!(
-        told.starts_with("exit 0\n") && told.contains("at 2 places that are images of each other"),
+        told.starts_with("exit 0\n") && told.contains("at 2 symmetric places"),
         "{told}"
     );
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
