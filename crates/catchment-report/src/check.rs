@@ -1,6 +1,6 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
-use super::document::{Printed, error_box};
+use super::document::{Printed, characteristic_length, error_box};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
@@ -251,12 +251,18 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             format!("({x}, {y}, {z})")
         };
         let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
-            row(name, &format!("{} as the fixed half is drawn,", point(fixed)));
-            row("", &format!("{} as the moving half is drawn", point(moving)));
+            row(
+                name,
+                &format!(
+                    "{} in the fixed half's drawing = {} in the moving half's",
+                    point(fixed),
+                    point(moving)
+                ),
+            );
         };
         places("face centre", fixed.face_center, moving.face_center);
-        places("centre of rotation", fixed.center_of_rotation, moving.center_of_rotation);
-        let along = format!("{} and {} as the fixed half is drawn", direction(fixed.x), direction(fixed.y));
+        places("COR", fixed.center_of_rotation, moving.center_of_rotation);
+        let along = format!("{} and {} of the fixed half's drawing", direction(fixed.x), direction(fixed.y));
         row("errors in x and y", &format!("along {along}"));
         let is_assembled = matches!(
             &design.connector,
@@ -284,7 +290,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             row("settled", &format!("{off}, taken as the mated pose"));
         }
     }
-    row("halves", if ungendered { "alike (ungendered)" } else { "different" });
+    row("halves", if ungendered { "of the same shape (ungendered)" } else { "of different shape" });
     let unit = design.unit.map_or("(dimensionless)", |unit| unit.symbol());
     let from = match &design.connector {
         ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Touching, .. }) => {
@@ -301,15 +307,18 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         row("ignored", &names(alignment.dont_care));
     }
     row(
-        "centre of rotation",
+        "COR",
         &format!(
-            "{} from the face centre, positive towards the other half",
+            "centre of rotation: {} ahead of the moving half's face centre",
             length(alignment.center_of_rotation)
         ),
     );
     row(
-        "rho",
-        &format!("{} = √(torsional / lateral damping of the mount)", length(alignment.rotation_length)),
+        "ρ",
+        &characteristic_length(
+            &length(alignment.rotation_length),
+            alignment.free.iter().any(Dof::is_rotation),
+        ),
     );
     if alignment.symmetry > 1 {
         row("symmetry", &format!("{}-fold", alignment.symmetry));
@@ -404,10 +413,7 @@ mod tests {
     #[test]
     fn names_in_a_check_are_harmless() {
         let text = CheckReport::good(&problem("evil\u{1b}[2J\nname", "a\u{7}.toml")).table();
-        assert!(
-            text.starts_with("a?.toml\n") && text.contains("  name               evil?[2J?name\n"),
-            "{text}"
-        );
+        assert!(text.starts_with("a?.toml\n") && text.contains("  name           evil?[2J?name\n"), "{text}");
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
         assert!(text.contains("pitch, yaw ±90°\n"), "{text}");
     }

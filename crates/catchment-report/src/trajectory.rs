@@ -5,7 +5,7 @@ use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals, grouped};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
@@ -143,8 +143,18 @@ impl Printed for TraceBody {
     fn document(&self) -> Document {
         let mut document = Document::default();
         let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
-        document
-            .row("method", if self.method == "descent" { "exact quasi-static motion" } else { self.method });
+        let friction = self.settings["friction"].as_f64().filter(|friction| *friction > 0.0);
+        let contact = friction.map_or_else(
+            || "without friction".to_owned(),
+            |friction| format!("with friction μ = {friction}"),
+        );
+        document.row(
+            "method",
+            match self.method {
+                "descent" => format!("exact quasi-static motion, {contact}"),
+                other => other.to_owned(),
+            },
+        );
         document.row("outcome", format!("{}{reason}", self.outcome.word()));
         document.section(None);
         if self.waypoints.is_empty() {
@@ -154,8 +164,9 @@ impl Printed for TraceBody {
             let counts = (shown.rows.len(), self.waypoints.len());
             document.table(shown);
             document.paragraph(format!(
-                "{} of {} waypoints; height: z of the centre of rotation; path: lateral, with turns × ρ",
-                counts.0, counts.1
+                "{} of {} poses of the motion; path: distance travelled sideways, a turn counted as ρ × its angle; height: of the COR along z",
+                grouped(counts.0),
+                grouped(counts.1)
             ));
         }
         document.section(None).table(self.contact_table());

@@ -28,10 +28,7 @@ fn two_mirrored_rests_are_one_jam_and_shares_add_up() {
     assert!((in_jams - share(&report["outcomes"]["jammed"])).abs() < 1e-12);
     assert_eq!(jams[0]["places"], 2);
     let told = run(home.path(), &["jams", "v.toml", "--motions", "1000"]);
-    assert!(
-        told.starts_with("exit 0\n") && told.contains("at 2 symmetric places"),
-        "{told}"
-    );
+    assert!(told.starts_with("exit 0\n") && told.contains("at 2 symmetric places"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
 }
 
@@ -109,8 +106,8 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     let folder = super::designs();
     let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600"]);
-    assert!(told.contains("neighbours    held by friction alone;"), "{told}");
-    assert!(!told.contains("ridge") && told.contains("friction      may stick from"), "{told}");
+    assert!(told.contains("  neighbours     held by friction alone;"), "{told}");
+    assert!(!told.contains("ridge") && told.contains("  friction       may stick from"), "{told}");
     let words: Vec<&str> = told.split_whitespace().collect();
     assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");

@@ -165,11 +165,11 @@ fn spoil(bytes: &mut Vec<u8>) {
 #[test]
 fn a_spoilt_mesh_is_repaired_and_told() {
     let (sound, spoilt) = (folder(|_| ()), folder(plug(spoil)));
-    let done = "1 triangle without area dropped, 1 doubled triangle dropped, 1 triangle turned over; the surface did not move";
+    let done = "1 triangle without area removed, 1 duplicate triangle removed, 1 triangle flipped; its shape is unchanged";
     let said = run(spoilt.path(), &["check", "design.toml"]);
     let words: Vec<&str> = said.split_whitespace().collect();
     assert!(said.starts_with("exit 0") && words.join(" ").contains(done), "{said}");
-    assert!(!run(sound.path(), &["check", "design.toml"]).contains("dropped"));
+    assert!(!run(sound.path(), &["check", "design.toml"]).contains("removed"));
     let json = run(spoilt.path(), &["check", "design.toml", "--json"]);
     let json: String = json.split_whitespace().collect();
     assert!(

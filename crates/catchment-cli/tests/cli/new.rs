@@ -16,7 +16,7 @@ fn every_starting_point_is_a_good_design() {
         let report = run(dir.path(), &["check", &file]);
         assert!(
             report.starts_with(&format!(
-                "exit 0\n--- stdout\n{file}\n────────────────────────\n  problems           none\n"
+                "exit 0\n--- stdout\n{file}\n────────────────────────\n  problems       none\n"
             )),
             "{report}"
         );

@@ -25,7 +25,7 @@ fn a_mirrored_part_is_told_as_one() {
     // Where it tolerates a few millimetres, the error box does not reach to 30.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
-        text.contains("About four times the single-axis limit of each error.")
+        text.contains("About four times the single-axis limit of each error:")
             && text.contains("\nx = 0.18 # D"),
         "{text}"
     );
@@ -183,7 +183,7 @@ fn metres_are_told_in_millimetres() {
     assert!(
         told.starts_with("exit 0")
             && told.contains("6 mm deep, ±0.")
-            && told.contains(" mm of play half-way in"),
+            && told.contains(" mm of sideways play at half depth"),
         "{told}"
     );
 }

@@ -90,7 +90,8 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
     let printed =
         run(home.path(), &["place", "socket.obj", "plug.obj", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]);
     assert!(
-        printed.starts_with("exit 0") && printed.contains("fixed faces -y+z, moving faces +y+z"),
+        printed.starts_with("exit 0")
+            && printed.contains("fixed part faces -y+z, moving part +y+z in its file"),
         "{printed}"
     );
     let found = json(home.path(), &["run", "d.toml", "--samples=200", "--json"]);
@@ -142,7 +143,7 @@ fn one_file_may_hold_both_halves() {
     let printed =
         run(home.path(), &["place", "both.stl", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]).unbroken();
     assert!(printed.starts_with("exit 0") && printed.contains("moving the smaller body"), "{printed}");
-    assert!(printed.contains("holds") && !printed.contains("more than two"), "{printed}");
+    assert!(printed.contains("stays in the seat") && !printed.contains("more than two"), "{printed}");
     let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
     let halves: Vec<&str> = design.split("\n[connector.").collect();
     assert!(halves[1].contains("\nbody = 1\n") && halves[2].contains("\nbody = 2\n"), "{design}");

@@ -32,7 +32,7 @@ fn it_tells_the_closed_form_in_millimetres() {
         &["success", "v.toml", "--free", "x", "--error-sigma", "x=12.5 mm", "--motions", "400"],
     );
     let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("robot: normal errors, standard deviations σ x 12.500 mm"), "{told}");
+    assert!(words.contains("errors normal errors, standard deviations σ x 12.500 mm"), "{told}");
     assert!(told.contains("nearest failure") && told.contains("all σ together"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);

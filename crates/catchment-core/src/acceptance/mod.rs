@@ -234,7 +234,7 @@ impl fmt::Display for Warning {
         match self {
             Self::TouchesBorder { axes } => write!(
                 f,
-                "poses at the end of the error box still dock, along {}: enlarge [errors] in the design to see all of them",
+                "some poses at the end of the error box along {} still dock, with other errors not zero: enlarge [errors] in the design to see all of them",
                 axes.join(", ")
             ),
             Self::Undecided { cells } => {

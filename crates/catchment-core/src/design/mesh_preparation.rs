@@ -117,23 +117,23 @@ impl Repairs {
             1 => parts.push(format!("1 {one}")),
             count => parts.push(format!("{count} {many}")),
         };
-        part(self.without_area, "triangle without area dropped", "triangles without area dropped");
-        part(self.doubled, "doubled triangle dropped", "doubled triangles dropped");
+        part(self.without_area, "triangle without area removed", "triangles without area removed");
+        part(self.doubled, "duplicate triangle removed", "duplicate triangles removed");
         part(
             self.lids,
-            "triangle of a lid without thickness dropped",
-            "triangles of lids without thickness dropped",
+            "triangle of a lid without thickness removed",
+            "triangles of lids without thickness removed",
         );
-        part(self.turned, "triangle turned over", "triangles turned over");
-        part(self.parted, "edge parted where solids touch", "edges parted where solids touch");
-        part(self.united, "crossing united", "crossings united");
+        part(self.turned, "triangle flipped", "triangles flipped");
+        part(self.parted, "edge separated where solids touch", "edges separated where solids touch");
+        part(self.united, "intersection of its facets merged", "intersections of its facets merged");
         if let Some([before, after]) = self.simplified {
             parts.push(format!("{before} triangles simplified to {after}"));
         }
         let moved = if self.deviation > 0.0 {
             format!("the surface moved by no more than {}", length(self.deviation))
         } else {
-            "the surface did not move".to_owned()
+            "its shape is unchanged".to_owned()
         };
         format!("{}; {moved}", parts.join(", "))
     }
@@ -145,14 +145,16 @@ impl HalfSpec {
         match self {
             Self::Mesh(file) => told(file, design),
             Self::Parts(parts) => {
-                let told: Vec<String> = parts
-                    .iter()
-                    .filter_map(|part| {
-                        let file = part.shape.file()?;
-                        Some(format!("{}: {}", shown(&file.path), told(file, design)?))
-                    })
-                    .collect();
-                (!told.is_empty()).then(|| told.join("; "))
+                let mut lines: Vec<String> = Vec::new();
+                for file in parts.iter().filter_map(|part| part.shape.file()) {
+                    let Some(changes) = told(file, design) else { continue };
+                    let line = format!("{}: {changes}", shown(&file.path));
+                    // A file may serve several parts.
+                    if !lines.contains(&line) {
+                        lines.push(line);
+                    }
+                }
+                (!lines.is_empty()).then(|| lines.join("; "))
             }
             Self::Pieces(_) | Self::Memory { .. } => None,
         }

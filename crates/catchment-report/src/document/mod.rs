@@ -154,14 +154,25 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
     document.row("connector", format!("{kind}; {width}"));
     document.row("pose errors", pose_errors(design));
     if samples_errors {
-        document.row("error box", format!("{} (shares are of this box)", error_box(design)));
+        document.row("error box", format!("{} (range of the errors studied)", error_box(design)));
     }
     document.row("COR", center_of_rotation(design));
     if samples_errors {
         let rho = own_length(design, design.alignment.rotation_length);
-        document.row("ρ", format!("{rho} = √(torsional / lateral damping of the mount), your input"));
+        let turns = design.alignment.free.iter().any(Dof::is_rotation);
+        document.row("ρ", characteristic_length(&rho, turns));
     }
     document
+}
+
+/// The characteristic length in words: `25 mm, your input: the mount resists a turn of 1 rad like a shift by ρ`.
+pub(crate) fn characteristic_length(rho: &str, turns: bool) -> String {
+    let meaning = if turns {
+        "the mount resists a turn of 1 rad like a shift by ρ"
+    } else {
+        "without effect, since no turn is free"
+    };
+    format!("{rho}, your input: {meaning}")
 }
 
 /// Which errors are free, and what each is: `x, y (shifts); yaw (turn about approach axis z); roll, pitch locked at 0`.

@@ -8,7 +8,8 @@ use super::document::{Printed, Style, heading, lines};
 use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, RunBody, ToleranceReport, UprightReport};
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{
-    Cell, Column, DesignUnits, Document, Table, decimals, grouped, percent, significant, tenths, with_error,
+    Cell, Column, DesignUnits, Document, Table, decimals, exact_motions, grouped, percent, significant,
+    tenths, with_error,
 };
 use catchment_core::pose::Dof;
 use catchment_core::run::Upright;
@@ -67,13 +68,17 @@ impl RunBody {
         let o = &a.outcomes;
         let open =
             if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
-        let by = if self.axes.is_empty() { "" } else { " (by the grid)" };
+        let by = if self.axes.is_empty() { "" } else { " (estimated by the grid)" };
         document
             .row("not docked", format!("jammed {}, missed {}{open}{by}", share(o.jammed), share(o.missed)));
         document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
         if let Some(success) = &self.success {
             let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
-            let what = if success.ci95.is_some() { "95 % CI" } else { "if the border moves by one cell" };
+            let what = if success.ci95.is_some() {
+                "95 % CI"
+            } else {
+                "if the accepted set ends one grid cell earlier or later"
+            };
             document.row("success", format!("{} ({what} {lo} … {hi})", percent(success.probability)));
             if success.outside > 0.0 {
                 document.more(format!(
@@ -88,7 +93,7 @@ impl RunBody {
     fn describe_method(&self, document: &mut Document) {
         document.row("method", self.method_in_words());
         let friction = self.friction();
-        if friction > 0.0 {
+        if friction > 0.0 && !matches!(self.method.as_str(), "descent" | "confluence") {
             document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));
         }
         if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
@@ -151,9 +156,10 @@ impl RunBody {
     fn method_in_words(&self) -> String {
         let domain = self.domain();
         match self.method.as_str() {
-            "descent" => format!("exact quasi-static motion of {domain}"),
+            "descent" => exact_motions(&domain, self.friction()),
             "confluence" => {
-                format!("{domain}, by exact motions; paths that meet are followed once (confluence)")
+                let motions = exact_motions(&domain, self.friction());
+                format!("{motions}; paths that meet are followed once (confluence)")
             }
             other => format!("{other}, of {domain}"),
         }
@@ -174,19 +180,20 @@ impl RunBody {
         let grid = if self.axes.is_empty() { "" } else { "the grid and " };
         let by = a.sum_ci95.map(|_| format!(" (95 % CI, by {grid}{} sampled poses)", grouped(poses)));
         document.row("AA (Sum)", format!("{}{}", sum(a), by.unwrap_or_default()));
-        document.more("area of acceptance: the measure of all pose errors that dock");
+        document.more("area of acceptance (Sum): the volume of all pose errors that dock");
         let border = a.sum_bracket.map(|ends| ends.map(significant));
         match (&border, self.certificate.is_some(), a.sample.is_some()) {
             (Some([lo, hi]), true, _) => _ = document.more(format!("certified: {lo} … {hi}")),
             (Some([lo, hi]), _, false) => {
-                _ = document.more(format!("{lo} … {hi} if its border moves by one cell"));
+                _ = document.more(format!("{lo} … {hi} if it ends one grid cell earlier or later"));
             }
             _ => {}
         }
         document.details();
         if let (Some([lo, hi]), false, true) = (border, self.certificate.is_some(), a.sample.is_some()) {
             let grid = significant(a.sum_grid);
-            document.row("Sum by grid", format!("{grid}; {lo} … {hi} if its border moves by one cell"));
+            document
+                .row("Sum by grid", format!("{grid}; {lo} … {hi} if it ends one grid cell earlier or later"));
         }
         if let Some(onaa) = &self.onaa {
             document.row("ONAA edge", edge(onaa));

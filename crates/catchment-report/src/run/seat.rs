@@ -21,16 +21,16 @@ pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design
     document.row(
         "seat",
         format!(
-            "docked: at rest within {depth} of the mated depth; residual misalignment of {} docked poses:",
+            "docked: at rest within {depth} of the mated depth; residual misalignment of {} docked poses, drawn at random:",
             found.poses
         ),
     );
     let mut table = Table::new([
         Column::new("").left(),
         Column::new("play"),
-        Column::new("mean"),
-        Column::new("95 %"),
-        Column::new("most"),
+        Column::new("mean size"),
+        Column::new("95 % are below"),
+        Column::new("largest"),
     ]);
     for play in &found.play {
         let dof = play.axis;

@@ -54,7 +54,7 @@ impl Subject for Friction {
         document.section(None).table(self.table());
         document.paragraph(format!(
             "μ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this μ; gained: the other way \
-             round; may stick: dock, though Coulomb's law also lets them stick; barely stuck: lost, but dock at 0.9 μ.",
+             round; may stick: counted as docked, though Coulomb's law also allows them to stick; barely stuck: lost, but dock at 0.9 μ.",
             grouped(self.motions)
         ));
         self.describe_kept(&mut document);
@@ -117,13 +117,13 @@ impl Friction {
             return;
         }
         let base = self.curve.first().map_or(0, |rung| rung.aligned.count);
-        document.titled(Some(format!("of the {} that dock without friction, still docking", poses(base))));
+        document.titled(Some(format!("of the {} that dock at μ = 0, these still dock up to μ", poses(base))));
         for kept in &self.kept {
             let friction = if kept.is_top {
-                format!("beyond μ = {}, the largest that was tried", self.top())
+                format!("above {}, the largest μ tried", self.top())
             } else {
                 let [lo, hi] = kept.ci95.map(|friction| self.up_to(friction));
-                format!("up to μ = {:.3}  (95 % CI {lo} … {hi})", kept.friction)
+                format!("{:.3} (95 % CI {lo} … {hi})", kept.friction)
             };
             document.row(format!("{:.0} %", 100.0 * kept.share), friction);
         }

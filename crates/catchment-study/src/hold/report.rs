@@ -35,9 +35,14 @@ impl Subject for HoldingForces {
         } else {
             format!("{} above", units.length(self.settings.lever))
         };
+        let (torques, axis) = if self.torques.is_empty() {
+            ("", "")
+        } else {
+            (", torques about the COR", " or about this axis")
+        };
         document.section(None).paragraph(format!(
-            "Forces act {at} the face centre of the moving half, torques about the COR. guided: the half can move only along this force or about this axis, and up. \
-             free: it can move in all free errors."
+            "Forces act {at} the face centre of the moving half{torques}. guided: the half can move only along this force{axis}, and up. free: it can move in \
+             all free errors."
         ));
         if self.slides() {
             document.paragraph(

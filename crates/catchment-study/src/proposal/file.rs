@@ -122,10 +122,10 @@ pub(super) fn text(
         let _ = writeln!(text, "{words}");
     };
     line(
-        "# Two parts as they come from CAD, and how they dock, as `catchment place` proposes it. Compare it with a picture:",
+        "# Two parts from CAD, and how they dock: a proposal by `catchment place`. `catchment check FILE --figure pair.png` draws both halves,",
     );
     line(
-        "# `catchment check` draws both halves, apart and mated. Bare lengths are in D (the width) but for those of the parts.",
+        "# apart and mated. Lengths without a unit are in D (the width); those in [connector] and the sections below it in the unit given there.",
     );
     line("schema = 1");
     line(&format!("name = {}", quoted(&name)));
@@ -156,7 +156,9 @@ pub(super) fn text(
             line(&words);
         }
         if let PartLayout::Facing { fixed, moving, turned } = judged.lie {
-            line("# The direction of its face in its file; it is turned to +z.");
+            line(
+                "# The direction in which its face looks, in its file. It is turned to +z, and the moving half then over.",
+            );
             line(&format!("facing = {}", [fixed, moving][k].written()));
             if k == 1 && turned > 0 {
                 line("# Then turned about the approach axis until the features fit.");
@@ -177,7 +179,9 @@ pub(super) fn text(
     alignment(&mut line, seat, settings, unit);
     line("\n# The error box: pose errors are sampled from minus to plus these values.");
     if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
-        line("# About four times the single-axis limit of each error.");
+        line(
+            "# About four times the single-axis limit of each error: the largest value that docks with all others 0.",
+        );
     }
     line("[errors]");
     for dof in seat.free.iter() {

@@ -157,7 +157,7 @@ impl fmt::Display for PartLayout {
         match self {
             Self::Assembled { approach } => write!(f, "docked as drawn, approach {approach}"),
             Self::Facing { fixed, moving, turned } => {
-                write!(f, "fixed faces {fixed}, moving faces {moving}")?;
+                write!(f, "fixed part faces {fixed}, moving part {moving} in its file")?;
                 if *turned > 0 { write!(f, ", turned by {} deg", u32::from(*turned) * 90) } else { Ok(()) }
             }
         }

@@ -59,11 +59,11 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
         |other: &&&Candidate| !other.lie.is_turned(best.lie) || best.steep > 0.0 && other.class != best.class;
     if let Some(other) = nearly.iter().find(elsewhere) {
         doubts.push(format!(
-            "in doubt: {} ({}{}; {:.2} beside {:.2}): look at the picture, and say which it is",
+            "in doubt: {} ({}{}; score {:.2} beside {:.2}): look at the picture (--figure); to choose the other, set --facing-moving or --facing-fixed",
             if is_twin(best, other) {
-                "turned end for end it docks as well"
+                "the moving part docks turned end for end, too"
             } else {
-                "another way is nearly as good"
+                "another way to dock scores nearly as high"
             },
             other.lie,
             other.place_among(candidates, design_unit(settings)),
@@ -73,7 +73,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
     } else if let Some(other) = nearly.first() {
         let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
         doubts.push(format!(
-            "the parts dock as well {place} ({}{}): look whether the one that was taken is the one that is meant",
+            "the parts dock as well {place} ({}{}): look at the picture (--figure) to see if the right one was chosen",
             other.lie,
             other.place_among(candidates, design_unit(settings))
         ));
@@ -88,19 +88,19 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
         && (*turn > MUCH || *shift > MUCH * best.width)
     {
         doubts.push(format!(
-            "as drawn the parts do not hold; let go they come to rest {told} off, which is taken as mated: look at the picture, whether that is how \
-             they dock, or lock what turns with --free"
+            "the drawn pose is not a rest: released, the moving part settles {told} off, and that pose counts as mated: look at the picture (--figure); \
+             to lock an error use --free"
         ));
     }
     if matches!(best.lie, PartLayout::Facing { .. }) && best.score < WEAK {
         doubts.push(format!(
-            "in doubt: the seat is weak ({:.2}): look at the picture, and say how the parts lie if this is not what is meant",
+            "in doubt: the score {:.2} is low (below {WEAK}): look at the picture (--figure); if the parts dock otherwise, set --facing-fixed and --facing-moving",
             best.score
         ));
     }
     if best.is_loose {
         doubts.push(
-            "in doubt: the moving part lies loose, as in a tray: look at the picture, and say how the parts lie if this is not what is meant".to_owned(),
+            "in doubt: the moving part lies loose, as in a tray: look at the picture (--figure); if the parts dock otherwise, set --facing-fixed and --facing-moving".to_owned(),
         );
     }
     if best.sunk.is_none() && best.climb < 0.1 {

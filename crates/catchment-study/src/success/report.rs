@@ -10,6 +10,8 @@ use catchment_core::pose::{Dof, PoseError};
 
 /// A larger share of errors outside of the error box is a warning.
 const MUCH_OUTSIDE: f64 = 0.01;
+/// The name of the only robot of a command line.
+const UNNAMED: &str = "robot";
 /// Fewer rows reject little.
 const FEW: usize = 50;
 
@@ -27,10 +29,7 @@ impl Subject for Success {
 
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row(
-            "method",
-            exact_motions(&format!("{} poses", grouped(self.motions)), self.settings.friction),
-        );
+        document.row("method", exact_motions(&self.poses_in_words(), self.settings.friction));
         document.table(self.records());
         for robot in &self.robots {
             robot.describe(design, &mut document);
@@ -44,6 +43,20 @@ impl Subject for Success {
 }
 
 impl Success {
+    /// `4 020 poses (200 sampled errors; the others for limits and the nearest failure)`
+    fn poses_in_words(&self) -> String {
+        let sampled: usize = self.robots.iter().map(|robot| robot.motions).sum();
+        let all = grouped(self.motions);
+        if sampled < self.motions {
+            format!(
+                "{all} poses ({} sampled errors; the others for limits and the nearest failure)",
+                grouped(sampled)
+            )
+        } else {
+            format!("{all} sampled errors")
+        }
+    }
+
     /// Probability, gains and factors of every robot and error.
     fn records(&self) -> Table {
         let mut table = Table::data(
@@ -111,7 +124,8 @@ impl RobotDocking {
     }
 
     fn describe(&self, design: &Design, document: &mut Document) {
-        document.section(None).row("errors", format!("{}: {}", self.robot, self.errors_in_words(design)));
+        let named = if self.robot == UNNAMED { String::new() } else { format!("{}: ", self.robot) };
+        document.section(None).row("errors", named + &self.errors_in_words(design));
         document.row("success", between(self.probability, self.ci95));
         let motions = grouped(self.motions);
         document.more(if self.grid.cells > 0 {
@@ -230,7 +244,7 @@ impl RobotDocking {
             Column::new("σ"),
             Column::new("success with σ halved"),
             Column::new("gain (percentage points)"),
-            Column::new(format!("σ needed for {required}")),
+            Column::new(format!("largest σ for {required}")),
         ]);
         let mut is_open = false;
         for improve in &self.improve {

@@ -116,10 +116,10 @@ impl<'a> RestDescriptions<'a> {
         above: f64,
         extent: &[Extent],
     ) {
-        document.row("  example pose", format!("{}{}", self.units.pose(pose), self.above(above)));
+        document.row("  rests at", format!("{}{}", self.units.pose(pose), self.above(above)));
         let wide = self.extent(pose, extent);
         if !wide.is_empty() {
-            document.row("  rest range", wide);
+            document.row("  range of rests", wide);
         }
     }
 
@@ -173,27 +173,29 @@ impl<'a> RestDescriptions<'a> {
         let push = self.units.length(examined.push_d);
         let Examined { back, pushed, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
-            return format!("held by friction alone; {back} of {pushed} poses moved by {push} end here, too");
+            return format!(
+                "held by friction alone; displaced in {pushed} random directions, it came back here {back} times"
+            );
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
                 format!(
-                    "almost level: moved {push} in its easiest direction, the COR rises {}",
+                    "almost level: displaced by {push} in its easiest direction, the COR rises {}",
                     self.units.fine(rise)
                 )
             }
             (Stability::Ridge, _) => {
                 format!(
-                    "unstable: moved {push} in its easiest direction, the COR falls; the rest is on a ridge"
+                    "unstable: displaced by {push} in its easiest direction, the COR falls; the rest is on a ridge"
                 )
             }
             (_, Some(rise)) => {
                 let rise = self.units.fine(rise);
-                format!("stable: moved {push} in its easiest direction, the COR rises {rise}")
+                format!("stable: displaced by {push} in its easiest direction, the COR rises {rise}")
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {back} of {pushed} poses moved so end here, too")
+        format!("{rise}; displaced in {pushed} random directions, it came back here {back} times")
     }
 
     /// The escape height, with the end of the escape path.
@@ -201,7 +203,7 @@ impl<'a> RestDescriptions<'a> {
         if climb < NOTHING {
             format!("0: pushed sideways it {to}")
         } else {
-            format!("at most {}; lifted by this it {to}", self.units.fine(climb))
+            format!("at most {}: lifted by this, it {to}", self.units.fine(climb))
         }
     }
 
@@ -254,7 +256,7 @@ impl<'a> RestDescriptions<'a> {
     }
 
     fn drawn(self, feature: &NamedFeature) -> String {
-        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
+        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part} (from 0)"));
         format!("{}{part}", self.units.point(feature.drawn_d))
     }
 }

@@ -30,6 +30,10 @@ impl Subject for Jams {
         let poses = format!("{} random poses", grouped(self.motions));
         document.row("method", exact_motions(&poses, self.settings.friction));
         document.section(None).table(self.outcome_table());
+        document.paragraph(
+            "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. Jams are grouped by the features that \
+             touch and by nearness.",
+        );
         let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {
             document.section(None);

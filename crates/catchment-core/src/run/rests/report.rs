@@ -95,10 +95,10 @@ impl Rests {
         match (way.map(|way| way.to), rest.leads_to) {
             (Some(Outcome::Missed), _) => "slides off".to_owned(),
             (_, Some(k)) if self.rests.get(k).is_some_and(|to| std::ptr::eq(to, rest)) => {
-                "comes to an image of this place".to_owned()
+                "settles in a symmetric copy of this rest".to_owned()
             }
-            (_, Some(k)) => format!("comes to rest {}", k + 1),
-            _ => "comes to another place".to_owned(),
+            (_, Some(k)) => format!("settles in rest {}", k + 1),
+            _ => "settles in another rest".to_owned(),
         }
     }
 

@@ -36,7 +36,7 @@ impl WindowDetails {
         document.table(self.table(design));
         document.paragraph(
             "tolerance window: all errors at once; the error box shrunk in proportion until all poses sampled in it dock. single-axis limit: this error, all others zero. limit, \
-             others in window: this error, the others anywhere in the window.",
+             others in window: the largest value of this error that docks whatever the others are inside the window.",
         );
         if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
             document.paragraph("* the error box ends here: the limit may be larger");
@@ -102,7 +102,7 @@ impl WindowDetails {
             return;
         };
         document.row("nearest failure", format!("{}: {}", units.pose(&worst.error), worst.outcome.word()));
-        document.more("just outside the window");
+        document.more("the failure nearest to the window, just outside it");
         if worst.outcome == Outcome::Jammed {
             document.more(format!("rests at {}", units.pose(&worst.end)));
         }
