@@ -4,7 +4,7 @@ use crate::color::is_coloured;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::source::is_stream;
-use catchment::report::document::Style;
+use catchment::report::document::{self, Described, Style};
 use catchment::report::figure::Picture;
 use catchment::report::write::{self, WriteError};
 use catchment::terminal::{escaped, shown};
@@ -201,13 +201,28 @@ pub(crate) fn what_was_written() -> String {
 
 /// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns.
 pub(crate) fn style(details: bool) -> Style {
+    Style { colour: is_coloured(&io::stdout()), ..layout(details) }
+}
+
+/// The warnings of a report, on stderr.
+pub(crate) fn warn(document: &Described<'_>) {
+    let style = Style { colour: is_coloured(&io::stderr()), ..layout(true) };
+    let mut stderr = io::stderr().lock();
+    for warning in document::warnings(document, style) {
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = stderr.write_all(warning.as_bytes());
+    }
+}
+
+/// The width of a text, without colours.
+fn layout(details: bool) -> Style {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let is_terminal = io::stdout().is_terminal();
     let width =
         || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
     let default = Style::default();
     let columns = said.or_else(width).unwrap_or(default.columns);
-    Style { columns, colour: is_coloured(&io::stdout()), details }
+    Style { columns, details, ..default }
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.

@@ -13,12 +13,12 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{
-    OutputArgs, check_apart, check_place, file, image, style, to_stderr, to_stdout, write_file, written,
+    OutputArgs, check_apart, check_place, file, image, style, to_stderr, to_stdout, warn, write_file, written,
 };
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::problem::Problem;
-use catchment::report::document::{Described, Printed, Style, html, markdown, text};
+use catchment::report::document::{Described, Printed, Style, body, html, markdown, text};
 use catchment::report::figure::Picture;
 use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
@@ -420,7 +420,8 @@ impl PrintArgs {
         } else if self.csv {
             to_stdout(&String::from_utf8_lossy(&table(report)?))?;
         } else {
-            to_stdout(&text(document, style(self.verbose)))?;
+            to_stdout(&body(document, style(self.verbose)))?;
+            warn(document);
         }
         let verdicts = report.verdicts(&self.require)?;
         let unmet: Vec<String> =

@@ -217,10 +217,7 @@ fn shown(source: Option<&SourceText>) -> String {
 
 fn understood(document: &mut Document, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
     let alignment = &design.alignment;
-    let length = |d: f64| match design.unit {
-        Some(unit) => format!("{} D = {} {}", shortened(d), rounded(d * design.width), unit.symbol()),
-        None => format!("{d} D"),
-    };
+    let length = |d: f64| in_both_units(d, design);
     let mut row = |name: &str, value: &str| {
         document.row(name, value);
     };
@@ -241,60 +238,24 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
             }
             let round = [&own.fixed, &own.moving].into_iter().filter_map(chord_error).reduce(f64::max);
             if let Some(error) = round {
-                row("round parts", &format!("their facets lie inside them, by at most {}", length(error)));
+                row("round parts", &format!("made of facets, at most {} inside the surface", length(error)));
             }
         }
     }
-    if let Some(DrawingReport { fixed, moving, apart, settled }) = drawing {
-        let point = |p: [f64; 3]| {
-            let [x, y, z] = p.map(|c| rounded(c) + 0.0);
-            format!("({x}, {y}, {z})")
-        };
-        let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
-            row(
-                name,
-                &format!(
-                    "{} in the fixed half's drawing = {} in the moving half's",
-                    point(fixed),
-                    point(moving)
-                ),
-            );
-        };
-        places("face centre", fixed.face_center, moving.face_center);
-        places("COR", fixed.center_of_rotation, moving.center_of_rotation);
-        let along = format!("{} and {} of the fixed half's drawing", direction(fixed.x), direction(fixed.y));
-        row("errors in x and y", &format!("along {along}"));
-        let is_assembled = matches!(
-            &design.connector,
-            ConnectorSpec::Own(OwnSpec { drawn: DrawnFrames::Assembled { .. }, .. })
-        );
-        let moved = apart.filter(|apart| is_assembled && rounded(apart.abs()) > 0.0);
-        if let Some(apart) = moved {
-            let way = if apart > 0.0 { "apart" } else { "into each other" };
-            row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
-        }
-        if let Some(error) = settled {
-            // Smaller deviations are within the accuracy of the rest.
-            let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
-            let amount = |(dof, off): (Dof, f64)| match design.unit {
-                _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
-                Some(unit) => {
-                    let off = length_in(off * design.width, design.width);
-                    format!("{} {off} {}", dof.name(), unit.symbol())
-                }
-                None => format!("{} {off:.5} D", dof.name()),
-            };
-            let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);
-            let parts: Vec<String> = parts.map(amount).collect();
-            let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
-            row("settled", &format!("{off}, taken as the mated pose"));
-        }
+    if let Some(drawing) = drawing {
+        describe_drawing(document, design, drawing);
     }
-    row("halves", if ungendered { "of the same shape (ungendered)" } else { "of different shape" });
+    let mut row = |name: &str, value: &str| {
+        document.row(name, value);
+    };
+    row(
+        "halves",
+        if ungendered { "of the same shape (ungendered)" } else { "of two different shapes (gendered)" },
+    );
     let unit = design.unit.map_or("(dimensionless)", |unit| unit.symbol());
     let from = match &design.connector {
         ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Touching, .. }) => {
-            ", taken from the facets that can touch"
+            ", the larger lateral extent of the facets that can touch"
         }
         ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Size, .. }) => {
             ", as small as the parts allow: the facets that can touch are smaller"
@@ -309,7 +270,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
     row(
         "COR",
         &format!(
-            "centre of rotation: {} ahead of the moving half's face centre",
+            "centre of rotation: {} ahead of the centre of the moving half's mating face",
             length(alignment.center_of_rotation)
         ),
     );
@@ -321,9 +282,70 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         ),
     );
     if alignment.symmetry > 1 {
-        row("symmetry", &format!("{}-fold", alignment.symmetry));
+        row(
+            "symmetry",
+            &format!(
+                "{}-fold: turned by a multiple of {}° about z the halves count as docked, too",
+                alignment.symmetry,
+                360.0 / f64::from(alignment.symmetry)
+            ),
+        );
     }
     row("error box", &error_box(design));
+}
+
+/// A length in D, and in the unit of the design if it has one.
+fn in_both_units(d: f64, design: &Design) -> String {
+    match design.unit {
+        Some(unit) => format!("{} D = {} {}", shortened(d), rounded(d * design.width), unit.symbol()),
+        None => format!("{d} D"),
+    }
+}
+
+/// The reference points of the results in the drawings of the halves.
+fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingReport) {
+    let length = |d: f64| in_both_units(d, design);
+    let DrawingReport { fixed, moving, apart, settled } = drawing;
+    let mut row = |name: &str, value: &str| {
+        document.row(name, value);
+    };
+    let point = |p: [f64; 3]| {
+        let [x, y, z] = p.map(|c| rounded(c) + 0.0);
+        format!("({x}, {y}, {z})")
+    };
+    let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
+        row(
+            name,
+            &format!("{} in the fixed half's drawing = {} in the moving half's", point(fixed), point(moving)),
+        );
+    };
+    places("face centre", fixed.face_center, moving.face_center);
+    places("COR in drawings", fixed.center_of_rotation, moving.center_of_rotation);
+    let along = format!("{} and {} of the fixed half's drawing", direction(fixed.x), direction(fixed.y));
+    row("errors in x and y", &format!("along {along}"));
+    let is_assembled =
+        matches!(&design.connector, ConnectorSpec::Own(OwnSpec { drawn: DrawnFrames::Assembled { .. }, .. }));
+    let moved = apart.filter(|apart| is_assembled && rounded(apart.abs()) > 0.0);
+    if let Some(apart) = moved {
+        let way = if apart > 0.0 { "apart" } else { "into each other" };
+        row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
+    }
+    if let Some(error) = settled {
+        // Smaller deviations are within the accuracy of the rest.
+        let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
+        let amount = |(dof, off): (Dof, f64)| match design.unit {
+            _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
+            Some(unit) => {
+                let off = length_in(off * design.width, design.width);
+                format!("{} {off} {}", dof.name(), unit.symbol())
+            }
+            None => format!("{} {off:.5} D", dof.name()),
+        };
+        let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);
+        let parts: Vec<String> = parts.map(amount).collect();
+        let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
+        row("settled", &format!("{off}, taken as the mated pose"));
+    }
 }
 
 /// Name of a unit vector, if it has one.

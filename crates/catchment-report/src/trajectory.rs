@@ -5,7 +5,7 @@ use super::envelope::{ReportBody, ReportEnvelope};
 use super::schema::WarningReport;
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
-use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals, grouped};
+use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals, grouped, rounded};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
@@ -164,9 +164,10 @@ impl Printed for TraceBody {
             let counts = (shown.rows.len(), self.waypoints.len());
             document.table(shown);
             document.paragraph(format!(
-                "{} of {} poses of the motion; path: distance travelled sideways, a turn counted as ρ × its angle; height: of the COR along z",
+                "{} of {} poses of the motion; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR along z",
                 grouped(counts.0),
-                grouped(counts.1)
+                grouped(counts.1),
+                rounded(self.design.alignment.rotation_length)
             ));
         }
         document.section(None).table(self.contact_table());
@@ -197,7 +198,10 @@ impl TraceBody {
             let format = if dof.is_rotation() { ColumnFormat::Fixed(3) } else { length };
             Column::new(format!("{} [{unit}]", dof.name())).format(format)
         }));
-        columns.extend([Column::new(format!("height [{symbol}]")).format(length), Column::new("contacts")]);
+        columns.extend([
+            Column::new(format!("height [{symbol}]")).format(length),
+            Column::new("contact points"),
+        ]);
         let mut table = Table::new(columns);
         for w in spread(&self.waypoints) {
             let mut row: Vec<Cell> = vec![w.travelled_d.into()];
@@ -280,7 +284,7 @@ mod tests {
         let traced = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
         let text = traced.table();
         assert!(text.starts_with("a?[2Jb\n") && text.contains("  outcome        docked\n"), "{text}");
-        assert!(text.contains("    0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
+        assert!(text.contains("    0.0000  25.0000        0.000      12.5000               2\n"), "{text}");
         let records = traced.records();
         assert_eq!(records.len(), 1 + 2 + 1);
         assert!(records.iter().all(|record| record.len() == 14));

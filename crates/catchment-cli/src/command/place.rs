@@ -271,7 +271,10 @@ fn is_file(said: &str) -> bool {
 fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
-    let head = format!("width D {}, taken from the facets that can touch", shown_length(design.width, unit));
+    let head = format!(
+        "width D {}, the larger lateral extent of the facets that can touch",
+        shown_length(design.width, unit)
+    );
     let (moving, other) = match moving {
         Some(path) => (shown(path).to_string(), "swap the files"),
         None => ("the smaller body".to_owned(), "give each half a file of its own"),

@@ -314,9 +314,12 @@ fn a_first_run_on_many_facets_answers_without_a_grid() {
     fs::write(home.path().join("pins.toml"), "[connector]\nfamily = \"pin-hole\"\n").unwrap();
     let said = run(home.path(), &["run", "pins.toml", "--samples", "20", "-o", "out"]);
     assert!(said.starts_with("exit 0"), "{said}");
-    for words in
-        ["of 20 random poses", "tolerance window", "single-axis limit", "95 % CI, by 20 sampled poses"]
-    {
+    for words in [
+        "of 20 random poses",
+        "tolerance window",
+        "single-axis limit",
+        "; by 20 poses sampled in the error box",
+    ] {
         assert!(said.contains(words), "{words} is missing in\n{said}");
     }
     // The window stands above the Sum, and the next command last.

@@ -145,7 +145,7 @@ fn balls_in_grooves_are_checked_and_answered() {
     assert!(told.starts_with("exit 0"), "{told}");
     assert!(told.contains("fixed half        cylinder, 3 × profile\n"), "{told}");
     assert!(told.contains("moving half       cylinder, 3 × ball\n"), "{told}");
-    assert!(told.contains("their facets lie inside them, by at most 0.001 D = 0.06 mm\n"), "{told}");
+    assert!(told.contains("made of facets, at most 0.001 D = 0.06 mm inside the surface\n"), "{told}");
     let told = run(&designs(), &["zraa", "kelvin-balls.toml"]);
     assert!(told.contains("= 86.602540 mm²"), "{told}");
 }
@@ -190,7 +190,7 @@ fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
     let told = run(dir.path(), &["check", "d.toml"]);
     assert!(told.contains("mesh two.stl, ball, box\n") && told.contains("two.stl: "), "{told}");
     assert!(
-        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("merged; its shape is unchanged"),
+        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("resolved; its shape is unchanged"),
         "{told}"
     );
     assert!(told.contains("fixed half        profile plate.svg\n"), "{told}");

@@ -20,7 +20,7 @@ fn a_facet_holds_everything_from_its_slope_on() {
         told.starts_with("exit 0\n") && told.contains("90 %           0.199 (95 % CI 0.199 … 0.199)"),
         "{told}"
     );
-    assert!(told.contains("contacts that stop the first 20 poses that are lost"), "{told}");
+    assert!(told.contains("contacts of the first 20 poses lost as μ rises"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     // A little above the slope all that is lost is hardly held, and that is said.
     assert!(!told.contains("dock at 0.9 of it"), "{told}");

@@ -180,7 +180,7 @@ fn a_spoilt_mesh_is_repaired_and_told() {
         finals(sound.path(), Path::new("design.toml")),
         finals(spoilt.path(), Path::new("design.toml"))
     );
-    let quick = ["run", "design.toml", "--free", "x,y", "--resolution", "5"];
+    let quick = ["run", "design.toml", "--free", "x,y", "--resolution", "5", "-v"];
     let words = run(spoilt.path(), &quick).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains(&format!("moving half {done}")), "{words}");
     // Taken as it is, it is refused.

@@ -25,8 +25,7 @@ fn a_mirrored_part_is_told_as_one() {
     // Where it tolerates a few millimetres, the error box does not reach to 30.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
-        text.contains("About four times the single-axis limit of each error:")
-            && text.contains("\nx = 0.18 # D"),
+        text.contains("About four times the single-axis limits (") && text.contains("\nx = 0.18 # D"),
         "{text}"
     );
     let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);

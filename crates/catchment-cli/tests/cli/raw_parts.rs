@@ -143,7 +143,7 @@ fn one_file_may_hold_both_halves() {
     let printed =
         run(home.path(), &["place", "both.stl", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]).unbroken();
     assert!(printed.starts_with("exit 0") && printed.contains("moving the smaller body"), "{printed}");
-    assert!(printed.contains("stays in the seat") && !printed.contains("more than two"), "{printed}");
+    assert!(printed.contains("at rest when mated") && !printed.contains("more than two"), "{printed}");
     let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
     let halves: Vec<&str> = design.split("\n[connector.").collect();
     assert!(halves[1].contains("\nbody = 1\n") && halves[2].contains("\nbody = 2\n"), "{design}");

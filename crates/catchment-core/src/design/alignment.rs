@@ -109,4 +109,9 @@ impl Alignment {
     pub const fn half_range(&self, dof: Dof) -> f64 {
         if self.free.contains(dof) { self.half_ranges[dof.index()] } else { 0.0 }
     }
+
+    /// The measure of the error box, in powers of D and radians.
+    pub fn error_box_measure(&self) -> f64 {
+        self.free.iter().map(|dof| 2.0 * self.half_range(dof)).product()
+    }
 }

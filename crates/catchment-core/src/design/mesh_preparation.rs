@@ -126,7 +126,7 @@ impl Repairs {
         );
         part(self.turned, "triangle flipped", "triangles flipped");
         part(self.parted, "edge separated where solids touch", "edges separated where solids touch");
-        part(self.united, "intersection of its facets merged", "intersections of its facets merged");
+        part(self.united, "crossing of its facets resolved", "crossings of its facets resolved");
         if let Some([before, after]) = self.simplified {
             parts.push(format!("{before} triangles simplified to {after}"));
         }
@@ -140,6 +140,17 @@ impl Repairs {
 }
 
 impl HalfSpec {
+    /// Whether repairs moved the surface of one of its meshes.
+    pub fn is_altered(&self) -> bool {
+        let moved =
+            |file: &FileSpec| file.content.as_ref().is_some_and(|content| content.repairs.deviation > 0.0);
+        match self {
+            Self::Mesh(file) => moved(file),
+            Self::Parts(parts) => parts.iter().filter_map(|part| part.shape.file()).any(moved),
+            Self::Pieces(_) | Self::Memory { .. } => false,
+        }
+    }
+
     /// The changes to its meshes, as a line in the unit of the design; `None` without changes.
     pub fn repairs_told(&self, design: &Design) -> Option<String> {
         match self {
@@ -245,10 +256,10 @@ mod tests {
         let mut repairs = Repairs { without_area: 12, united: 1, deviation: 2e-6, ..Repairs::default() };
         assert_eq!(
             repairs.to_string(),
-            "12 triangles without area dropped, 1 crossing united; the surface moved by no more than 2.0e-6 D"
+            "12 triangles without area removed, 1 crossing of its facets resolved; the surface moved by no more than 2.0e-6 D"
         );
         repairs = Repairs { simplified: Some([9, 4]), ..Repairs::default() };
-        assert_eq!(repairs.to_string(), "9 triangles simplified to 4; the surface did not move");
+        assert_eq!(repairs.to_string(), "9 triangles simplified to 4; its shape is unchanged");
         assert!(!repairs.is_none() && Repairs::default().is_none());
     }
 

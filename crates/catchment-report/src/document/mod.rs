@@ -17,7 +17,7 @@ mod text;
 
 pub use html::html;
 pub use markdown::markdown;
-pub use text::{Style, lines, text};
+pub use text::{Style, body, lines, text, warnings};
 
 use crate::envelope::{ReportBody, ReportEnvelope};
 use crate::schema::{Timing, WarningReport};
@@ -144,7 +144,7 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
         ConnectorSpec::Family(f) => {
             format!("{}, height / width {}", f.family().name(), rounded(f.aspect_ratio()))
         }
-        ConnectorSpec::Own(_) => "own geometry".to_owned(),
+        ConnectorSpec::Own(_) => "halves of the design file".to_owned(),
     };
     let width = design.unit.map_or_else(
         || "lengths in D, its width".to_owned(),
@@ -165,10 +165,10 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
     document
 }
 
-/// The characteristic length in words: `25 mm, your input: the mount resists a turn of 1 rad like a shift by ρ`.
+/// The characteristic length in words: `25 mm, your input: √(rotational / lateral damping, or stiffness, of the mount)`.
 pub(crate) fn characteristic_length(rho: &str, turns: bool) -> String {
     let meaning = if turns {
-        "the mount resists a turn of 1 rad like a shift by ρ"
+        "√(rotational / lateral damping, or stiffness, of the mount)"
     } else {
         "without effect, since no turn is free"
     };
@@ -232,11 +232,11 @@ pub(crate) fn error_box(design: &Design) -> String {
 fn center_of_rotation(design: &Design) -> String {
     let cor = design.alignment.center_of_rotation;
     let place = match own_length(design, cor.abs()) {
-        _ if cor == 0.0 => "at the moving face's centre".to_owned(),
-        length if cor > 0.0 => format!("{length} ahead of the moving face"),
-        length => format!("{length} behind the moving face"),
+        _ if cor == 0.0 => "the centre of its mating face".to_owned(),
+        length if cor > 0.0 => format!("{length} ahead of its mating face, towards the fixed half"),
+        length => format!("{length} behind its mating face"),
     };
-    format!("centre of rotation, {place}; the mount pushes here along -z")
+    format!("centre of rotation: the mount pushes the moving half here, along -z; {place}")
 }
 
 /// A length that is given in D, in the unit of the design.

@@ -18,6 +18,8 @@ const RULE: usize = 24;
 /// The fewest columns in which a text at the end of a row is wrapped.
 const LEAST_TEXT: usize = 16;
 
+/// What a warning begins with.
+const WARNING: &str = "warning: ";
 const BOLD: &str = "\u{1b}[1m";
 const YELLOW: &str = "\u{1b}[33m";
 const RESET: &str = "\u{1b}[0m";
@@ -45,29 +47,41 @@ impl Style {
     }
 }
 
-/// A document as text; ends with a line break.
+/// A document with its warnings as text; ends with a line break.
 pub fn text(described: &Described<'_>, style: Style) -> String {
-    let style = Style { columns: style.columns.max(NARROWEST), ..style };
-    let mut page = Page { text: String::new(), style, names: NAMES };
+    let mut text = body(described, style);
+    for warning in warnings(described, style) {
+        text.extend(["\n", &warning]);
+    }
+    text
+}
+
+/// A document without its warnings as text; ends with a line break.
+pub fn body(described: &Described<'_>, style: Style) -> String {
+    let mut page = Page::new(style);
     let title = printable(&described.title);
-    let rule = "─".repeat(title.chars().count().clamp(RULE, style.columns));
+    let rule = "─".repeat(title.chars().count().clamp(RULE, page.style.columns));
     page.text.push_str(&style.painted(BOLD, &title));
     page.text.push('\n');
     page.line(&rule);
     page.document(&described.document);
-    for warning in &described.warnings {
-        page.text.push('\n');
-        let start = page.text.len();
-        page.wrapped("warning: ", warning);
-        let painted = style.painted(YELLOW, "warning:");
-        page.text.replace_range(start..start + "warning:".len(), &painted);
-    }
     page.text
+}
+
+/// The warnings of a document as text; each ends with a line break.
+pub fn warnings(described: &Described<'_>, style: Style) -> Vec<String> {
+    let one = |warning: &String| {
+        let mut page = Page::new(style);
+        page.wrapped(WARNING, warning);
+        page.text.replace_range(..WARNING.trim_end().len(), &style.painted(YELLOW, WARNING.trim_end()));
+        page.text
+    };
+    described.warnings.iter().map(one).collect()
 }
 
 /// The lines of a document without title and warnings.
 pub fn lines(document: &Document, style: Style) -> Vec<String> {
-    let mut page = Page { text: String::new(), style, names: NAMES };
+    let mut page = Page::new(style);
     page.document(document);
     page.text.lines().map(str::to_owned).collect()
 }
@@ -80,6 +94,11 @@ struct Page {
 }
 
 impl Page {
+    fn new(style: Style) -> Self {
+        let style = Style { columns: style.columns.max(NARROWEST), ..style };
+        Self { text: String::new(), style, names: NAMES }
+    }
+
     fn document(&mut self, document: &Document) {
         let rows =
             document.sections.iter().flat_map(|section| &section.parts).filter_map(|part| match part {

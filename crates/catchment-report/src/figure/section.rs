@@ -110,7 +110,7 @@ pub(super) fn describe(design: &Design, placement: &MovingHalfPose) -> String {
         return words.join(", ");
     }
     let apart = placement.height + design.alignment.center_of_rotation;
-    if apart > 1e-9 { "aligned, drawn apart".to_owned() } else { "aligned".to_owned() }
+    if apart > 1e-9 { "mated, drawn apart".to_owned() } else { "mated".to_owned() }
 }
 
 /// A section with its extent: shared by the pictures with sections.

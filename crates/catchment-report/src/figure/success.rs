@@ -173,7 +173,7 @@ mod tests {
         let all = &mut report.robots[0].tolerable.all;
         *all = Factor { factor: 1.08, ci95: [0.0, 1.12], is_more: false, is_less: false };
         let text = report.table();
-        assert!(text.contains("times 1.08 (95 % CI up to 1.12;"), "{text}");
+        assert!(text.contains("times 1.08 (95 % CI: at most"), "{text}");
         assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
         report.robots[0].tolerable.all.ci95[0] = 0.9;
         let text = report.table();

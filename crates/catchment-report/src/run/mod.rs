@@ -55,7 +55,10 @@ impl RunBody {
     fn describe_outcomes(&self, document: &mut Document) {
         let a = &self.acceptance;
         let docked = match (upper_end(a), a.sum_ci95.filter(|_| a.sum > 0.0)) {
-            (Some(_), _) => format!("{} (too few sampled poses docked for more)", sum(a)),
+            (Some(hi), _) => {
+                let most = percent(hi / self.design.alignment.error_box_measure());
+                format!("below {most} of the error box (too few sampled poses docked for more)")
+            }
             (None, Some([lo, hi])) => {
                 let [lo, hi] = [lo, hi].map(|end| percent(end * a.fraction / a.sum));
                 format!("{} of the error box (95 % CI {lo} … {hi})", percent(a.fraction))
@@ -63,29 +66,43 @@ impl RunBody {
             (None, None) => format!("{} of the error box", percent(a.fraction)),
         };
         document.row("docked", docked);
+        document.row("not docked", self.failures_in_words());
+        document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
+        if let Some(success) = &self.success {
+            let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
+            let what =
+                if success.ci95.is_some() { "95 % CI" } else { "if the grid is off by a cell at its border" };
+            document.row(
+                "success",
+                format!("{} of the given errors dock ({what} {lo} … {hi})", percent(success.probability)),
+            );
+            if success.outside > 0.0 {
+                document.more(format!(
+                    "{} of the given errors lie outside the error box: they count as failures",
+                    percent(success.outside)
+                ));
+            }
+        }
+    }
+
+    /// How the poses that do not dock end: by the poses themselves, or by the grid unless its Sum lies outside the
+    /// confidence interval.
+    fn failures_in_words(&self) -> String {
+        let a = &self.acceptance;
         let share =
             |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
         let o = &a.outcomes;
         let open =
             if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
-        let by = if self.axes.is_empty() { "" } else { " (estimated by the grid)" };
-        document
-            .row("not docked", format!("jammed {}, missed {}{open}{by}", share(o.jammed), share(o.missed)));
-        document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
-        if let Some(success) = &self.success {
-            let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
-            let what = if success.ci95.is_some() {
-                "95 % CI"
-            } else {
-                "if the accepted set ends one grid cell earlier or later"
-            };
-            document.row("success", format!("{} ({what} {lo} … {hi})", percent(success.probability)));
-            if success.outside > 0.0 {
-                document.more(format!(
-                    "{} of the given errors lie outside the error box",
-                    percent(success.outside)
-                ));
-            }
+        let split = format!("jammed {}, missed {}{open}", share(o.jammed), share(o.missed));
+        if self.axes.is_empty() {
+            return split;
+        }
+        let all = percent(1.0 - a.fraction);
+        if self.certificate.is_none() && a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
+            format!("{all}; the grid is too coarse to tell jams from misses, catchment rests --jams does")
+        } else {
+            format!("{all}; by the grid {split}")
         }
     }
 
@@ -99,13 +116,18 @@ impl RunBody {
         if let Some(slope) = self.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
             document.row("slope threshold", format!("{slope}: motion ends on gentler slopes"));
         }
-        if let ConnectorSpec::Own(own) = &self.design.connector {
-            for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
-                for done in
-                    [half.meshing_told(&self.design), half.repairs_told(&self.design)].into_iter().flatten()
-                {
-                    document.row(name, done);
-                }
+        self.describe_meshes(document, true);
+    }
+
+    /// How its meshes were made or repaired: either what moved their surfaces, or the rest.
+    fn describe_meshes(&self, document: &mut Document, altered: bool) {
+        let ConnectorSpec::Own(own) = &self.design.connector else { return };
+        for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+            if let Some(meshed) = half.meshing_told(&self.design).filter(|_| altered) {
+                document.row(name, meshed);
+            }
+            if let Some(repaired) = half.repairs_told(&self.design).filter(|_| half.is_altered() == altered) {
+                document.row(name, repaired);
             }
         }
     }
@@ -159,7 +181,7 @@ impl RunBody {
             "descent" => exact_motions(&domain, self.friction()),
             "confluence" => {
                 let motions = exact_motions(&domain, self.friction());
-                format!("{motions}; paths that meet are followed once (confluence)")
+                format!("{motions}; paths that merge are computed once (confluence)")
             }
             other => format!("{other}, of {domain}"),
         }
@@ -177,23 +199,33 @@ impl RunBody {
     fn describe_acceptance(&self, document: &mut Document) {
         let a = &self.acceptance;
         let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
-        let grid = if self.axes.is_empty() { "" } else { "the grid and " };
-        let by = a.sum_ci95.map(|_| format!(" (95 % CI, by {grid}{} sampled poses)", grouped(poses)));
-        document.row("AA (Sum)", format!("{}{}", sum(a), by.unwrap_or_default()));
-        document.more("area of acceptance (Sum): the volume of all pose errors that dock");
+        let by = a.sum_ci95.map_or("", |_| " (95 % CI)");
+        document.row("AA (Sum)", format!("{}{by}", sum(a)));
+        let means = "area of acceptance, in the literature the Sum: the volume of all pose errors that dock";
+        document.more(match (a.sum_ci95, self.axes.is_empty()) {
+            (None, _) => means.to_owned(),
+            (_, true) => format!("{means}; by {} poses sampled in the error box", grouped(poses)),
+            (_, false) => format!(
+                "{means}; by the grid, corrected by {} poses sampled in the error box",
+                grouped(poses)
+            ),
+        });
         let border = a.sum_bracket.map(|ends| ends.map(significant));
         match (&border, self.certificate.is_some(), a.sample.is_some()) {
             (Some([lo, hi]), true, _) => _ = document.more(format!("certified: {lo} … {hi}")),
             (Some([lo, hi]), _, false) => {
-                _ = document.more(format!("{lo} … {hi} if it ends one grid cell earlier or later"));
+                _ = document.more(format!("{lo} … {hi} if the grid is off by a cell at its border"));
             }
             _ => {}
         }
         document.details();
+        self.describe_meshes(document, false);
         if let (Some([lo, hi]), false, true) = (border, self.certificate.is_some(), a.sample.is_some()) {
             let grid = significant(a.sum_grid);
-            document
-                .row("Sum by grid", format!("{grid}; {lo} … {hi} if it ends one grid cell earlier or later"));
+            document.row(
+                "Sum by grid",
+                format!("{grid}; {lo} … {hi} if the grid is off by a cell at its border"),
+            );
         }
         if let Some(onaa) = &self.onaa {
             document.row("ONAA edge", edge(onaa));
@@ -374,9 +406,13 @@ fn in_own_unit(limit: &ToleranceReport, design: &Design) -> String {
     if limit.axis.is_rotation() {
         return both(limit, 1f64.to_degrees(), 2, "°");
     }
-    match design.unit {
-        Some(unit) => format!("{} {}", both(limit, design.width, decimals(design.width), ""), unit.symbol()),
-        None => format!("{} D", both(limit, 1.0, 4, "")),
+    let (scale, digits, unit) =
+        design.unit.map_or((1.0, 4, "D"), |unit| (design.width, decimals(design.width), unit.symbol()));
+    let words = both(limit, scale, digits, "");
+    // The star of a single number stands behind its unit.
+    match words.strip_suffix('*').filter(|words| words.starts_with('±')) {
+        Some(number) => format!("{number} {unit}*"),
+        None => format!("{words} {unit}"),
     }
 }
 

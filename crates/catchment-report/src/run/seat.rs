@@ -21,15 +21,15 @@ pub(super) fn describe(document: &mut Document, found: &Seating, design: &Design
     document.row(
         "seat",
         format!(
-            "docked: at rest within {depth} of the mated depth; residual misalignment of {} docked poses, drawn at random:",
+            "docked: at rest within {depth} of the mated depth; play of the mated pose, and residual misalignment of {} docked poses drawn at random:",
             found.poses
         ),
     );
     let mut table = Table::new([
         Column::new("").left(),
         Column::new("play"),
-        Column::new("mean size"),
-        Column::new("95 % are below"),
+        Column::new("mean residual"),
+        Column::new("95 % below"),
         Column::new("largest"),
     ]);
     for play in &found.play {

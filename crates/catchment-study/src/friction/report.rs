@@ -54,7 +54,7 @@ impl Subject for Friction {
         document.section(None).table(self.table());
         document.paragraph(format!(
             "μ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this μ; gained: the other way \
-             round; may stick: counted as docked, though Coulomb's law also allows them to stick; barely stuck: lost, but dock at 0.9 μ.",
+             round; may stick: counted as docked, but Coulomb's law also allows them to stick; barely stuck: lost, but dock at 0.9 μ.",
             grouped(self.motions)
         ));
         self.describe_kept(&mut document);
@@ -117,7 +117,10 @@ impl Friction {
             return;
         }
         let base = self.curve.first().map_or(0, |rung| rung.aligned.count);
-        document.titled(Some(format!("of the {} that dock at μ = 0, these still dock up to μ", poses(base))));
+        document.titled(Some(format!(
+            "largest μ at which this share of the {} docking at μ = 0 still docks",
+            poses(base)
+        )));
         for kept in &self.kept {
             let friction = if kept.is_top {
                 format!("above {}, the largest μ tried", self.top())
@@ -135,7 +138,7 @@ impl Friction {
             return;
         }
         document.titled(Some(format!(
-            "contacts that stop the first {} that are lost (shares overlap)",
+            "contacts of the first {} lost as μ rises (several per pose)",
             poses(*count)
         )));
         for pair in features.iter().take(SHOWN) {
@@ -143,7 +146,7 @@ impl Friction {
             document.row(
                 tenths(pair.share),
                 format!(
-                    "{}: from μ = {least} on, median μ = {median}",
+                    "{}: lost from μ = {least} on, median {median}",
                     contact_in_words(&pair.fixed, &pair.moving)
                 ),
             );

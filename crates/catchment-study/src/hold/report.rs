@@ -46,7 +46,7 @@ impl Subject for HoldingForces {
         ));
         if self.slides() {
             document.paragraph(
-                "0: the half slides sideways under any force, on level ground or until the play of its fit is used.",
+                "0: not held: the half slides sideways under any force until its play, if it has any, is used up. Gaps up to --play count as closed.",
             );
         }
         document
@@ -63,7 +63,11 @@ impl HoldingForces {
         let place =
             if self.settings.pose.is_none() { "the mated pose".to_owned() } else { units.pose(&self.pose) };
         let docked = if self.outcome == Outcome::Aligned { "" } else { ", not docked" };
-        document.row("rests at", format!("{place}{docked}; {} contact points", self.contacts.len()));
+        let points = match self.contacts.len() {
+            1 => "1 contact point".to_owned(),
+            count => format!("{count} contact points"),
+        };
+        document.row("rests at", format!("{place}{docked}; {points}"));
         if self.settings.friction > 0.0 {
             let friction = self.settings.friction;
             document.row("friction", format!("μ = {friction} between the halves (Coulomb)"));

@@ -2,9 +2,9 @@
 
 use super::{Pattern, PoseColumns, Prediction, TrialPlan, TrialPlanCounts, accuracy_words};
 use crate::validate::{FEWEST, LIMIT};
-use catchment_core::acceptance::Warning;
+use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
-use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, grouped};
+use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, exact_motions, grouped};
 use catchment_core::pose::{Dof, PoseError};
 
 /// Trials that are shown.
@@ -55,10 +55,7 @@ impl Subject for TrialPlan {
         let units = DesignUnits::of(design);
         let settings = &self.settings;
         let mut document = Document::default();
-        document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
-        if settings.friction > 0.0 {
-            document.row("friction", format!("{} between the halves (Coulomb)", settings.friction));
-        }
+        document.row("method", exact_motions(&format!("{} poses", grouped(self.motions)), settings.friction));
         document.row("pattern", self.pattern(units));
         document.row("accuracy", accuracy_words(design, &settings.accuracy));
         self.describe_counts(&mut document, units);
@@ -72,7 +69,7 @@ impl Subject for TrialPlan {
             let point = &self.points[trial.point];
             first.push([
                 trial.number.into(),
-                point.prediction.word().into(),
+                docks(point.prediction.word()).into(),
                 units.pose(&point.error).into(),
             ]);
         }
@@ -83,6 +80,16 @@ impl Subject for TrialPlan {
         document.table(self.for_the_robot(design));
         document
     }
+}
+
+/// The outcome as people read it.
+fn docks(word: &str) -> &str {
+    if word == Outcome::Aligned.name() { Outcome::Aligned.word() } else { word }
+}
+
+/// `1 pose`, `40 poses`.
+fn count(poses: usize) -> String {
+    if poses == 1 { "1 pose".to_owned() } else { format!("{} poses", grouped(poses)) }
 }
 
 impl TrialPlan {
@@ -97,9 +104,12 @@ impl TrialPlan {
         let blocks =
             if settings.blocks > 1 { format!(", in {} blocks", settings.blocks) } else { String::new() };
         document.more(format!("in {order}{blocks}"));
-        document.row("predicted", format!("{docking} poses dock, {failing} do not"));
-        document.row("either", format!("{either} poses, nearer to the border than the accuracy"));
-        document.row("decide", format!("{deciding} poses, {LIMIT} accuracies or more from the border"));
+        document.row("predicted", format!("{} docked, {failing} not", count(docking)));
+        document.row(
+            "too close",
+            format!("{}, nearer to the border than the accuracy: either outcome fits", count(either)),
+        );
+        document.row("decisive", format!("{}, {LIMIT} accuracies or more from the border", count(deciding)));
         let known = self.points.iter().filter_map(|point| {
             let Prediction { distance_to_border, margin_in_sigma, .. } = point.prediction;
             let decides = point.prediction.margin() >= LIMIT;
@@ -107,7 +117,10 @@ impl TrialPlan {
         });
         if let Some((margin, distance, point)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) {
             let distance = units.length(distance);
-            document.row("nearest of these", format!("at most {distance} from it, {margin:.2} accuracies"));
+            document.row(
+                "nearest of these",
+                format!("at most {distance} from the border, {margin:.2} accuracies"),
+            );
             document.more(units.pose(&point.error));
         }
     }

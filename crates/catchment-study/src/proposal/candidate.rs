@@ -59,7 +59,7 @@ pub enum SeatCheck {
 impl fmt::Display for SeatCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Holds => f.write_str("stays in the seat"),
+            Self::Holds => f.write_str("at rest when mated"),
             Self::Settles { told, .. } => write!(f, "settles {told} off the drawn pose"),
             Self::Refused(reason) => f.write_str(reason),
             Self::NotAsked => f.write_str("not examined further"),
@@ -139,14 +139,14 @@ impl Candidate {
         let Self { lie, score, climb, shared, seat, .. } = self;
         if let Some([deep, play]) = self.sunk {
             return format!(
-                "{score:.2} of 1: {lie}{}; seat {} deep, ±{} of sideways play at half depth; {seat}",
+                "{score:.2} (best 1): {lie}{}; seat {} deep, ±{} of sideways play at half depth; {seat}",
                 self.place_among(all, unit),
                 shown_length(deep, unit),
                 shown_length(play, unit)
             );
         }
         format!(
-            "{score:.2} of 1: {lie}{}; climbs {:.0} %, {:.0} % of the smaller part's broad side can touch; {seat}",
+            "{score:.2} (best 1): {lie}{}; seat slope {:.0} %, {:.0} % of the smaller part's broad side can touch; {seat}",
             self.place_among(all, unit),
             climb * 100.0,
             shared * 100.0

@@ -21,7 +21,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// Note about a seat at another place than the drawn place, for parts that may be assembled.
-pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
+pub(super) const ELSEWHERE: &str = "in doubt: as drawn, one part lies inside the other without overlap, but is not at rest; another seat was chosen";
 
 /// An assembly shares no volume but for rounding and press fits, as a share of the smaller part's.
 const MOST_SHARED: f64 = 0.01;

@@ -125,23 +125,25 @@ pub(super) fn text(
         "# Two parts from CAD, and how they dock: a proposal by `catchment place`. `catchment check FILE --figure pair.png` draws both halves,",
     );
     line(
-        "# apart and mated. Lengths without a unit are in D (the width); those in [connector] and the sections below it in the unit given there.",
+        "# apart and mated. Lengths without a unit are in D (the width); those in [connector] and [connector.*] in the unit given there.",
     );
     line("schema = 1");
     line(&format!("name = {}", quoted(&name)));
     line("\n[connector]");
     line(if judged.is_widened {
-        "# D, the unit of every result: as small as the parts allow; the facets that can touch are smaller."
+        "# D, the width, by which lengths are scaled: as small as the parts allow; the facets that can touch are smaller."
     } else {
-        "# D, the unit of every result: the larger lateral extent of the facets that can touch."
+        "# D, the width, by which lengths are scaled: the larger lateral extent of the facets that can touch."
     });
     line(&format!("width = {}", decimal(number(width, ROUNDED * width))));
     line(&format!("unit = \"{}\"", unit.symbol()));
     if let PartLayout::Assembled { approach } = judged.lie {
-        line("# Both parts stand in one frame, docked; moved along the approach to where they first touch.");
+        line(
+            "# Both parts are drawn docked, in one frame; catchment moves them along the approach until they touch.",
+        );
         line("drawn = \"assembled\"");
         line(
-            "# The moving half approaches along this direction: nothing is in the way, and docked halves hold each other.",
+            "# The moving half approaches along this direction: nothing blocks it, and docked halves hold each other sideways.",
         );
         line(&format!("approach = {}", approach.written()));
     }
@@ -180,7 +182,7 @@ pub(super) fn text(
     line("\n# The error box: pose errors are sampled from minus to plus these values.");
     if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
         line(
-            "# About four times the single-axis limit of each error: the largest value that docks with all others 0.",
+            "# About four times the single-axis limits (the largest value of an error that docks with all others 0).",
         );
     }
     line("[errors]");
@@ -226,7 +228,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
     line(&format!("# in D, or with a unit, such as \"5 {}\".", unit.symbol()));
     line("center_of_rotation = 0.0");
     line(
-        "# Your mount decides: rho, the characteristic length. The mount damps a turn of 1 rad like a shift of rho; results depend on it.",
+        "# Your mount decides: rho = sqrt(rotational / lateral damping, or stiffness, of the mount); results depend on it.",
     );
     line("rotation_length = 0.5");
     let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));

@@ -288,7 +288,7 @@ impl Factor {
         }
         if lo <= 0.0 {
             return format!(
-                "{required} success with every σ times {factor:.2} (95 % CI up to {hi:.2}; its lower end needs more samples)"
+                "{required} success with every σ times {factor:.2} (95 % CI: at most {hi:.2}; its lower end needs more samples)"
             );
         }
         format!("{required} success with every σ times {factor:.2} (95 % CI {lo:.2} … {hi:.2})")

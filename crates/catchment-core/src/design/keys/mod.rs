@@ -272,7 +272,7 @@ keys! {
         "Largest height above the mated height at which a half at rest counts as docked.");
     /// `docked.x`
     DOCKED_X = key(DesignTable::Docked, "x", ValueKind::Length(Range::new(1e-6, 100.0, "D")),
-        "Largest residual offset along x at which a half counts as docked. Default: the play of the seat, at most 0.05 D.");
+        "Largest residual offset along x at which a half counts as docked. Default: the play of the seat, or 0.05 D if that is smaller.");
     /// `docked.y`
     DOCKED_Y = key(DesignTable::Docked, "y", ValueKind::Length(Range::new(1e-6, 100.0, "D")),
         "Largest residual offset along y at which a half counts as docked. Default as for x.");

@@ -30,12 +30,14 @@ impl Immobility {
             ImmobilityOrder::First => {
                 "first-order immobile: any small displacement raises the COR".to_owned()
             }
-            ImmobilityOrder::Second => format!("second-order immobile: {ways} free to first order{bends}"),
+            ImmobilityOrder::Second => format!(
+                "second-order immobile: in {ways} only the curvature of the contacts raises the COR{bends}"
+            ),
             ImmobilityOrder::Neutral if self.free == 0 => {
                 "first-order immobile, but its smallest slope is almost 0".to_owned()
             }
             ImmobilityOrder::Neutral => "neutral: it can slide without rising".to_owned(),
-            ImmobilityOrder::Unstable => format!("unstable: {ways} free to first order{bends}"),
+            ImmobilityOrder::Unstable => format!("unstable: in {ways} the contacts let the COR fall{bends}"),
         }
     }
 }
@@ -116,7 +118,7 @@ impl<'a> RestDescriptions<'a> {
         above: f64,
         extent: &[Extent],
     ) {
-        document.row("  rests at", format!("{}{}", self.units.pose(pose), self.above(above)));
+        document.row("  typical rest", format!("{}{}", self.units.pose(pose), self.above(above)));
         let wide = self.extent(pose, extent);
         if !wide.is_empty() {
             document.row("  range of rests", wide);
@@ -174,7 +176,7 @@ impl<'a> RestDescriptions<'a> {
         let Examined { back, pushed, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
             return format!(
-                "held by friction alone; displaced in {pushed} random directions, it came back here {back} times"
+                "held by friction alone; {back} of {pushed} small random displacements end in the same group of rests"
             );
         }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
@@ -195,15 +197,15 @@ impl<'a> RestDescriptions<'a> {
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; displaced in {pushed} random directions, it came back here {back} times")
+        format!("{rise}; {back} of {pushed} small random displacements end in the same group of rests")
     }
 
     /// The escape height, with the end of the escape path.
     pub(in crate::run) fn escape(self, climb: f64, to: &str) -> String {
         if climb < NOTHING {
-            format!("0: pushed sideways it {to}")
+            format!("0: pushed sideways it {to} without rising")
         } else {
-            format!("at most {}: lifted by this, it {to}", self.units.fine(climb))
+            format!("at most {}: raised by this, it {to}", self.units.fine(climb))
         }
     }
 
@@ -242,7 +244,7 @@ impl<'a> RestDescriptions<'a> {
             let mut at: Vec<String> = Vec::new();
             for contact in contacts.iter().filter(pair) {
                 let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-                let place = format!("at {fixed} in the fixed, {moving} in the moving half's drawing");
+                let place = format!("at {fixed} in the fixed half's drawing, {moving} in the moving half's");
                 if places.len() < MOST_CONTACTS && !places.contains(&place) {
                     places.push(place.clone());
                     at.push(place);
@@ -256,7 +258,7 @@ impl<'a> RestDescriptions<'a> {
     }
 
     fn drawn(self, feature: &NamedFeature) -> String {
-        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part} (from 0)"));
+        let part = feature.part.map_or_else(String::new, |part| format!(", part {part} (numbered from 0),"));
         format!("{}{part}", self.units.point(feature.drawn_d))
     }
 }

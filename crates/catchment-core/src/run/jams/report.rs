@@ -31,8 +31,8 @@ impl Subject for Jams {
         document.row("method", exact_motions(&poses, self.settings.friction));
         document.section(None).table(self.outcome_table());
         document.paragraph(
-            "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. Jams are grouped by the features that \
-             touch and by nearness.",
+            "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. A jam is a group of rests on the same \
+             features, near each other; symmetric copies count as one. top: the foremost level face of a half; slopes are measured from level.",
         );
         let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {

@@ -103,7 +103,7 @@ impl WindowDetails {
         };
         document.row("nearest failure", format!("{}: {}", units.pose(&worst.error), worst.outcome.word()));
         document.more("the failure nearest to the window, just outside it");
-        if worst.outcome == Outcome::Jammed {
+        if worst.outcome == Outcome::Jammed && worst.end != worst.error {
             document.more(format!("rests at {}", units.pose(&worst.end)));
         }
         // Corners, edges and facets that meet at a point are listed as a single place.
@@ -115,7 +115,7 @@ impl WindowDetails {
         }
         for place in places.iter().take(MOST_TOUCHES) {
             let place = units.point(place.to_array());
-            document.more(format!("contact at {place} from the fixed face's centre"));
+            document.more(format!("contact at {place} from the face centre of the fixed half"));
         }
         match places.len().saturating_sub(MOST_TOUCHES) {
             0 => {}
