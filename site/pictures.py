@@ -2,8 +2,7 @@
 
     python3 site/pictures.py target/release/catchment                  draws all of them again (minutes)
     python3 site/pictures.py target/release/catchment plan validate    those whose names begin so
-    python3 site/pictures.py --check target/debug/catchment            says which the program draws differently now; the quick ones
-    python3 site/pictures.py --check target/debug/catchment all        all of them
+    python3 site/pictures.py --check target/debug/catchment            says which the program draws differently now
 
 site/pictures.json has digests of every picture: of its PNG in docs/, of the SVG that this is drawn from, and of the words in it. A picture is out of date if its
 words are others now, or more than a thousandth of its pixels: sines of another system's library may differ in their last bits. The pictures of the viewer
@@ -22,7 +21,7 @@ import tempfile
 import zlib
 from pathlib import Path
 
-from gallery import QUICK, as_on_the_page
+from gallery import as_on_the_page
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -90,8 +89,6 @@ PICTURES = {
         "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --repeatability 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],
 }
-#: Those that take more than ten seconds on a busy machine.
-LONG = ("chance", "friction", "sweep", "success", "trials")
 #: Those that a browser draws.
 BROWSER = "viewer-"
 
@@ -103,10 +100,6 @@ def commands() -> dict[str, list[str]]:
         options = " ".join(as_on_the_page(design))
         known[f"gallery/{design.stem}"] = [f"run designs/gallery/{design.name} {options} -o out", "out/overview"]
     return known
-
-
-def is_quick(name: str) -> bool:
-    return name.removeprefix("gallery/") in QUICK if name.startswith("gallery/") else name not in LONG
 
 
 def drawn(program: str, steps: list[str], kind: str) -> bytes:
@@ -201,24 +194,24 @@ def doubt(program: str, name: str, steps: list[str], stored: dict[str, str]) -> 
     return f"has other pixels now, {100 * share:.1f} %" if share > CLOSE else None
 
 
-def check(program: str, every: bool) -> None:
+def check(program: str) -> None:
     known, stored = commands(), kept_digests()
     there = {str(path.relative_to(DOCS).with_suffix("")) for path in DOCS.rglob("*.png") if not path.name.startswith(BROWSER)}
     wrong = [f"docs/{name}.png: no command draws it; write one into site/pictures.py" for name in sorted(there - set(known))]
     wrong += [f"docs/{name}.png is missing: python3 site/pictures.py {program} {name}" for name in sorted(set(known) - there)]
-    names = [name for name in sorted(there & set(known)) if every or is_quick(name)]
+    names = sorted(there & set(known))
     for name in names:
         if said := doubt(program, name, known[name], stored.get(name, {})):
             wrong.append(f"docs/{name}.png {said}: python3 site/pictures.py {program} {name}")
     if wrong:
         raise SystemExit("\n".join(wrong))
-    print(f"pictures: {len(names)} of {len(there)} are as the program draws them")
+    print(f"pictures: {len(names)} are as the program draws them")
 
 
 def main() -> None:
     args = sys.argv[1:]
-    if args[:1] == ["--check"] and len(args) in (2, 3) and args[2:] in ([], ["all"]):
-        check(args[1], args[2:] == ["all"])
+    if args[:1] == ["--check"] and len(args) == 2:
+        check(args[1])
         return
     if not args or args[0].startswith("-"):
         raise SystemExit(__doc__)

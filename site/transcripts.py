@@ -1,8 +1,7 @@
 """The console blocks of the README and of docs/, from the program itself.
 
     python3 site/transcripts.py target/release/catchment           writes all blocks again
-    python3 site/transcripts.py target/debug/catchment --check     lists those that differ from what the program prints; without the slow ones
-    python3 site/transcripts.py target/debug/catchment --check all    with the slow ones
+    python3 site/transcripts.py target/debug/catchment --check     lists those that differ from what the program prints
 
 A block ```console whose first line begins with `$ catchment` holds commands and what they print, stderr among it. A command goes on in the next line after `\\`.
 The commands of a page run one after another in a folder of their own (budget-to-window goes on in that of first-dock): it holds two STL files of the repository, its design
@@ -26,20 +25,6 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCK = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
 PAGES = [DOCK, [ROOT / "README.md"], *([page] for page in sorted((ROOT / "docs").glob("*.md")) if page not in DOCK)]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
-#: Commands that take more than some seconds of a debug build, by how they begin.
-SLOW = (
-    "catchment window",
-    "catchment dynamics designs/v-face.toml --draw 'speed=2",
-    "catchment dynamics designs/v-face.toml --draw speed=1",
-    "catchment zraa designs/x-face-3d.toml --beside drop",
-    "catchment friction",
-    "catchment success designs/pyramid-stl.toml",
-    "catchment rests",
-    "catchment run designs/pyramid.toml",
-    "catchment run design.toml",
-    "catchment success my.toml",
-    "catchment export out -o set.vti",
-)
 BLOCK = re.compile(r"^```(console|toml)\n(.*?)^```$", re.M | re.S)
 
 
@@ -80,12 +65,11 @@ def commands(block: str) -> list[tuple[list[str], list[str]]]:
 
 
 class Transcripts:
-    def __init__(self, program: str, with_slow: bool) -> None:
-        self.program, self.with_slow = program, with_slow
+    def __init__(self, program: str) -> None:
+        self.program = program
         self.folder = Path()
         self.ran = 0
         self.wrong: list[str] = []
-        self.left_out = 0
 
     def again(self, page: Path, block: re.Match) -> str:
         """A block as the program prints it."""
@@ -105,9 +89,6 @@ class Transcripts:
     def output(self, page: Path, command: str, shown: list[str]) -> list[str]:
         if not command.startswith("catchment "):
             return shown
-        if command.startswith(SLOW) and not self.with_slow:
-            self.left_out += 1
-            return shown
         begun = time.monotonic()
         printed_lines = printed(self.program, self.folder, command)
         self.ran += 1
@@ -123,10 +104,10 @@ class Transcripts:
 
 
 def main() -> None:
-    if len(sys.argv) not in (2, 3, 4) or sys.argv[2:] not in ([], ["--check"], ["--check", "all"]):
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--check"]):
         raise SystemExit(__doc__)
-    program, compares, every = sys.argv[1], len(sys.argv) > 2, sys.argv[2:] != ["--check"]
-    transcripts = Transcripts(program, every)
+    program, compares = sys.argv[1], len(sys.argv) > 2
+    transcripts = Transcripts(program)
     for pages in PAGES:
         with tempfile.TemporaryDirectory() as home:
             transcripts.folder = Path(home)
@@ -141,7 +122,7 @@ def main() -> None:
     if compares and transcripts.wrong:
         raise SystemExit("\n".join([*transcripts.wrong, f"python3 site/transcripts.py {program}"]))
     changed = "" if compares else f", {len(transcripts.wrong)} blocks changed"
-    print(f"transcripts: {transcripts.ran} commands of {sum(map(len, PAGES))} pages, {transcripts.left_out} slow ones left out{changed}")
+    print(f"transcripts: {transcripts.ran} commands of {sum(map(len, PAGES))} pages{changed}")
 
 
 if __name__ == "__main__":

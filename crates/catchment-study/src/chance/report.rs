@@ -142,23 +142,23 @@ impl Chance {
         }
         let [moving, turning] =
             [drop.damping, drop.angular_damping].map(|rate| format!("{} 1/s", without_zeros(rate)));
-        document.row("damping", format!("{moving}, of turning {turning}"));
+        document.row("damping", format!("{moving} (linear), {turning} (angular)"));
         let push = match drop.push {
             _ if self.settings.held => {
                 let units = DesignUnits::of(design);
                 let coasts = self.coasting_d.map_or_else(String::new, |coasting| {
                     let length = without_zeros(coasting * units.scale());
                     format!(
-                        "; at the mean speed it coasts {length} {} before damping has taken it",
+                        "; not driven, it would coast {length} {}",
                         units.unit()
                     )
                 });
-                format!("as damping balances at its speed{coasts}")
+                format!("by the force that damping balances at the approach speed{coasts}")
             }
             Push::Force(force) => format!("by a force of {} kg·D/s²", without_zeros(force)),
             Push::Gravity(gravity) => format!("by gravity of {} D/s²", without_zeros(gravity)),
         };
-        document.row("pushed", push);
+        document.row("driven", push);
     }
 
     fn speeds(&self, design: &Design) -> Table {
@@ -209,14 +209,14 @@ impl Overall {
         let plain =
             if self.plain_trials.is_finite() { self.plain_trials.round() as usize } else { usize::MAX };
         let sure = if self.grid_cells > 0 && plain < usize::MAX {
-            format!("; as sure as {} plain ones", grouped(plain))
+            format!(", stratified: as precise as {} without strata", grouped(plain))
         } else {
             String::new()
         };
         document.more(format!("{} trials{sure}", grouped(self.trials)));
         let outcomes = Outcome::ALL.iter().zip(self.outcomes).filter(|(_, share)| *share > 0.0);
         let outcomes: Vec<String> =
-            outcomes.map(|(outcome, share)| format!("{} {}", outcome.name(), in_percent(share))).collect();
+            outcomes.map(|(outcome, share)| format!("{} {}", outcome.word(), in_percent(share))).collect();
         document.row("outcomes", outcomes.join(", "));
         let [lo, hi] = self.quasi_static_ci95.map(in_percent);
         let still = in_percent(self.quasi_static);
