@@ -44,8 +44,8 @@ impl Failure {
     /// Everything that is wrong with the text of an option.
     pub(crate) fn of_option(option: &str, text: &str, refusal: Diagnostics) -> Self {
         let count = refusal.list.len() + refusal.omitted;
-        let reports = refusal.list.into_iter().map(|objection| {
-            Report::new(miette_diagnostic(&format!("{option}: {}", objection.message), objection.help))
+        let reports = refusal.list.into_iter().map(|diagnostic| {
+            Report::new(miette_diagnostic(&format!("{option}: {}", diagnostic.message), diagnostic.help))
         });
         let shown: String = escaped(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));

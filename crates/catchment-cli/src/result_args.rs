@@ -484,12 +484,12 @@ pub(crate) fn study<T: Subject>(
 
 /// Warnings about a problem, before anything is computed.
 pub(crate) fn warnings(problem: &Problem) -> Vec<WarningReport> {
-    problem.objections().iter().map(WarningReport::note).collect()
+    problem.seat_warnings().iter().map(WarningReport::note).collect()
 }
 
 /// The same as lines of stderr, for reports that do not hold it.
-pub(crate) fn objections(problem: &Problem) -> Vec<String> {
-    problem.objections().iter().map(|objection| format!("warning: {objection}")).collect()
+pub(crate) fn seat_warnings(problem: &Problem) -> Vec<String> {
+    problem.seat_warnings().iter().map(|warning| format!("warning: {warning}")).collect()
 }
 
 const NOTHING_TO_REPLACE: &str = "--force replaces files, and none is to be written";

@@ -107,7 +107,7 @@ impl Problem {
 
     /// Warnings about the mated pose, as sentences.
     fn doubts(&self) -> Vec<String> {
-        self.inner.objections()
+        self.inner.seat_warnings()
     }
 
     /// Names of the free errors, with the half-widths of the error box, in D and radians.

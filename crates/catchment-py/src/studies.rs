@@ -23,7 +23,7 @@ fn timing(started: &Stopwatch, exec: &catchment::exec::Exec) -> Timing {
 }
 
 fn doubts(problem: &catchment::problem::Problem) -> Vec<WarningReport> {
-    problem.objections().iter().map(WarningReport::note).collect()
+    problem.seat_warnings().iter().map(WarningReport::note).collect()
 }
 
 #[pymethods]

@@ -200,8 +200,8 @@ impl<'a> OutcomesReport<'a> {
         doubts: Option<&'a MayStick<'a>>,
     ) -> Self {
         let FollowedPoses { acceptance, ends, finished } = followed;
-        let objections = problem.objections();
-        let notes = objections.iter().map(WarningReport::note);
+        let warnings = problem.seat_warnings();
+        let notes = warnings.iter().map(WarningReport::note);
         let warnings = notes.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
         let reason = |end: &End| FailureReason::of(problem, end.outcome, &end.error);
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());

@@ -102,7 +102,7 @@ impl TraceReport {
             end: waypoints.last().map(|w| w.error),
             waypoints,
         };
-        let warnings = problem.objections().iter().map(WarningReport::note).collect();
+        let warnings = problem.seat_warnings().iter().map(WarningReport::note).collect();
         Self::of(body, warnings, None)
     }
 

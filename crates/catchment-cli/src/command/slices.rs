@@ -6,7 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::result_args::{ResultArgs, objections};
+use crate::result_args::{ResultArgs, seat_warnings};
 use catchment::document::Subject;
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         save_slices(&found, folder, &problem, &report, exec)?;
         Ok(format!(", {} Zarr groups", found.slices.len()))
     };
-    let mut notes = objections(&problem);
+    let mut notes = seat_warnings(&problem);
     notes.extend(output.write(&report, picture, groups, exec)?);
     drop(running);
     output.print(&report, &notes)

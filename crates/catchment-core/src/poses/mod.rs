@@ -55,7 +55,7 @@ pub use text::{LARGEST_TEXT, TextError, read_text};
 use crate::design::{Diagnostic, Diagnostics};
 use std::ops::Range;
 
-/// Most objections that are spelled out.
+/// Most diagnostics that are spelled out.
 const MOST_OBJECTIONS: usize = 20;
 
 /// An error, before its place is known.
@@ -94,7 +94,7 @@ impl PoseDiagnostics {
         if self.list.is_empty() {
             return Ok(());
         }
-        self.list.sort_by_key(|objection| objection.span.as_ref().map(|span| span.start));
+        self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map(|span| span.start));
         Err(Diagnostics { source: None, list: self.list, omitted: self.omitted })
     }
 }

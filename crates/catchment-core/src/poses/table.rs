@@ -89,7 +89,7 @@ impl<'a> PoseTable<'a> {
                 break;
             } else {
                 let error = row(&record, &columns, at, design).unwrap_or_else(|faults| {
-                    // Once for all objections to the row, and only if there are any.
+                    // Once for all diagnostics to the row, and only if there are any.
                     let spans = spans(text, start);
                     for (dof, fault, locked) in faults {
                         let said = locked && std::mem::replace(&mut locked_said[dof.index()], true);

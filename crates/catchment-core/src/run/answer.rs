@@ -109,7 +109,7 @@ impl Answer {
             warnings.push(Warning::Note { text: format!("there is no window: {error}") });
         }
         warnings.extend(self.seating.warnings(&self.problem));
-        warnings.extend(self.problem.objections().into_iter().map(|text| Warning::Note { text }));
+        warnings.extend(self.problem.seat_warnings().into_iter().map(|text| Warning::Note { text }));
         warnings
     }
 }

@@ -216,7 +216,7 @@ impl Problem {
 
     /// Warnings about the mated pose, as sentences: with the rest that the half reaches instead, if it is not
     /// stable.
-    pub fn objections(&self) -> Vec<String> {
+    pub fn seat_warnings(&self) -> Vec<String> {
         let mut said = self.said();
         if !self.doubts().iter().any(is_unstable) {
             said.extend(self.fallen());

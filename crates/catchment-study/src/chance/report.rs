@@ -148,10 +148,7 @@ impl Chance {
                 let units = DesignUnits::of(design);
                 let coasts = self.coasting_d.map_or_else(String::new, |coasting| {
                     let length = without_zeros(coasting * units.scale());
-                    format!(
-                        "; not driven, it would coast {length} {}",
-                        units.unit()
-                    )
+                    format!("; not driven, it would coast {length} {}", units.unit())
                 });
                 format!("by the force that damping balances at the approach speed{coasts}")
             }

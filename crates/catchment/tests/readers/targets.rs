@@ -152,7 +152,7 @@ fn mesh_treated(name: &str, bytes: &[u8], treatment: MeshPreparation) -> bool {
     }
 }
 
-/// A table of poses has as many errors as rows, all finite, and objections lie in the text; so has one of trials, each of them once.
+/// A table of poses has as many errors as rows, all finite, and diagnostics lie in the text; so has one of trials, each of them once.
 pub(crate) fn pose_table(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
@@ -170,7 +170,7 @@ pub(crate) fn pose_table(bytes: &[u8]) {
             Err(diagnostics) => {
                 assert!(!diagnostics.list.is_empty());
                 for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
-                    assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+                    assert!(text.get(span).is_some(), "a diagnostic is not a piece of the text");
                 }
             }
         }
@@ -184,7 +184,7 @@ pub(crate) fn pose_table(bytes: &[u8]) {
             Err(diagnostics) => {
                 assert!(!diagnostics.list.is_empty());
                 for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
-                    assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+                    assert!(text.get(span).is_some(), "a diagnostic is not a piece of the text");
                 }
             }
         }
@@ -219,7 +219,7 @@ pub(crate) fn robots(bytes: &[u8]) {
             assert!(!diagnostics.list.is_empty());
             let source = diagnostics.source.as_ref().expect("a refusal names its text");
             for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
-                assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
+                assert!(source.text.get(span).is_some(), "a diagnostic is not a piece of the text");
             }
         }
     }
@@ -243,7 +243,7 @@ pub(crate) fn dynamics(bytes: &[u8]) {
             assert!(!diagnostics.list.is_empty());
             let source = diagnostics.source.as_ref().expect("a refusal names its text");
             for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
-                assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
+                assert!(source.text.get(span).is_some(), "a diagnostic is not a piece of the text");
             }
         }
     }
@@ -259,7 +259,7 @@ pub(crate) fn line(bytes: &[u8]) {
     if let Err(diagnostics) = parse_draw(&text, &design) {
         assert!(!diagnostics.list.is_empty());
         for span in diagnostics.list.iter().filter_map(|diagnostic| diagnostic.span.clone()) {
-            assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+            assert!(text.get(span).is_some(), "a diagnostic is not a piece of the text");
         }
     }
     if let Ok(quantity) = text.parse::<Quantity>() {
