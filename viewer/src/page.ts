@@ -60,7 +60,7 @@ export interface Contact { points_d: Point[]; normal: Point; fixed: Feature; mov
 export interface Jam {
     of_box: Share; of_jams: number; of_failures: number; pose: NamedPose; places: number; height_d: number; above_mated_d: number;
     contacts: Contact[];
-    examined: { firmness: string; rise_at_most_d: number | null; way_out: { climb_at_most_d: number; to: Outcome } | null } | null;
+    examined: { stability: string; rise_at_most_d: number | null; escape_path: { climb_at_most_d: number; to: Outcome } | null } | null;
 }
 export interface Jams { motions: number; outcomes: Record<Outcome, Share>; jams: Jam[]; warnings: { message: string }[] }
 export interface Window {

@@ -84,9 +84,9 @@ export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose
     const items = jams.jams.slice(0, 12).map((jam) => {
         const pose = listed(jam.pose);
         const contacts = [...new Set(jam.contacts.map((contact) => `${drawn(contact.moving)} on ${drawn(contact.fixed)}`))];
-        const held = jam.examined?.way_out
-            ? `${jam.examined.firmness}; escape height at most ${units.size(jam.examined.way_out.climb_at_most_d)} (then ${jam.examined.way_out.to})`
-            : (jam.examined?.firmness ?? "");
+        const held = jam.examined?.escape_path
+            ? `${jam.examined.stability}; escape height at most ${units.size(jam.examined.escape_path.climb_at_most_d)} (then ${jam.examined.escape_path.to})`
+            : (jam.examined?.stability ?? "");
         return make("li", {}, make("button", { type: "button", class: "jam", onclick: () => show(pose, jam) },
             make("b", {}, `${percent(jam.of_box.share)} of the error box`),
             make("small", {}, `95 % CI ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),

@@ -35,7 +35,7 @@ impl Report {
             Some(found) => report.with_certificate(found),
             None => report,
         };
-        report.joined = answer.by_products.joined;
+        report.inherited = answer.by_products.inherited;
         if let (Some(distribution), Some(success)) = (&answer.run.errors, &answer.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
@@ -109,6 +109,6 @@ fn absent(run: &Run, problem: &Problem) -> Result<Vec<&'static str>, RunError> {
         ("acceptance.sample", plan.sample.is_some()),
     ];
     let places = places.into_iter().filter(|(_, is_there)| !is_there).map(|(place, _)| place);
-    let products = ["basins", "watersheds", "joined", "partition", "certificate"];
+    let products = ["basins", "watersheds", "inherited", "partition", "certificate"];
     Ok(places.chain(products.into_iter().filter(|name| !by_products.contains(name))).collect())
 }

@@ -1,7 +1,7 @@
 //! The common head of every JSON report, printed or stored.
 //!
 //! ```text
-//!   { "schema": 3, "catchment": "0.1.0", "kind": "run",     version of the layout, program, kind of result
+//!   { "schema": 4, "catchment": "0.1.0", "kind": "run",     version of the layout, program, kind of result
 //!     … fields of the kind, at the top level …
 //!     "warnings": […], "timing": … }                        timing: the only part that differs between equal runs
 //! ```
@@ -17,10 +17,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{Deref, DerefMut};
 
 /// Version of the layout that is written.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// The oldest layout that is read: 3 added `kind`, and a run of 2 lacks nothing else.
-pub const OLDEST: u32 = 2;
+pub const OLDEST: u32 = 3;
 
 /// Content of a report of a kind, besides its head.
 pub trait ReportBody {
@@ -161,6 +161,9 @@ impl<'de, T: ReportBody + Deserialize<'de>> Deserialize<'de> for ReportEnvelope<
     }
 }
 
+/// The page that lists what was renamed.
+const RENAMED: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/versions.md");
+
 /// The number of a layout that this program reads.
 struct Known;
 
@@ -174,7 +177,7 @@ impl<'de> Deserialize<'de> for Known {
             ))),
             older => Err(D::Error::custom(format_args!(
                 "its schema is {older}, this version of catchment reads from {OLDEST} to {SCHEMA}; compute the result \
-                 again"
+                 again, or see {RENAMED}"
             ))),
         }
     }

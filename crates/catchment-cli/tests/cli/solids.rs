@@ -61,7 +61,10 @@ fn watersheds_are_counted_before_merging_and_after() {
         let required = ["--require", "watersheds.merged<=3", "--require", "watersheds.first>=2"];
         assert!(run(home.path(), &[&args[..], &required].concat()).starts_with("exit 0\n"));
         let told = run(home.path(), &[&args[..], &["--verbose"]].concat());
-        assert!(told.contains("first labels") && told.contains("of the cells joined another"), "{told}");
+        assert!(
+            told.contains("first labels") && told.contains("of the cells changed basin by merging"),
+            "{told}"
+        );
         let out = home.path().join(method);
         let folder = [&args[..], &["-o", out.to_str().unwrap()]].concat();
         assert!(run(home.path(), &folder).starts_with("exit 0\n"));

@@ -22,7 +22,7 @@ use crate::design::Design;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape};
 use crate::method::certified::BoxCertificate;
-use crate::method::confluence::Joined;
+use crate::method::confluence::InheritedLabels;
 use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
 use crate::method::registry::Method;
@@ -227,7 +227,7 @@ pub struct ByProducts {
     /// Certified results.
     pub certificate: Option<BoxCertificate>,
     /// How many cells were decided by others, and how often that was wrong.
-    pub joined: Option<Joined>,
+    pub inherited: Option<InheritedLabels>,
 }
 
 impl MethodOutput {

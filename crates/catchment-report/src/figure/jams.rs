@@ -67,13 +67,13 @@ pub fn jams(design: &Design, found: &Jams, connector: &Connector) -> Result<Pict
 
 fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> Panel<'a> {
     let tail = jam.examined.map(|examined| {
-        let level = match examined.firmness {
+        let level = match examined.stability {
             _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
             Stability::Level => "near-level",
-            firmness => firmness.name(),
+            stability => stability.name(),
         };
         let way = examined
-            .way_out
+            .escape_path
             .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(design, way.climb)));
         format!("{level}{way}")
     });
@@ -123,7 +123,7 @@ fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestPlace) -> P
     let mut tail = Vec::new();
     if let Some(examined) = &rest.examined {
         tail.extend(examined.immobility.map(|held| held.words()));
-        tail.push(report.way_out(&report.design, rest));
+        tail.push(report.escape_path(&report.design, rest));
     }
     Panel {
         head: format!("rest {number}:  basin {} of the box{docked}", tenths(rest.of_box.share)),

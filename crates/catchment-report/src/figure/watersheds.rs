@@ -70,8 +70,11 @@ pub fn watersheds(
     map.paint(&mut svg, &frame, &merged)?;
     svg.path(&map.border(&frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
     frame.draw(&mut svg);
-    let told =
-        format!("{} left; {} of all cells joined another", grouped(counts.merged), percent(moved_share));
+    let told = format!(
+        "{} left; {} of all cells changed basin by merging",
+        grouped(counts.merged),
+        percent(moved_share)
+    );
     svg.text([1040.0, below], LABEL, Anchor::Start, INK, &told);
     Legend::of(&map, false).draw(&mut svg, [720.0, below + 26.0]);
     Ok(Picture::of(svg))

@@ -143,13 +143,13 @@ impl RunBody {
                 [found.counts.first, found.counts.merged, found.counts.dams].map(grouped);
             let dams = if found.counts.dams > 0 { format!(" (and {dams} dam cells)") } else { String::new() };
             document.row("watersheds", format!("{first} first labels{dams}, {merged} after merging"));
-            document.more(format!("{} of the cells joined another", percent(found.moved_share)));
+            document.more(format!("{} of the cells changed basin by merging", percent(found.moved_share)));
         }
-        if let Some(found) = &self.joined {
-            let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
+        if let Some(found) = &self.inherited {
+            let [inherited, cells, tried] = [found.inherited, found.cells, found.tried].map(grouped);
             document.row(
                 "inherited",
-                format!("{joined} of {cells} contact cells inherit a neighbour's outcome;"),
+                format!("{inherited} of {cells} contact cells inherit a neighbour's outcome;"),
             );
             let most = percent(found.wrong_ci95[1]);
             document.more(match found.tried {
@@ -231,8 +231,8 @@ impl RunBody {
             document.row("ONAA edge", edge(onaa));
         }
         if let Some(sample) = &a.sample {
-            let [lo, hi] = sample.differing_ci95.map(percent);
-            let share = percent(sample.differing);
+            let [lo, hi] = sample.misclassified_ci95.map(percent);
+            let share = percent(sample.misclassified);
             document
                 .row("misclassified", format!("{share} of the error box, by the grid (95 % CI {lo} … {hi})"));
         }

@@ -12,7 +12,7 @@ use catchment_core::merit::sum::Sum;
 use catchment_core::merit::tolerance::Tolerance;
 use catchment_core::merit::{MeritError, Merits};
 use catchment_core::method::certified::BoxCertificate;
-use catchment_core::method::confluence::Joined;
+use catchment_core::method::confluence::InheritedLabels;
 use catchment_core::pose::Dof;
 use catchment_core::run::jams::Jams;
 use catchment_core::run::window::{HalfWidths, ToleranceWindow, WindowDetails};
@@ -62,8 +62,8 @@ pub struct RunBody {
     pub certificate: Option<BoxCertificate>,
     /// Number of cells with an inherited label, and how often it was wrong; null for all methods but
     /// `confluence`, and in reports of older versions.
-    #[serde(default)]
-    pub joined: Option<Joined>,
+    #[serde(default, alias = "joined")]
+    pub inherited: Option<InheritedLabels>,
     /// Rests outside the seat; null if not requested, and in reports of older versions.
     #[serde(default)]
     pub jams: Option<Jams>,
@@ -359,7 +359,7 @@ impl Report {
             watersheds: None,
             partition: None,
             certificate: None,
-            joined: None,
+            inherited: None,
             jams: None,
             window: None,
             seat: None,

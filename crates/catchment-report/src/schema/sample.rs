@@ -23,11 +23,11 @@ pub struct SampleReport {
     pub descents: usize,
     /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of older
     /// versions.
-    #[serde(default = "unknown")]
-    pub differing: f64,
+    #[serde(default = "unknown", alias = "differing")]
+    pub misclassified: f64,
     /// Its 95 % interval.
-    #[serde(default = "open")]
-    pub differing_ci95: [f64; 2],
+    #[serde(default = "open", alias = "differing_ci95")]
+    pub misclassified_ci95: [f64; 2],
     /// The strata.
     pub strata: Vec<Stratum>,
 }
@@ -68,8 +68,8 @@ impl Report {
             settings: settings.clone(),
             seed: *seed,
             descents: found.descents,
-            differing: found.differing,
-            differing_ci95: found.differing_ci95,
+            misclassified: found.misclassified,
+            misclassified_ci95: found.misclassified_ci95,
             strata: found.strata.clone(),
         });
         self

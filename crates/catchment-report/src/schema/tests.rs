@@ -27,7 +27,7 @@ fn what_is_written_reads_back_equal() {
 #[test]
 fn the_contract_names_its_fields() {
     let value: serde_json::Value = serde_json::from_str(&report().to_json().unwrap()).unwrap();
-    assert_eq!(value["schema"], 3);
+    assert_eq!(value["schema"], 4);
     assert_eq!(value["kind"], "run");
     assert_eq!(value["acceptance"]["sum"], value["acceptance"]["sum_grid"]);
     assert!(value["acceptance"]["sum_ci95"].is_null());

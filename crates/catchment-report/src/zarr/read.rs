@@ -127,8 +127,8 @@ mod tests {
         );
         let lacking = message("\"acceptance\"", "\"acceptence\"");
         assert!(lacking.contains("its report cannot be read: missing field `acceptance`"), "{lacking}");
-        let newer = message("\"schema\": 3", "\"schema\": 4");
-        assert!(newer.contains("written by a newer version of catchment: its schema is 4"), "{newer}");
+        let newer = message("\"schema\": 4", "\"schema\": 5");
+        assert!(newer.contains("written by a newer version of catchment: its schema is 5"), "{newer}");
         assert!(message("\"catchment\": 1,", "").contains("not written by this program"));
         let nowhere = read(home.path(), &Exec::new()).unwrap_err().to_string();
         assert!(nowhere.starts_with("cannot read"), "{nowhere}");

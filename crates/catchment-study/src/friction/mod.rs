@@ -20,7 +20,7 @@
 //!
 //! Rigid halves under Coulomb's law and slightly compliant halves, as real ones and those of engines are, may
 //! differ at some poses. Two kinds of such poses are counted: those that dock with a tenth less friction
-//! (`hardly_held`), and those that *wedge* in a jam ([`FrictionAmbiguity::wedges`]).
+//! (`barely_stuck`), and those that *wedge* in a jam ([`FrictionAmbiguity::wedges`]).
 //!
 //! Not promised: that a pose lost at a coefficient is lost at all larger coefficients; coefficients
 //! between the given ones are not tested.
@@ -119,7 +119,7 @@ pub struct FrictionLevel {
     /// Poses that dock, although Coulomb's law also permits stiction during their motion.
     pub may_stick: usize,
     /// Lost poses that dock with 10 % less friction: slightly compliant halves may dock there as well.
-    pub hardly_held: usize,
+    pub barely_stuck: usize,
     /// Poses that jam and wedge: some contact forces would also resist a straight pull.
     pub wedged: usize,
     /// Poses that dock according to the static test along the frictionless motion.
@@ -381,7 +381,7 @@ fn rungs(frictions: &[f64], ways: &[PoseByFriction]) -> Vec<FrictionLevel> {
             lost: count(&|way| docked(way) && !docks(way)),
             gained: count(&|way| !docked(way) && docks(way)),
             may_stick: count(&|way| docks(way) && at(way).1.may_stick),
-            hardly_held: count(&|way| !docks(way) && way.docks_with(friction / HARDLY)),
+            barely_stuck: count(&|way| !docks(way) && way.docks_with(friction / HARDLY)),
             wedged: count(&|way| at(way).1.wedges),
             static_docks: count(&|way| by_statics(way)),
             static_wrong: count(&|way| by_statics(way) != docks(way)),

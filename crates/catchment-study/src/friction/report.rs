@@ -23,14 +23,15 @@ impl Subject for Friction {
         // Some poses always dock only just; the share is reported if it exceeds the confidence interval.
         let hardly = self.curve.iter().filter(|rung| {
             let [lo, hi] = rung.aligned.ci95;
-            rung.hardly_held as f64 > 0.5 * (hi - lo) * self.motions as f64
+            rung.barely_stuck as f64 > 0.5 * (hi - lo) * self.motions as f64
         });
-        if let Some(FrictionLevel { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held)
+        if let Some(FrictionLevel { friction, barely_stuck, .. }) =
+            hardly.max_by_key(|rung| rung.barely_stuck)
         {
             warnings.push(note(format!(
                 "{} poses are lost at μ = {friction} and dock at 0.9 of it: rigid halves stick there; compliant halves, as real ones and those of physics \
                  engines, may slip",
-                grouped(*hardly_held),
+                grouped(*barely_stuck),
             )));
         }
         if let Some(friction) = self.wedges_from() {
@@ -81,7 +82,7 @@ impl Friction {
             Column::new("lost").key("lost"),
             Column::new("gained").key("gained"),
             Column::new("may stick").key("may_stick"),
-            Column::new("barely stuck").key("hardly_held"),
+            Column::new("barely stuck").key("barely_stuck"),
             Column::data("wedged"),
             Column::data("static_docks"),
             Column::data("static_wrong"),
@@ -100,7 +101,7 @@ impl Friction {
                 against(rung.lost),
                 against(rung.gained),
                 against(rung.may_stick),
-                against(rung.hardly_held),
+                against(rung.barely_stuck),
                 rung.wedged.into(),
                 rung.static_docks.into(),
                 rung.static_wrong.into(),

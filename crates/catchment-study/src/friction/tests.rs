@@ -28,7 +28,7 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
         for tally in &found.curve {
             let friction = &tally.friction;
             let is_near = *friction > slope && *friction < HARDLY * slope;
-            assert_eq!(tally.hardly_held, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
+            assert_eq!(tally.barely_stuck, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
         }
         let last = found.curve[4];
         // Poses that start within the depth of the seat dock without motion.
@@ -66,7 +66,7 @@ fn tallies_add_up_and_threads_change_nothing() {
         );
         assert_eq!(tally.aligned.count + tally.lost, docked + tally.gained, "{friction}");
         assert!(tally.may_stick <= tally.aligned.count && tally.static_docks <= docked);
-        assert!(tally.wedged <= tally.jammed.count && tally.hardly_held <= tally.lost);
+        assert!(tally.wedged <= tally.jammed.count && tally.barely_stuck <= tally.lost);
     }
     // Up to less friction more of them dock still.
     assert!(

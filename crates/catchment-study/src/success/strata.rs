@@ -84,7 +84,7 @@ impl Strata {
         let (outcomes, motions) = if is_whole {
             let settings = confluence::ConfluenceSettings::default();
             let labels = confluence::run(problem.pair(), &grid, &settings, exec)?;
-            (labels.acceptance(exec).outcomes, labels.joined.motions + labels.joined.tried)
+            (labels.acceptance(exec).outcomes, labels.inherited.motions + labels.inherited.tried)
         } else {
             let settings = descent::DescentSettings::default();
             let (found, _) = descent::run(problem.pair(), Domain::Grid(grid.clone()), &settings, exec)?;

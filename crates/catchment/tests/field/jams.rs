@@ -29,7 +29,7 @@ fn a_peg_stands_on_the_plate() {
     let (names, share) = foremost(&found);
     assert_eq!(names, "top on top");
     assert!(share > 0.8, "{share}");
-    assert_eq!(found.jams[0].examined.unwrap().firmness, Stability::Level);
+    assert_eq!(found.jams[0].examined.unwrap().stability, Stability::Level);
 }
 
 /// Three balls in three grooves: a ball that misses its groove lies on the top of a block.

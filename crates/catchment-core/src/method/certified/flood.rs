@@ -249,10 +249,10 @@ fn floor(cell: &Cell) -> Option<f64> {
 /// # Errors
 /// [`Cancelled`] if a stop is requested.
 pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<EscapeRoute, Cancelled> {
-    let way_out = EscapeRoute::find(tree, seat, exec)?;
-    let level = way_out.level;
+    let route = EscapeRoute::find(tree, seat, exec)?;
+    let level = route.level;
     // Beyond the pass, at the level itself, cells of any depth may lead elsewhere.
-    for (number, _) in way_out.inside.iter().filter(|(_, way)| *way < level) {
+    for (number, _) in route.inside.iter().filter(|(_, way)| *way < level) {
         let cell = &mut tree.cells[*number];
         if cell.height.is_some_and(|height| height.up < level) {
             cell.label = Some(Label::Yes);
@@ -282,7 +282,7 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Esc
             cell.label = Some(Label::Leaves);
         }
     }
-    Ok(way_out)
+    Ok(route)
 }
 
 /// Lower and upper bound on the retention: the height above the mated height that a half in the seat must

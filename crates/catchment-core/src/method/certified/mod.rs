@@ -249,8 +249,8 @@ pub(crate) fn certify(
     // The bounds on the retention are tightest once labels are known.
     let last = (tree.cells.len() + at_last).min(boxes);
     loop {
-        let way_out = EscapeRoute::find(&tree, &seat, exec)?;
-        let mut in_the_way = coarse(&tree, &way_out);
+        let route = EscapeRoute::find(&tree, &seat, exec)?;
+        let mut in_the_way = coarse(&tree, &route);
         let room = if is_over() { 0 } else { last.saturating_sub(tree.cells.len()) };
         in_the_way.truncate(room >> tree.axes.len());
         if in_the_way.is_empty() {
@@ -279,8 +279,8 @@ fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
 }
 
 /// The blocking boxes of the seat's part that can still be halved.
-fn coarse(tree: &Tree, way_out: &EscapeRoute) -> Vec<usize> {
-    way_out.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
+fn coarse(tree: &Tree, route: &EscapeRoute) -> Vec<usize> {
+    route.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
 }
 
 /// Which boxes to halve: those in the way of the seat's own part, those about the mated pose, the largest of those that are undecided, and the

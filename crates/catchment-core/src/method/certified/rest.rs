@@ -83,11 +83,11 @@ fn depth(
     let seat = Seat { mated: f64::NEG_INFINITY, level, holds: &holds, home: None, meets: &meets };
     let most = tree.cells.len() + BOXES;
     loop {
-        let way_out = EscapeRoute::find(tree, &seat, exec)?;
-        let mut in_the_way = coarse(tree, &way_out);
+        let route = EscapeRoute::find(tree, &seat, exec)?;
+        let mut in_the_way = coarse(tree, &route);
         in_the_way.truncate(most.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {
-            return Ok(Some(way_out.level).filter(|level| level.is_finite()));
+            return Ok(Some(route.level).filter(|level| level.is_finite()));
         }
         halve(tree, &in_the_way, pair, bodies, exec)?;
     }

@@ -77,12 +77,12 @@ impl DecisionMethod for ConfluenceSettings {
     }
 
     fn by_products(&self) -> &'static [&'static str] {
-        &["joined"]
+        &["inherited"]
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<MethodOutput, DecideError> {
         let labels = run(problem.pair(), grid_of(&INFO, domain)?, self, exec)?;
-        let by_products = ByProducts { joined: Some(labels.joined), ..ByProducts::default() };
+        let by_products = ByProducts { inherited: Some(labels.inherited), ..ByProducts::default() };
         // A clock that ended nothing has no part in the answer.
         let budget_s = self.budget_s.filter(|_| labels.unreached() > 0);
         let settings = Self { budget_s, ..self.clone() }.settings();

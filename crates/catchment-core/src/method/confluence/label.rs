@@ -21,7 +21,7 @@ impl Label {
     }
 
     /// Inherited from the centres around the motion, or from the nearest ones if it has left the box.
-    pub(super) const fn joined(outcome: Outcome, is_beyond: bool) -> Self {
+    pub(super) const fn inherited(outcome: Outcome, is_beyond: bool) -> Self {
         Self(outcome as u8 | Self::JOINED | if is_beyond { Self::BEYOND } else { 0 })
     }
 
@@ -29,7 +29,7 @@ impl Label {
         self.0 != 0
     }
 
-    pub(super) const fn has_joined(self) -> bool {
+    pub(super) const fn has_inherited(self) -> bool {
         self.0 & Self::JOINED != 0
     }
 
@@ -60,10 +60,12 @@ mod tests {
     fn a_label_keeps_its_outcome_however_it_is_known() {
         assert!(!Label::UNKNOWN.is_known());
         for outcome in Outcome::ALL {
-            let labels = [Label::own(outcome), Label::joined(outcome, false), Label::joined(outcome, true)];
-            for (label, [joined, beyond]) in labels.into_iter().zip([[false; 2], [true, false], [true; 2]]) {
+            let labels =
+                [Label::own(outcome), Label::inherited(outcome, false), Label::inherited(outcome, true)];
+            for (label, [inherited, beyond]) in labels.into_iter().zip([[false; 2], [true, false], [true; 2]])
+            {
                 assert!(label.is_known() && label.outcome() == outcome);
-                assert_eq!([label.has_joined(), label.has_joined_beyond()], [joined, beyond]);
+                assert_eq!([label.has_inherited(), label.has_joined_beyond()], [inherited, beyond]);
             }
         }
     }

@@ -8,7 +8,7 @@
 
 use super::label::Label;
 use super::neighbours::Neighbours;
-use super::{ConfluenceSettings, Joined, STAGE};
+use super::{ConfluenceSettings, InheritedLabels, STAGE};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, Stopwatch};
@@ -45,7 +45,7 @@ const SEED: u64 = 0xc0f1;
 
 impl Labeller<'_> {
     /// Labels all kept cells.
-    pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, Joined), Cancelled> {
+    pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, InheritedLabels), Cancelled> {
         let DescentDirections { grid, fold, heights, below } = self.falls;
         let touches = |cell: &u32| below[*cell as usize] != DescentDirections::NOTHING;
         let mut order: Vec<u32> = (0..below.len() as u32).filter(touches).collect();
@@ -62,7 +62,7 @@ impl Labeller<'_> {
         // If a free error is not an axis of the grid, motions leave the grid, so cells cannot inherit
         // outcomes.
         let joins = self.pair.alignment.free.iter().all(|dof| grid.axis(dof).is_some());
-        let mut told = Joined { cells: order.len(), ..Joined::default() };
+        let mut told = InheritedLabels { cells: order.len(), ..InheritedLabels::default() };
         let size = order.len().div_ceil(BATCHES).clamp(LEAST_BATCH, BATCH);
         for (number, batch) in order.chunks(size).enumerate() {
             if self.is_late() || self.settings.motions.is_some_and(|most| told.motions >= most) {
@@ -85,7 +85,7 @@ impl Labeller<'_> {
         }
         drop(order);
         told.motions += self.mend(&mut labels, exec)?;
-        told.joined = labels.iter().filter(|label| label.has_joined()).count();
+        told.inherited = labels.iter().filter(|label| label.has_inherited()).count();
         self.judge(&labels, &mut told, exec)?;
         Ok((labels, told))
     }
@@ -144,16 +144,16 @@ impl Labeller<'_> {
         // At its start a motion is among the neighbours of its cell anyway; inheritance begins when it moves
         // on.
         let mut base = around.base(&centre);
-        let mut joined = None;
+        let mut inherited = None;
         let outcome = follower.follow_until(&centre, |error| {
             let now = around.base(error);
             if now != base {
                 base = now;
-                joined = around.agreed(&base, labels, 0);
+                inherited = around.agreed(&base, labels, 0);
             }
-            joined.map(Label::outcome)
+            inherited.map(Label::outcome)
         });
-        (joined.unwrap_or(Label::own(outcome)), true)
+        (inherited.unwrap_or(Label::own(outcome)), true)
     }
 
     /// Follows the neighbours of thin jams to their end, if their labels were inherited, until no further
@@ -171,7 +171,7 @@ impl Labeller<'_> {
             let is_thin = |cell: &u32| {
                 self.sides(*cell).any(|sides| !sides.into_iter().flatten().any(|side| label(&side).jams()))
             };
-            let is_open = |cell: &u32| label(cell).has_joined() && !label(cell).jams();
+            let is_open = |cell: &u32| label(cell).has_inherited() && !label(cell).jams();
             let faces = |cell: &u32| self.sides(*cell).flatten().flatten().collect::<Vec<u32>>();
             let beside = |cell: &u32| if are_rare { self.near(*cell) } else { faces(cell) };
             let near = |cell: &u32| if is_thin(cell) { beside(cell) } else { Vec::new() };
@@ -226,7 +226,7 @@ impl Labeller<'_> {
     }
 
     /// Follows some of the cells with inherited labels to their end: a random sample, or all if they are few.
-    fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
+    fn judge(&self, labels: &[Label], told: &mut InheritedLabels, exec: &Exec) -> Result<(), Cancelled> {
         let DescentDirections { grid, fold, .. } = self.falls;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
         let stream = Stream::new(SEED);
@@ -236,7 +236,7 @@ impl Labeller<'_> {
         } else {
             (0..draws).map(draw).collect()
         };
-        cells.retain(|cell| labels[*cell as usize].has_joined());
+        cells.retain(|cell| labels[*cell as usize].has_inherited());
         let ends = self.each(&cells, exec, |follower, cell| self.follow(cell, follower).outcome())?;
         let differs = |(cell, end): &(&u32, Outcome)| labels[**cell as usize].outcome() != *end;
         told.tried = cells.len();

@@ -22,7 +22,7 @@
 //! motion departs from the direction of descent.
 //!
 //! **Not guaranteed:** an inherited label may differ from the outcome of the centre's own motion if a feature
-//! thinner than a cell lies between. [`Joined`] gives the rate: randomly sampled cells with inherited labels
+//! thinner than a cell lies between. [`InheritedLabels`] gives the rate: randomly sampled cells with inherited labels
 //! are followed to their end. For 5-D grids of the pyramid and the 3-D X-Face it is one or two in ten
 //! thousand. Outcomes hold at the centres of cells, not between two of them.
 //!
@@ -113,11 +113,12 @@ pub enum ConfluenceError {
 /// Number of cells with an inherited label, and how often that label was wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Joined {
+pub struct InheritedLabels {
     /// Cells in contact; mirror images count once.
     pub cells: usize,
     /// Cells that inherited their label, during their motion or at its start.
-    pub joined: usize,
+    #[serde(alias = "joined")]
+    pub inherited: usize,
     /// Motions that were followed, to their end or until they inherited a label.
     pub motions: usize,
     /// Cells with an inherited label that were sampled at random and followed to their end.
@@ -135,7 +136,7 @@ pub struct GridLabels {
     fold: Fold,
     kept: Vec<Label>,
     /// How they came about.
-    pub joined: Joined,
+    pub inherited: InheritedLabels,
 }
 
 /// Labels every cell of `grid`.
@@ -167,9 +168,9 @@ pub fn run(
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
     let labeller = Labeller { pair, falls: &falls, settings, started };
-    let (kept, joined) = labeller.run(&part(HEIGHTS_SHARE, 1.0))?;
+    let (kept, inherited) = labeller.run(&part(HEIGHTS_SHARE, 1.0))?;
     let DescentDirections { grid, fold, .. } = falls;
-    Ok(GridLabels { grid, fold, kept, joined })
+    Ok(GridLabels { grid, fold, kept, inherited })
 }
 
 const STAGE: &str = "motions";
@@ -244,7 +245,7 @@ impl GridLabels {
         };
         let cells = (0..outcomes.len()).into_par_iter().filter(lost).count();
         let mut warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
-        let (left, of) = (self.unreached(), self.joined.cells);
+        let (left, of) = (self.unreached(), self.inherited.cells);
         if left > 0 {
             let text = format!(
                 "the budget was spent before {left} of {of} cells in contact were reached, mirror images counted once: they are undecided, and lie \

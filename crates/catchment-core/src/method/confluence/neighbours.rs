@@ -123,7 +123,7 @@ impl<'a> Neighbours<'a> {
                 }
             }
         }
-        Some(Label::joined(found?.outcome(), centres < 1 << self.axes.len()))
+        Some(Label::inherited(found?.outcome(), centres < 1 << self.axes.len()))
     }
 }
 
@@ -154,7 +154,7 @@ mod tests {
         };
         let agreed = |labels: &[Label], x: f64, y: f64| {
             around.agreed(&around.base(&between(x, y)), labels, 0).map(|label| {
-                assert!(label.has_joined());
+                assert!(label.has_inherited());
                 (label.outcome(), label.has_joined_beyond())
             })
         };

@@ -49,8 +49,8 @@ fn labels_are_those_of_each_cells_own_motion() {
         let found = labels.acceptance(&Exec::new()).outcomes;
         let wrong = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
         assert!(wrong as f64 * 1e3 <= per_thousand * found.len() as f64, "{wrong} of {}", found.len());
-        let Joined { joined, cells, motions, .. } = labels.joined;
-        assert!(2 * joined > cells && motions > 0, "{:?}", labels.joined);
+        let InheritedLabels { inherited, cells, motions, .. } = labels.inherited;
+        assert!(2 * inherited > cells && motions > 0, "{:?}", labels.inherited);
     }
 }
 
@@ -91,7 +91,7 @@ fn threads_do_not_change_a_bit() {
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
         let labels = run(&pair, &grid, &ConfluenceSettings::default(), &exec).unwrap();
-        (labels.kept, labels.joined)
+        (labels.kept, labels.inherited)
     };
     let one = with(1);
     assert_eq!(one, with(2));
@@ -106,14 +106,14 @@ fn a_budget_of_motions_decides_what_lies_lowest() {
     let grid = Grid::over(&pair.alignment, |_| 6);
     let whole = labels(&pair, 6);
     let settings =
-        ConfluenceSettings { motions: Some(whole.joined.motions / 3), ..ConfluenceSettings::default() };
+        ConfluenceSettings { motions: Some(whole.inherited.motions / 3), ..ConfluenceSettings::default() };
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
         run(&pair, &grid, &settings, &exec).unwrap()
     };
     let part = with(1);
-    assert_eq!((&part.kept, part.joined), (&with(2).kept, with(2).joined));
-    assert_eq!((&part.kept, part.joined), (&with(4).kept, with(4).joined));
+    assert_eq!((&part.kept, part.inherited), (&with(2).kept, with(2).inherited));
+    assert_eq!((&part.kept, part.inherited), (&with(4).kept, with(4).inherited));
     let heights = Landscape::compute(&pair, &grid, &Exec::new()).unwrap().heights;
     let [mut decided, mut left] = [f32::NEG_INFINITY, f32::INFINITY];
     let (mut undecided, mut otherwise) = (0, 0);
@@ -149,9 +149,12 @@ fn a_budget_of_time_ends_at_once_or_never() {
         run(&pair, &grid, &settings, &Exec::new()).unwrap()
     };
     let ample = within(1e9);
-    assert_eq!((ample.kept, ample.joined), (whole.kept.clone(), whole.joined));
+    assert_eq!((ample.kept, ample.inherited), (whole.kept.clone(), whole.inherited));
     let none = within(f64::MIN_POSITIVE);
-    assert_eq!(none.joined, Joined { cells: whole.joined.cells, ..Joined::default() });
+    assert_eq!(
+        none.inherited,
+        InheritedLabels { cells: whole.inherited.cells, ..InheritedLabels::default() }
+    );
     for cell in 0..grid.len() {
         let missed = whole.outcome(cell) == Outcome::Missed;
         assert!(none.outcome(cell) == Outcome::Undecided || missed, "{cell}");
@@ -171,7 +174,7 @@ fn heights_that_outlast_the_budget_are_refused() {
         Err(ConfluenceError::HeightsTakeLonger { cells, seconds, most, .. }) => {
             assert!(cells == 80usize.pow(5) && seconds > 1.0 && (2..80).contains(&most), "{seconds} {most}");
         }
-        other => panic!("{:?}", other.map(|labels| labels.joined)),
+        other => panic!("{:?}", other.map(|labels| labels.inherited)),
     }
 }
 
@@ -182,8 +185,8 @@ fn a_slice_is_followed_cell_by_cell() {
     let mut grid = Grid::over(&pair.alignment, |_| 12);
     grid.axes.retain(|axis| matches!(axis.dof, Dof::X | Dof::Pitch));
     let labels = run(&pair, &grid, &ConfluenceSettings::default(), &Exec::new()).unwrap();
-    assert_eq!((labels.joined.joined, labels.joined.tried), (0, 0));
-    assert_eq!(labels.joined.motions, labels.joined.cells);
+    assert_eq!((labels.inherited.inherited, labels.inherited.tried), (0, 0));
+    assert_eq!(labels.inherited.motions, labels.inherited.cells);
     assert_eq!(labels.acceptance(&Exec::new()).outcomes, judge(&labels, &pair));
 }
 

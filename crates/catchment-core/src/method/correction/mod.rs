@@ -116,9 +116,9 @@ pub struct UnbiasedSum {
     /// `sum` as a share of the error box, in [0, 1].
     pub fraction: f64,
     /// Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; and its 95 % interval.
-    pub differing: f64,
-    /// See [`UnbiasedSum::differing`].
-    pub differing_ci95: [f64; 2],
+    pub misclassified: f64,
+    /// See [`UnbiasedSum::misclassified`].
+    pub misclassified_ci95: [f64; 2],
     /// Poses followed.
     pub descents: usize,
     /// Effective sample size: number of poses sampled uniformly over the whole box with the same information;
@@ -206,13 +206,14 @@ pub fn estimate(
     let measure = grid.measure();
     let against =
         |(s, seen): (&usize, &StratumCounts)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
-    let differing = CombinedShares::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
+    let misclassified =
+        CombinedShares::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
     Ok(UnbiasedSum {
         sum: whole.fraction * measure,
         ci95: whole.ci95.map(|share| share * measure),
         fraction: whole.fraction,
-        differing: differing.fraction,
-        differing_ci95: differing.ci95,
+        misclassified: misclassified.fraction,
+        misclassified_ci95: misclassified.ci95,
         descents: total,
         plain_descents: whole.plain,
         strata: present

@@ -69,7 +69,7 @@ pub(in crate::run) fn gather(
         .map(|group| {
             exec.check()?;
             let held = stability::held(problem.pair(), leader(group), seed);
-            if held.firmness != Stability::Ridge {
+            if held.stability != Stability::Ridge {
                 return Ok(held);
             }
             let others = group.1[1..].iter().copied();
@@ -79,7 +79,7 @@ pub(in crate::run) fn gather(
     let mut sets = DisjointSets::new(groups.len());
     for j in 0..groups.len() {
         for k in 0..j {
-            let both_level = [j, k].iter().all(|g| held[*g].firmness == Stability::Level);
+            let both_level = [j, k].iter().all(|g| held[*g].stability == Stability::Level);
             let (a, b) = (&leader(&groups[j]).pose, &leader(&groups[k]).pose);
             let at_one_place = || images.may_be_near(a, b, SAME) && images.nearest(a, b).1 <= SAME;
             if both_level && groups[j].0 == groups[k].0 || at_one_place() {
@@ -159,13 +159,13 @@ impl Cluster {
         let middle = members[nearest.unwrap_or_default()];
         // On level ground around a hole the mean lies in the hole, and the member nearest to it at the edge
         // of the hole; a member that lies level represents the cluster.
-        let (middle, own_held) = if matches!(held.firmness, Stability::Level | Stability::Ridge) {
+        let (middle, own_held) = if matches!(held.stability, Stability::Level | Stability::Ridge) {
             let tried = std::iter::once(middle).chain(members.iter().copied());
             level(problem, rests, tried, seed).map_or((middle, None), |(member, held)| (member, Some(held)))
         } else {
             (middle, (middle == members[0]).then_some(*held))
         };
-        let firmness = own_held.map_or(held.firmness, |held| held.firmness);
+        let stability = own_held.map_or(held.stability, |held| held.stability);
         let own = rests[middle].error.to_array();
         let mut extent = own.map(|value| [value; 2]);
         for errors in folded(middle) {
@@ -183,7 +183,7 @@ impl Cluster {
             }
         }
         let is_image = |place: &usize| images.nearest(pose(*place), pose(middle)).1 <= SAME;
-        let places = if firmness == Stability::Level {
+        let places = if stability == Stability::Level {
             if members.len() < ENOUGH * places.len() { 1 } else { levels(rests, &places, images) }
         } else if places.iter().all(is_image) {
             places.len()
@@ -202,7 +202,7 @@ fn level(
     seed: u64,
 ) -> Option<(usize, RestStability)> {
     let mut held = members.take(LEVEL_TRIES).map(|k| (k, stability::held(problem.pair(), &rests[k], seed)));
-    held.find(|(_, held)| held.firmness == Stability::Level)
+    held.find(|(_, held)| held.stability == Stability::Level)
 }
 
 /// Number of symmetric level regions that contain these places, each place within [`NEAR`] of another; 1 if

@@ -61,7 +61,7 @@ impl Sticking {
 impl Examined {
     /// Whether nothing but so much friction holds it.
     pub fn is_held_by_friction(&self, friction: f64) -> bool {
-        friction > 0.0 && (self.firmness == Stability::Ridge || self.immobility.is_none())
+        friction > 0.0 && (self.stability == Stability::Ridge || self.immobility.is_none())
     }
 }
 
@@ -164,22 +164,22 @@ impl<'a> RestDescriptions<'a> {
     /// The stability, and the friction thresholds: with friction, or if the contacts alone do not hold the
     /// half.
     pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
-        document.row("  neighbours", self.firmness(examined));
+        document.row("  neighbours", self.stability(examined));
         let matters = self.friction > 0.0 || examined.immobility.is_none();
         if let Some(sticks) = examined.sticks.filter(|_| matters) {
             document.row("  friction", sticks.words());
         }
     }
 
-    fn firmness(self, examined: &Examined) -> String {
+    fn stability(self, examined: &Examined) -> String {
         let push = self.units.length(examined.push_d);
-        let Examined { back, pushed, .. } = examined;
+        let Examined { returned, displaced, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
             return format!(
-                "held by friction alone; {back} of {pushed} small random displacements end in the same group of rests"
+                "held by friction alone; {returned} of {displaced} small random displacements end in the same group of rests"
             );
         }
-        let rise = match (examined.firmness, examined.rise_at_most_d) {
+        let rise = match (examined.stability, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
                 format!(
                     "almost level: displaced by {push} in its easiest direction, the COR rises {}",
@@ -197,7 +197,7 @@ impl<'a> RestDescriptions<'a> {
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {back} of {pushed} small random displacements end in the same group of rests")
+        format!("{rise}; {returned} of {displaced} small random displacements end in the same group of rests")
     }
 
     /// The escape height, with the end of the escape path.

@@ -92,7 +92,7 @@ struct Search<'a> {
 
 /// The lowest escape path found, and the end of the motion after it; `None` if all tried paths continue to
 /// climb, or end at walls.
-pub(in crate::run) fn way_out(
+pub(in crate::run) fn escape_path(
     pair: &Pair,
     rest: &RestEnd,
     motions: &descent::DescentSettings,

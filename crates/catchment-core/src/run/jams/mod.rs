@@ -221,7 +221,8 @@ pub struct JammingPair {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Examined {
     /// `sharp`, `rounded`, `level` or `ridge`.
-    pub firmness: Stability,
+    #[serde(alias = "firmness")]
+    pub stability: Stability,
     /// Displacement of the test, in the metric of the motion, in D.
     pub push_d: f64,
     /// Smallest rise found, in D: an upper bound on the true minimum. Null if walls block every direction.
@@ -234,11 +235,14 @@ pub struct Examined {
     #[serde(default)]
     pub sticks: Option<Sticking>,
     /// Lowest escape path that was found; null if the search found no path.
-    pub way_out: Option<EscapePath>,
+    #[serde(alias = "way_out")]
+    pub escape_path: Option<EscapePath>,
     /// Number of nearby poses that were followed.
-    pub pushed: usize,
+    #[serde(alias = "pushed")]
+    pub displaced: usize,
     /// Number of these that returned to the rest.
-    pub back: usize,
+    #[serde(alias = "back")]
+    pub returned: usize,
 }
 
 /// A group of rests at the same place, or at equivalent places, before shares are computed.

@@ -22,7 +22,7 @@ impl Subject for Jams {
         };
         let cells = undecided(&self.outcomes) + self.expected.as_ref().map_or(0, undecided);
         let open = (cells > 0).then_some(Warning::Undecided { cells });
-        open.into_iter().chain(self.hardly_held().map(|text| Warning::Note { text })).collect()
+        open.into_iter().chain(self.barely_stuck().map(|text| Warning::Note { text })).collect()
     }
 
     fn document(&self, design: &Design) -> Document {
@@ -139,7 +139,7 @@ impl Jams {
     fn jam_table(&self) -> Table {
         let mut table = Table::data(
             "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated order \
-             slope_lo slope_hi curvature firmness rise_at_most holds_from slips_until wedges_from symmetry climb_at_most depth_at_least \
+             slope_lo slope_hi curvature stability rise_at_most holds_from slips_until wedges_from symmetry climb_at_most depth_at_least \
              depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind moving_name moving_part moving_x \
              moving_y moving_z",
         );
@@ -147,7 +147,7 @@ impl Jams {
             let examined = jam.examined.as_ref();
             let held = examined.and_then(|examined| examined.immobility);
             let sticks = examined.and_then(|examined| examined.sticks);
-            let way = examined.and_then(|examined| examined.way_out);
+            let way = examined.and_then(|examined| examined.escape_path);
             let mut row: Vec<Cell> = vec![number.into(), jam.of_box.count.into()];
             row.extend([jam.of_box.share, jam.of_box.ci95[0], jam.of_box.ci95[1]].map(Cell::from));
             row.extend([jam.of_jams, jam.of_failures].map(Cell::from));
@@ -157,7 +157,7 @@ impl Jams {
             row.push(held.map(|held| held.order.name()).into());
             row.extend([0, 1].map(|k| Cell::from(held.map(|held| held.slope[k]))));
             row.push(held.and_then(|held| held.curvature).into());
-            row.push(examined.map(|examined| examined.firmness.name()).into());
+            row.push(examined.map(|examined| examined.stability.name()).into());
             row.push(examined.and_then(|examined| examined.rise_at_most_d).into());
             row.push(sticks.and_then(|sticks| sticks.holds_from).into());
             row.push(sticks.and_then(|sticks| sticks.slips_until).into());
@@ -180,7 +180,7 @@ impl Jams {
     }
 
     /// Which jams are held by hardly more friction than they slip at, as a sentence: there rigid halves and those of engines part.
-    fn hardly_held(&self) -> Option<String> {
+    fn barely_stuck(&self) -> Option<String> {
         let friction = self.settings.friction;
         let is_hardly_held = |jam: &Jam| {
             let examined = jam.examined.as_ref().filter(|examined| examined.is_held_by_friction(friction));
@@ -201,7 +201,7 @@ impl Jams {
 }
 
 fn escape(places: RestDescriptions<'_>, examined: &Examined) -> String {
-    let Some(way) = &examined.way_out else { return "no escape path was found".to_owned() };
+    let Some(way) = &examined.escape_path else { return "no escape path was found".to_owned() };
     let to = match way.to {
         Outcome::Aligned => "docks",
         Outcome::Missed => "slides off",

@@ -143,9 +143,9 @@ impl PoseFollower<'_> {
         let held = cluster.held.unwrap_or_else(|| stability::held(pair, rest, seed));
         let mut follower = Follower::new(pair, self.motions);
         let stream = Stream::new(seed).branch(OFF.to_bits());
-        let pushed = PUSHES * space.count();
+        let displaced = PUSHES * space.count();
         let rho = pair.alignment.rotation_length;
-        let back = (0..pushed).filter(|k| {
+        let returned = (0..displaced).filter(|k| {
             let way = space.random(stream, *k as u64);
             let end = self.end(&mut follower, &space.error(rest, &way, OFF));
             let pose =
@@ -157,10 +157,10 @@ impl PoseFollower<'_> {
             );
             self.is_rest(end.outcome) && off <= 2.0 * OFF
         });
-        let back = back.count();
+        let returned = returned.count();
         let leaving = match self.which {
             RestFilter::Jams => EscapeCriterion::Jam,
-            RestFilter::All => EscapeCriterion::Rest { is_level: held.firmness == Stability::Level },
+            RestFilter::All => EscapeCriterion::Rest { is_level: held.stability == Stability::Level },
         };
         let mut holding = Holding::at_rest(pair, &rest.error, rest.height, rest.touching);
         let immobility = holding.as_ref().and_then(|holding| immobility(pair, holding, &rest.error, seed));
@@ -173,17 +173,17 @@ impl PoseFollower<'_> {
             }),
             None => holding.as_mut().map(Holding::sticking),
         };
-        let (way_out, end) = escape::way_out(pair, rest, self.motions, leaving, seed).unzip();
+        let (escape_path, end) = escape::escape_path(pair, rest, self.motions, leaving, seed).unzip();
         let examined = Examined {
-            firmness: held.firmness,
+            stability: held.stability,
             push_d: PUSH,
             rise_at_most_d: held.rise,
             weakest: held.weakest,
             immobility,
             sticks: sticking,
-            way_out,
-            pushed,
-            back,
+            escape_path,
+            displaced,
+            returned,
         };
         (examined, end)
     }

@@ -62,7 +62,7 @@ impl Stability {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::run) struct RestStability {
     /// In a word.
-    pub(in crate::run) firmness: Stability,
+    pub(in crate::run) stability: Stability,
     /// Smallest rise found of the COR for a displacement of [`PUSH`], in D; `None` if walls block every
     /// direction.
     pub(in crate::run) rise: Option<f64>,
@@ -243,7 +243,7 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
         }
     }
     if best.1 == f64::INFINITY {
-        return RestStability { firmness: Stability::Sharp, rise: None, weakest: PoseError::default() };
+        return RestStability { stability: Stability::Sharp, rise: None, weakest: PoseError::default() };
     }
     for k in 0..MOVES {
         // Smaller and smaller moves: from a radian to a hundredth.
@@ -259,7 +259,7 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
         }
     }
     let (way, least) = best;
-    let firmness = if least < -FALL {
+    let stability = if least < -FALL {
         Stability::Ridge
     } else if least < LEVEL * PUSH {
         Stability::Level
@@ -268,5 +268,5 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
     } else {
         Stability::Sharp
     };
-    RestStability { firmness, rise: least.is_finite().then_some(least), weakest: space.as_error(&way) }
+    RestStability { stability, rise: least.is_finite().then_some(least), weakest: space.as_error(&way) }
 }

@@ -58,10 +58,10 @@ fn a_tip_on_its_side_is_one_jam_at_two_places() {
     // a step's rounding.
     assert!((jam.pose.pitch.abs() - (PI - 2f64.atan())).abs() < 1e-3 && jam.above_mated_d > 0.1, "{jam:#?}");
     let examined = jam.examined.unwrap();
-    assert_eq!(examined.back, examined.pushed, "{examined:?}");
-    assert!(matches!(examined.firmness, Stability::Sharp | Stability::Rounded));
+    assert_eq!(examined.returned, examined.displaced, "{examined:?}");
+    assert!(matches!(examined.stability, Stability::Sharp | Stability::Rounded));
     // Out of a rest it is a climb, and no farther than over the rim of the notch.
-    let way = examined.way_out.unwrap();
+    let way = examined.escape_path.unwrap();
     assert!(way.climb > 0.0 && way.climb < 1.0, "{way:?}");
 }
 
@@ -110,7 +110,7 @@ fn a_rigid_body_stays_where_it_jams() {
     let drop = "drop".parse().unwrap();
     for jam in &found.jams {
         // Halves at rest on level ground stay anywhere on their level.
-        let is_level = jam.examined.unwrap().firmness == Stability::Level;
+        let is_level = jam.examined.unwrap().stability == Stability::Level;
         let aside = if is_level { 0.0 } else { 0.01 };
         for side in [1.0, -1.0] {
             let rest = PoseError { x: side * jam.pose.x, pitch: side * jam.pose.pitch, ..jam.pose };
@@ -137,9 +137,9 @@ fn a_peg_beside_its_hole_rests_on_level_ground() {
     let [contact] = jam.contacts.as_slice() else { panic!("{jam:#?}") };
     assert_eq!((contact.fixed.name.as_str(), contact.moving.name.as_str()), ("top", "top"));
     let examined = jam.examined.unwrap();
-    assert_eq!(examined.firmness, Stability::Level);
+    assert_eq!(examined.stability, Stability::Level);
     // It slides into its hole without being lifted.
-    let way = examined.way_out.unwrap();
+    let way = examined.escape_path.unwrap();
     assert!(way.climb < 1e-6, "{way:?}");
     assert_eq!(found.features.len(), 1);
 }
@@ -229,7 +229,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
     let held = examined.immobility.unwrap();
     assert_eq!(held.order, crate::method::descent::ImmobilityOrder::First);
     assert!(held.slope[0] > 0.1);
-    let (climb, on_grid) = (examined.way_out.unwrap().climb, jam.depth_on_grid_d.unwrap());
+    let (climb, on_grid) = (examined.escape_path.unwrap().climb, jam.depth_on_grid_d.unwrap());
     assert!((on_grid - climb).abs() < 0.02, "{on_grid} {climb}");
 }
 
@@ -242,9 +242,9 @@ fn a_jam_is_as_deep_as_is_certain() {
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     for jam in &found.jams {
         let (at_least, examined) = (jam.depth_at_least_d.unwrap(), jam.examined.unwrap());
-        let climb = examined.way_out.unwrap().climb;
+        let climb = examined.escape_path.unwrap().climb;
         assert!(at_least <= climb + 1e-6, "{at_least} {climb}");
-        if examined.firmness == Stability::Level {
+        if examined.stability == Stability::Level {
             assert!(at_least < 0.01, "{at_least}");
         } else {
             assert!(at_least > 0.5 * climb, "{at_least} {climb}");

@@ -200,7 +200,7 @@ pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<R
     let ends = ends.into_iter().chain(std::iter::repeat(None));
     let place = |((group, cluster), end): ((RestGroup, &Cluster), Option<PoseError>)| {
         let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
-        let way = group.examined.and_then(|examined| examined.way_out);
+        let way = group.examined.and_then(|examined| examined.escape_path);
         RestPlace {
             of_box: Share::of(group.count, motions),
             docked: cluster.members.iter().filter(is_docked).count(),

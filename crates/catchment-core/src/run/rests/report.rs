@@ -85,13 +85,13 @@ impl Rests {
     }
 
     /// The same for pictures: `lifted by 1.2 mm at most, and it slides off`.
-    pub fn way_out(&self, design: &Design, rest: &RestPlace) -> String {
+    pub fn escape_path(&self, design: &Design, rest: &RestPlace) -> String {
         let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
         format!("{}, and it {}", lifted(design, depth), self.leads_to(rest))
     }
 
     fn leads_to(&self, rest: &RestPlace) -> String {
-        let way = rest.examined.and_then(|examined| examined.way_out);
+        let way = rest.examined.and_then(|examined| examined.escape_path);
         match (way.map(|way| way.to), rest.leads_to) {
             (Some(Outcome::Missed), _) => "slides off".to_owned(),
             (_, Some(k)) if self.rests.get(k).is_some_and(|to| std::ptr::eq(to, rest)) => {
@@ -106,7 +106,7 @@ impl Rests {
     fn table(&self) -> Table {
         let mut table = Table::data(
             "rest count share share_lo share_hi docked x y roll pitch yaw height above_mated order slope_lo slope_hi free curvature \
-             firmness holds_from slips_until wedges_from depth_at_most depth_at_least depth_on_grid leads_to touching",
+             stability holds_from slips_until wedges_from depth_at_most depth_at_least depth_on_grid leads_to touching",
         );
         for (number, rest) in (1usize..).zip(&self.rests) {
             let held = rest.examined.and_then(|examined| examined.immobility);
@@ -120,7 +120,7 @@ impl Rests {
             row.extend([0, 1].map(|k| Cell::from(held.map(|held| held.slope[k]))));
             row.push(held.map(|held| held.free).into());
             row.push(held.and_then(|held| held.curvature).into());
-            row.push(rest.examined.map(|examined| examined.firmness.name()).into());
+            row.push(rest.examined.map(|examined| examined.stability.name()).into());
             row.push(sticks.and_then(|sticks| sticks.holds_from).into());
             row.push(sticks.and_then(|sticks| sticks.slips_until).into());
             row.push(sticks.and_then(|sticks| sticks.wedges_from).into());

@@ -16,7 +16,7 @@ fn found(problem: &Problem, motions: usize) -> Rests {
 }
 
 fn depth(place: &RestPlace) -> f64 {
-    place.examined.unwrap().way_out.unwrap().climb
+    place.examined.unwrap().escape_path.unwrap().climb
 }
 
 /// Its centre of rotation in its middle; `errors` far enough to fall on its sides.
@@ -34,7 +34,7 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
         assert!((turn - turn.round()).abs() < 1e-3, "{place:?}");
         // Motions end within 10⁻⁵ of a turn, over half a width.
         assert!((place.height_d - 0.5).abs() < 1e-5, "{place:?}");
-        assert_eq!(place.examined.unwrap().firmness, crate::run::jams::Stability::Sharp);
+        assert_eq!(place.examined.unwrap().stability, crate::run::jams::Stability::Sharp);
         assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
         let held = place.examined.unwrap().immobility.unwrap();
         assert_eq!(held.order, descent::ImmobilityOrder::First, "{place:?}");
@@ -122,7 +122,7 @@ fn a_ball_in_a_cone_leaves_over_its_rim() {
     let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
     // The inscribed ball is smaller by up to the chord error, and its facets shift the contact by as much.
     assert!((depth(place) - expected).abs() < 4e-3, "{expected} {place:?}");
-    assert_eq!(place.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
+    assert_eq!(place.examined.unwrap().escape_path.unwrap().to, Outcome::Missed);
 }
 
 /// A round peg with play in a chamfered hole.
@@ -205,7 +205,7 @@ fn a_peg_is_as_deep_as_its_hole() {
     let [home, ground] =
         [true, false].map(|docked| found.rests.iter().find(|place| (place.docked > 0) == docked).unwrap());
     assert!((depth(home) - ground.above_mated_d).abs() < 1e-4, "{home:?} {ground:?}");
-    assert!(home.examined.unwrap().way_out.unwrap().climb > 0.05);
+    assert!(home.examined.unwrap().escape_path.unwrap().climb > 0.05);
 }
 
 /// The merge tree of a fine grid agrees, over an edge of a cube.

@@ -21,10 +21,14 @@ impl RunBody {
         if let Some(certificate) = &self.certificate {
             check_certificate(certificate)?;
         }
-        if let Some(joined) = &self.joined {
-            hold(joined.joined <= joined.cells, "joined.joined", "must be at most joined.cells")?;
-            hold(joined.wrong <= joined.tried, "joined.wrong", "must be at most joined.tried")?;
-            interval(joined.wrong_ci95, "joined.wrong_ci95")?;
+        if let Some(inherited) = &self.inherited {
+            hold(
+                inherited.inherited <= inherited.cells,
+                "inherited.inherited",
+                "must be at most inherited.cells",
+            )?;
+            hold(inherited.wrong <= inherited.tried, "inherited.wrong", "must be at most inherited.tried")?;
+            interval(inherited.wrong_ci95, "inherited.wrong_ci95")?;
         }
         if let Some(window) = &self.window {
             check_window(window)?;
@@ -48,8 +52,8 @@ impl RunBody {
             descents = descents.saturating_add(stratum.descents);
         }
         let whole: f64 = sample.strata.iter().map(|stratum| stratum.share).sum();
-        share(sample.differing, &name("differing"))?;
-        interval(sample.differing_ci95, &name("differing_ci95"))?;
+        share(sample.misclassified, &name("misclassified"))?;
+        interval(sample.misclassified_ci95, &name("misclassified_ci95"))?;
         // Shares are counts of cells over all cells: their sum is 1 but for rounding.
         let is_whole = sample.strata.is_empty() || (whole - 1.0).abs() <= 1e-9;
         hold(is_whole, name("strata.share"), "must add up to 1")?;
@@ -151,7 +155,7 @@ mod tests {
     use crate::schema::{PartitionReport, RunBody, SampleReport, WindowSection, basins};
     use catchment_core::exec::Exec;
     use catchment_core::method::certified::BoxCertificate;
-    use catchment_core::method::confluence::Joined;
+    use catchment_core::method::confluence::InheritedLabels;
     use catchment_core::method::correction::Stratum;
     use catchment_core::problem::Problem;
     use catchment_core::run::{jams, window};
@@ -167,7 +171,8 @@ mod tests {
         body.partition = Some(PartitionReport::default());
         body.certificate =
             Some(BoxCertificate { yes: 0.3, no: 0.6, undecided: 0.1, ..BoxCertificate::default() });
-        body.joined = Some(Joined { cells: 9, joined: 7, tried: 5, ..Joined::default() });
+        body.inherited =
+            Some(InheritedLabels { cells: 9, inherited: 7, tried: 5, ..InheritedLabels::default() });
         let problem = Problem::of(design.clone()).unwrap();
         let asked = jams::JamsSettings { motions: Some(300), ..jams::JamsSettings::default() };
         let found = jams::run(&problem, &asked, &Exec::new()).unwrap();
@@ -189,8 +194,8 @@ mod tests {
             settings: null,
             seed: 1,
             descents: 20,
-            differing: 0.1,
-            differing_ci95: [0.05, 0.2],
+            misclassified: 0.1,
+            misclassified_ci95: [0.05, 0.2],
             strata,
         });
         body
@@ -222,9 +227,9 @@ mod tests {
             ("certificate.retention_at_most must", |b| {
                 b.certificate.as_mut().unwrap().retention_at_most = Some(-0.1);
             }),
-            ("joined.joined must", |b| b.joined.as_mut().unwrap().joined = 10),
-            ("joined.wrong must", |b| b.joined.as_mut().unwrap().wrong = 6),
-            ("joined.wrong_ci95 must", |b| b.joined.as_mut().unwrap().wrong_ci95 = [0.2, 0.1]),
+            ("inherited.inherited must", |b| b.inherited.as_mut().unwrap().inherited = 10),
+            ("inherited.wrong must", |b| b.inherited.as_mut().unwrap().wrong = 6),
+            ("inherited.wrong_ci95 must", |b| b.inherited.as_mut().unwrap().wrong_ci95 = [0.2, 0.1]),
             ("jams.motions must", |b| b.jams.as_mut().unwrap().motions = 7),
             ("jams: a share must", |b| b.jams.as_mut().unwrap().jams[0].of_failures = 7.0),
             ("jams: an interval must", |b| b.jams.as_mut().unwrap().jams[0].of_box.ci95.reverse()),
@@ -232,7 +237,7 @@ mod tests {
             ("window.certificate.failing_at_most must", |b| {
                 b.window.as_mut().unwrap().found.certificate.failing_at_most = f64::NAN;
             }),
-            ("acceptance.sample.differing must", |b| sample(b).differing = 1.5),
+            ("acceptance.sample.misclassified must", |b| sample(b).misclassified = 1.5),
             ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
             ("acceptance.sample.strata.share must add", |b| sample(b).strata[0].share = 0.5),
             ("acceptance.sample.strata.descents must", |b| sample(b).strata[1].aligned = usize::MAX),
