@@ -131,6 +131,8 @@ impl PlaceArgs {
 
 /// Candidates that are told.
 const TOLD: usize = 3;
+/// What to do about a doubtful seat.
+const HELP: &str = "help: --figure pair.png draws the pair; --facing-fixed, --facing-moving and --approach state how the parts lie";
 /// A score that is worth telling.
 const WORTH: f64 = 0.01;
 
@@ -287,7 +289,8 @@ fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
         format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.told(&rows, unit))
     });
     let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
-    [head, halves].into_iter().chain(told).chain(doubts).collect()
+    let help = found.doubts.iter().any(|doubt| doubt.contains("picture")).then(|| HELP.to_owned());
+    [head, halves].into_iter().chain(told).chain(doubts).chain(help).collect()
 }
 
 /// A refusal in the words of the command line.

@@ -124,7 +124,7 @@ fn every_kind_of_report_has_one_head() {
         ("solids", &["solids", "v.toml", "--json"]),
         ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),
     ] {
-        assert_eq!(head(args), json!([3, kind]));
+        assert_eq!(head(args), json!([4, kind]));
     }
 }
 
@@ -146,7 +146,7 @@ fn an_answer_of_a_newer_version_is_refused_and_an_unknown_field_is_not() {
     };
     fs::write(&place, text.replacen("\"kind\": \"run\"", "\"kind\": \"run\", \"invented\": [1]", 1)).unwrap();
     assert_eq!(compared().0, Some(0), "{}", compared().1);
-    fs::write(&place, text.replacen("\"schema\": 3", "\"schema\": 4", 1)).unwrap();
+    fs::write(&place, text.replacen("\"schema\": 4", "\"schema\": 5", 1)).unwrap();
     let (code, said) = compared();
-    assert!(code == Some(4) && said.contains("its schema is 4"), "{said}");
+    assert!(code == Some(4) && said.contains("its schema is 5"), "{said}");
 }

@@ -52,7 +52,7 @@ fn every_json_has_one_head_and_its_fields() {
     ];
     for (kind, args) in calls {
         let report = json(home.path(), args);
-        assert_eq!((&report["schema"], &report["kind"]), (&3.into(), &kind.into()));
+        assert_eq!((&report["schema"], &report["kind"]), (&4.into(), &kind.into()));
         let names: Vec<&str> = report.as_object().unwrap().keys().map(String::as_str).collect();
         assert_eq!(names[..3], ["schema", "catchment", "kind"]);
         assert_eq!(names[names.len() - 2..], ["warnings", "timing"]);

@@ -116,9 +116,9 @@ class SampleReport(TypedDict):
     #: Number of poses followed.
     descents: int
     #: Share of the error box that the grid misclassifies, accepted or not, in [0, 1]; 1 in reports of older versions.
-    differing: float
+    misclassified: float
     #: Its 95 % interval.
-    differing_ci95: list[float]
+    misclassified_ci95: list[float]
     #: The strata.
     strata: list[Stratum]
 
@@ -357,13 +357,13 @@ class BoxCertificate(TypedDict):
     boxes: int
 
 
-class Joined(TypedDict):
+class InheritedLabels(TypedDict):
     """Number of cells with an inherited label, and how often that label was wrong."""
 
     #: Cells in contact; mirror images count once.
     cells: int
     #: Cells that inherited their label, during their motion or at its start.
-    joined: int
+    inherited: int
     #: Motions that were followed, to their end or until they inherited a label.
     motions: int
     #: Cells with an inherited label that were sampled at random and followed to their end.
@@ -499,7 +499,7 @@ class Examined(TypedDict):
     """Results of the examination of a rest."""
 
     #: `sharp`, `rounded`, `level` or `ridge`.
-    firmness: Literal['sharp', 'rounded', 'level', 'ridge']
+    stability: Literal['sharp', 'rounded', 'level', 'ridge']
     #: Displacement of the test, in the metric of the motion, in D.
     push_d: float
     #: Smallest rise found, in D: an upper bound on the true minimum. Null if walls block every direction.
@@ -511,11 +511,11 @@ class Examined(TypedDict):
     #: Friction thresholds for stiction; null if the half touches nothing.
     sticks: Sticking | None
     #: Lowest escape path that was found; null if the search found no path.
-    way_out: EscapePath | None
+    escape_path: EscapePath | None
     #: Number of nearby poses that were followed.
-    pushed: int
+    displaced: int
     #: Number of these that returned to the rest.
-    back: int
+    returned: int
 
 
 class Jam(TypedDict):
@@ -780,7 +780,7 @@ class RunReport(TypedDict):
     #: Certified shares of the error box and certified retention; null for all methods but `certified`, and in reports of older versions.
     certificate: BoxCertificate | None
     #: Number of cells with an inherited label, and how often it was wrong; null for all methods but `confluence`, and in reports of older versions.
-    joined: Joined | None
+    inherited: InheritedLabels | None
     #: Rests outside the seat; null if not requested, and in reports of older versions.
     jams: Jams | None
     #: The tolerance window; null if not requested, if there is no window, and in reports of older versions.

@@ -100,7 +100,7 @@ impl RunBody {
         }
         let all = percent(1.0 - a.fraction);
         if self.certificate.is_none() && a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
-            format!("{all}; the grid is too coarse to tell jams from misses, catchment rests --jams does")
+            format!("{all}; the grid is too coarse to tell jams from misses")
         } else {
             format!("{all}; by the grid {split}")
         }

@@ -45,9 +45,10 @@ impl Subject for HoldingForces {
              all free errors."
         ));
         if self.slides() {
-            document.paragraph(
-                "0: not held: the half slides sideways under any force until its play, if it has any, is used up. Gaps up to --play count as closed.",
-            );
+            let gap = units.fine(self.settings.play);
+            document.paragraph(format!(
+                "0: not held: the half slides sideways under any force until its play, if it has any, is used up. Gaps up to {gap} count as closed."
+            ));
         }
         document
     }

@@ -122,7 +122,7 @@ pub(super) fn text(
         let _ = writeln!(text, "{words}");
     };
     line(
-        "# Two parts from CAD, and how they dock: a proposal by `catchment place`. `catchment check FILE --figure pair.png` draws both halves,",
+        "# Two parts from CAD, and how they dock: a proposal by `catchment place`. `catchment check FILE -o pair.png` draws both halves,",
     );
     line(
         "# apart and mated. Lengths without a unit are in D (the width); those in [connector] and [connector.*] in the unit given there.",

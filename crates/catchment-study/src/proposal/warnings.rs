@@ -59,7 +59,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
         |other: &&&Candidate| !other.lie.is_turned(best.lie) || best.steep > 0.0 && other.class != best.class;
     if let Some(other) = nearly.iter().find(elsewhere) {
         doubts.push(format!(
-            "in doubt: {} ({}{}; score {:.2} beside {:.2}): look at the picture (--figure); to choose the other, set --facing-moving or --facing-fixed",
+            "in doubt: {} ({}{}; score {:.2} beside {:.2}): look at the picture; to choose the other, state how the parts face",
             if is_twin(best, other) {
                 "the moving part docks turned end for end, too"
             } else {
@@ -73,7 +73,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
     } else if let Some(other) = nearly.first() {
         let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
         doubts.push(format!(
-            "the parts dock as well {place} ({}{}): look at the picture (--figure) to see if the right one was chosen",
+            "the parts dock as well {place} ({}{}): look at the picture to see if the right one was chosen",
             other.lie,
             other.place_among(candidates, design_unit(settings))
         ));
@@ -88,19 +88,19 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<S
         && (*turn > MUCH || *shift > MUCH * best.width)
     {
         doubts.push(format!(
-            "the drawn pose is not a rest: released, the moving part settles {told} off, and that pose counts as mated: look at the picture (--figure); \
-             to lock an error use --free"
+            "the drawn pose is not a rest: released, the moving part settles {told} off, and that pose counts as mated: look at the picture; \
+             errors that your mount locks need not be free"
         ));
     }
     if matches!(best.lie, PartLayout::Facing { .. }) && best.score < WEAK {
         doubts.push(format!(
-            "in doubt: the score {:.2} is low (below {WEAK}): look at the picture (--figure); if the parts dock otherwise, set --facing-fixed and --facing-moving",
+            "in doubt: the score {:.2} is low (below {WEAK}): look at the picture; if the parts dock otherwise, state how they face",
             best.score
         ));
     }
     if best.is_loose {
         doubts.push(
-            "in doubt: the moving part lies loose, as in a tray: look at the picture (--figure); if the parts dock otherwise, set --facing-fixed and --facing-moving".to_owned(),
+            "in doubt: the moving part lies loose, as in a tray: look at the picture; if the parts dock otherwise, state how they face".to_owned(),
         );
     }
     if best.sunk.is_none() && best.climb < 0.1 {
