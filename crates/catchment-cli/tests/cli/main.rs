@@ -48,8 +48,23 @@ mod window;
 mod wire;
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
+
+/// Runs the binary on what stdin holds.
+fn piped(folder: &Path, stdin: &[u8], args: &[&str]) -> Output {
+    let mut child = catchment(folder)
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A command that does not read it may end before.
+    let _ = child.stdin.take().unwrap().write_all(stdin);
+    child.wait_with_output().unwrap()
+}
 
 /// The binary in a folder, with nothing of the tester's terminal and no defaults of theirs: without HOME there is no file of them.
 fn catchment(folder: &Path) -> Command {

@@ -1,8 +1,7 @@
 //! `catchment outcome` and `catchment trace`.
 
-use super::{catchment, designs, json, run};
+use super::{catchment, designs, json, piped, run};
 use std::fs;
-use std::io::Write;
 use std::process::Stdio;
 
 const TABLE: &str = "\
@@ -15,16 +14,7 @@ A4,0,90,0
 
 /// Runs `outcome` on a table that stdin holds.
 fn outcome(table: &str, args: &[&str]) -> std::process::Output {
-    let mut child = catchment(&designs())
-        .args(["outcome", "pyramid-stl.toml", "--poses", "-"])
-        .args(args)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(table.as_bytes()).unwrap();
-    child.wait_with_output().unwrap()
+    piped(&designs(), table.as_bytes(), &[&["outcome", "pyramid-stl.toml", "--poses", "-"], args].concat())
 }
 
 /// A table's cells.

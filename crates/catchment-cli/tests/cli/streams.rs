@@ -1,25 +1,9 @@
 //! Stdin in place of a design, stdout in place of a file, and one rule for what may be replaced.
 
-use super::{catchment, designs, entries, home, run};
+use super::{catchment, designs, entries, home, piped, run};
 use serde_json::Value;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Output, Stdio};
-
-/// Runs the binary on what stdin holds.
-fn piped(folder: &Path, stdin: &[u8], args: &[&str]) -> Output {
-    let mut child = catchment(folder)
-        .args(args)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A command that does not read it may end before.
-    let _ = child.stdin.take().unwrap().write_all(stdin);
-    child.wait_with_output().unwrap()
-}
 
 fn words(line: &str) -> Vec<&str> {
     line.split(' ').collect()

@@ -165,10 +165,10 @@ pub fn heading(design: &Design, samples_errors: bool) -> Document {
     document
 }
 
-/// The characteristic length in words: `25 mm, your input: √(rotational / lateral damping, or stiffness, of the mount)`.
+/// The characteristic length in words: `25 mm, your input: √(rotational / lateral damping of the mount)`.
 pub(crate) fn characteristic_length(rho: &str, turns: bool) -> String {
     let meaning = if turns {
-        "√(rotational / lateral damping, or stiffness, of the mount)"
+        "√(rotational / lateral damping of the mount)"
     } else {
         "without effect, since no turn is free"
     };

@@ -228,7 +228,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
     line(&format!("# in D, or with a unit, such as \"5 {}\".", unit.symbol()));
     line("center_of_rotation = 0.0");
     line(
-        "# Your mount decides: rho = sqrt(rotational / lateral damping, or stiffness, of the mount); results depend on it.",
+        "# Your mount decides: rho = sqrt(rotational / lateral damping of the mount); results depend on it.",
     );
     line("rotation_length = 0.5");
     let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
