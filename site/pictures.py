@@ -2,7 +2,8 @@
 
     python3 site/pictures.py target/release/catchment                  draws all of them again (minutes)
     python3 site/pictures.py target/release/catchment plan validate    those whose names begin so
-    python3 site/pictures.py --check target/debug/catchment            says which the program draws differently now
+    python3 site/pictures.py --check target/debug/catchment [DRAWN]    says which the program draws differently now; a PNG of its name in
+                                                                       the folder DRAWN saves the drawing where it is the same
 
 site/pictures.json has digests of every picture: of its PNG in docs/, of the SVG that this is drawn from, and of the words in it. A picture is out of date if its
 words are others now, or more than a thousandth of its pixels: sines of another system's library may differ in their last bits. The pictures of the viewer
@@ -81,7 +82,7 @@ PICTURES = {
     "solids-x-face-3d": ["solids designs/x-face-3d.toml --free x,y -o PICTURE"],
     "success": ["success designs/v-face.toml --error-sigma 'x=0.15,pitch=15 deg' -o PICTURE"],
     "sweep": [
-        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 -o out",
+        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --samples 400 -o out",
         "out/outlines",
     ],
     "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21 --halvings 1 -o PICTURE"],
@@ -180,11 +181,13 @@ def kept_digests() -> dict[str, dict[str, str]]:
     return json.loads(DIGESTS.read_text(encoding="utf-8")) if DIGESTS.exists() else {}
 
 
-def doubt(program: str, name: str, steps: list[str], stored: dict[str, str]) -> str | None:
+def doubt(program: str, name: str, steps: list[str], stored: dict[str, str], already: Path | None) -> str | None:
     """What is out of date about a picture."""
     kept = (DOCS / f"{name}.png").read_bytes()
     if digest(kept) != stored.get("png"):
         return "is not the one that was drawn"
+    if already and already.exists() and already.read_bytes() == kept:
+        return None
     svg = drawn(program, steps, "svg")
     if digest(svg) == stored["svg"]:
         return None
@@ -194,14 +197,15 @@ def doubt(program: str, name: str, steps: list[str], stored: dict[str, str]) -> 
     return f"has other pixels now, {100 * share:.1f} %" if share > CLOSE else None
 
 
-def check(program: str) -> None:
+def check(program: str, drawn_already: Path | None) -> None:
     known, stored = commands(), kept_digests()
     there = {str(path.relative_to(DOCS).with_suffix("")) for path in DOCS.rglob("*.png") if not path.name.startswith(BROWSER)}
     wrong = [f"docs/{name}.png: no command draws it; write one into site/pictures.py" for name in sorted(there - set(known))]
     wrong += [f"docs/{name}.png is missing: python3 site/pictures.py {program} {name}" for name in sorted(set(known) - there)]
     names = sorted(there & set(known))
     for name in names:
-        if said := doubt(program, name, known[name], stored.get(name, {})):
+        already = drawn_already and drawn_already / f"{name}.png"
+        if said := doubt(program, name, known[name], stored.get(name, {}), already):
             wrong.append(f"docs/{name}.png {said}: python3 site/pictures.py {program} {name}")
     if wrong:
         raise SystemExit("\n".join(wrong))
@@ -210,8 +214,8 @@ def check(program: str) -> None:
 
 def main() -> None:
     args = sys.argv[1:]
-    if args[:1] == ["--check"] and len(args) == 2:
-        check(args[1])
+    if args[:1] == ["--check"] and len(args) in (2, 3):
+        check(args[1], Path(args[2]) if len(args) == 3 else None)
         return
     if not args or args[0].startswith("-"):
         raise SystemExit(__doc__)

@@ -1,7 +1,9 @@
 """The console blocks of the README and of docs/, from the program itself.
 
     python3 site/transcripts.py target/release/catchment           writes all blocks again
-    python3 site/transcripts.py target/debug/catchment --check     lists those that differ from what the program prints
+    python3 site/transcripts.py target/debug/catchment --check [DRAWN]
+                                                                   lists those that differ from what the program prints; the PNG files
+                                                                   that the commands write go into the folder DRAWN
 
 A block ```console whose first line begins with `$ catchment` holds commands and what they print, stderr among it. A command goes on in the next line after `\\`.
 The commands of a page run one after another in a folder of their own (budget-to-window goes on in that of first-dock): it holds two STL files of the repository, its design
@@ -104,9 +106,10 @@ class Transcripts:
 
 
 def main() -> None:
-    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--check"]):
+    if len(sys.argv) not in (2, 3, 4) or sys.argv[2:3] not in ([], ["--check"]):
         raise SystemExit(__doc__)
     program, compares = sys.argv[1], len(sys.argv) > 2
+    drawn = Path(sys.argv[3]) if len(sys.argv) == 4 else None
     transcripts = Transcripts(program)
     for pages in PAGES:
         with tempfile.TemporaryDirectory() as home:
@@ -119,6 +122,10 @@ def main() -> None:
                 whole = BLOCK.sub(lambda block, page=page: transcripts.again(page, block), text)
                 if not compares and whole != text:
                     page.write_text(whole, encoding="utf-8")
+            if drawn:
+                drawn.mkdir(exist_ok=True)
+                for picture in Path(home).glob("*.png"):
+                    shutil.copy(picture, drawn)
     if compares and transcripts.wrong:
         raise SystemExit("\n".join([*transcripts.wrong, f"python3 site/transcripts.py {program}"]))
     changed = "" if compares else f", {len(transcripts.wrong)} blocks changed"

@@ -107,7 +107,7 @@ impl ComparisonBody {
         let occurs =
             |k: &usize| confusion[*k].iter().any(|n| *n > 0) || confusion.iter().any(|row| row[*k] > 0);
         let known: Vec<usize> = (0..Outcome::ALL.len()).filter(occurs).collect();
-        let name = |k: &usize| Outcome::ALL[*k].name();
+        let name = |k: &usize| Outcome::ALL[*k].word();
         let columns = known.iter().map(|k| Column::new(name(k)));
         let mut table = Table::new(std::iter::once(Column::new("").left()).chain(columns));
         for i in &known {

@@ -100,7 +100,7 @@ impl Subject for FirstContact {
         let mut document = Document::default();
         let halt =
             self.halt.map_or_else(String::new, |halt| format!(" (the stepping halts: {})", halt.name()));
-        document.row("outcome", format!("{}{halt}, by the kinematic method", self.outcome.name()));
+        document.row("outcome", format!("{}{halt}, by the kinematic method", self.outcome.word()));
         match &self.contact {
             None => {
                 document.row("first contact", "no corner touches an edge");

@@ -89,13 +89,14 @@ impl SlicesResult {
 impl Subject for SlicesResult {
     const KIND: &'static str = "slices";
 
+    fn setup(&self, _: &Design, document: &mut Document) {
+        let method = self.slices.first().map_or("", |slice| &slice.method);
+        document.row("slices", format!("through zero, by {method}: two errors vary, all free ones move"));
+    }
+
     fn document(&self, _: &Design) -> Document {
         let mut document = Document::default();
-        let method = self.slices.first().map_or("", |slice| &slice.method);
-        document
-            .row("slices", format!("through zero, by {method}: two errors vary, all free ones move"))
-            .section(None)
-            .table(self.table());
+        document.table(self.table());
         if self.slices.iter().any(SliceReport::reaches_border) {
             document.paragraph("* up to the border of the error box, perhaps further");
         }

@@ -148,6 +148,7 @@ impl Printed for TraceBody {
             || "without friction".to_owned(),
             |friction| format!("with friction μ = {friction}"),
         );
+        document.row("outcome", format!("{}{reason}", self.outcome.word()));
         document.row(
             "method",
             match self.method {
@@ -155,7 +156,6 @@ impl Printed for TraceBody {
                 other => other.to_owned(),
             },
         );
-        document.row("outcome", format!("{}{reason}", self.outcome.word()));
         document.section(None);
         if self.waypoints.is_empty() {
             document.paragraph("The halves never meet.");

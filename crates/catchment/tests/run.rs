@@ -315,7 +315,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
             found.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count()
         };
         for bounds in [&onaa.bounds, &around_zero] {
-            let poses = if family == Family::PinHole { 500 } else { 10_000 };
+            let poses = if family == Family::PinHole { 500 } else { 5000 };
             let docks = docking(bounds, poses, &|share| share);
             assert!(docks as f64 >= 0.999 * poses as f64, "{family:?} {bounds:?}: {docks} of {poses}");
             // Larger ones fail in their corners and on their faces first, unless the error box ends them.

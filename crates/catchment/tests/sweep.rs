@@ -83,7 +83,7 @@ fn the_trends_of_the_planar_faces() {
 /// changes nothing, which is seen best where its acceptance is small.
 #[test]
 fn the_trends_of_the_pyramid() {
-    let sums = table(&family("pyramid", "['x', 'y', 'pitch']"), "12", 4000);
+    let sums = table(&family("pyramid", "['x', 'y', 'pitch']"), "12", 1500);
     for (ratio, row) in RATIOS.iter().zip(&sums) {
         assert!(row[4] > row[0] && tendency(row) >= 0.0, "AR {ratio}: {row:?}");
     }

@@ -114,7 +114,7 @@ fn the_way_of_a_trial_is_told_and_drawn() {
             && told.ends_with("--- stderr\nnext: catchment rests v.toml --jams\n"),
         "{told}"
     );
-    assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("aligned"));
+    assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("docked"));
     let report = json(home.path(), &[&args[..], &["--json"]].concat());
     assert_eq!((&report["method"], &report["settings"]["launch"]["speed"]), (&"drop".into(), &2.0.into()));
     let times: Vec<f64> =

@@ -105,13 +105,13 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 #[test]
 fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     let folder = super::designs();
-    let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600"]);
+    let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300"]);
     assert!(told.contains("  neighbours     held by friction alone;"), "{told}");
     assert!(!told.contains("ridge") && told.contains("  friction       may stick from"), "{told}");
     let words: Vec<&str> = told.split_whitespace().collect();
     assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
-    let report = json(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600", "--json"]);
+    let report = json(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "--json"]);
     let jams = report["jams"].as_array().unwrap();
     let turned = jams.iter().find(|jam| jam["docked_with_symmetry"] == 4).unwrap();
     assert!((turned["pose"]["yaw"].as_f64().unwrap().abs() - std::f64::consts::FRAC_PI_2).abs() < 0.01);

@@ -157,7 +157,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
 #[test]
 fn refused_memory_at_any_request_old_or_new_is_there() {
     let thorough = std::env::var("CATCHMENT_KILLS").is_ok();
-    let factor = if thorough { 1.2 } else { 10.0 };
+    let factor = if thorough { 1.2 } else { 20.0 };
     let (mut refused, mut left) = (0, 0);
     for writer in WRITERS {
         let both = Both::of(writer);

@@ -41,7 +41,10 @@ pub trait Subject: Serialize {
         Vec::new()
     }
 
-    /// Its description, without the heading of the design and without warnings.
+    /// How it was computed: rows that follow those of the design.
+    fn setup(&self, _: &Design, _: &mut Document) {}
+
+    /// Its description, without setup and warnings.
     fn document(&self, design: &Design) -> Document;
 }
 

@@ -44,6 +44,15 @@ impl ObservedOutcome {
             Self::Missed => "missed",
         }
     }
+
+    /// The words for people.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Aligned => "docked",
+            Self::AlignedElsewhere => "docked elsewhere",
+            other => other.name(),
+        }
+    }
 }
 
 /// A row: a trial, made or not.

@@ -121,7 +121,7 @@ impl Seating {
         let told = DisplayUnit::of(problem.design());
         let far = far.map(|residual| Warning::Note {
             text: format!(
-                "docked halves rest up to {} off in {}: say in [docked] how much of that counts",
+                "docked halves rest up to {} off in {}: state in [docked] how far off still counts as docked",
                 told.amount(residual.axis, residual.most),
                 residual.axis.name()
             ),

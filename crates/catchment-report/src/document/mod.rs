@@ -83,16 +83,11 @@ impl<T: Subject> Printed for OfDesign<T> {
         Cow::Borrowed(&self.design.name)
     }
 
-    /// The heading of its design, followed by the content of the result.
+    /// The result, then the design and how it was computed.
     fn document(&self) -> Document {
-        let mut document = heading(&self.design, T::SAMPLES_ERRORS);
-        let mut rest = self.result.document(&self.design);
-        let first = rest.sections.first_mut().filter(|section| section.title.is_none());
-        if let (Some(section), Some(heading)) = (first, document.sections.last_mut()) {
-            heading.parts.append(&mut section.parts);
-            rest.sections.remove(0);
-        }
-        document.append(rest);
+        let mut document = self.result.document(&self.design);
+        document.append(setup(&self.design, T::SAMPLES_ERRORS));
+        self.result.setup(&self.design, &mut document);
         document
     }
 }
@@ -138,8 +133,8 @@ pub struct Described<'a> {
     pub warnings: Vec<String>,
 }
 
-/// The rows about a design that stand above every result; with the error box and ρ above those that sample pose errors.
-pub fn heading(design: &Design, samples_errors: bool) -> Document {
+/// The rows about a design that stand below every result; with the error box and ρ below those that sample pose errors.
+pub fn setup(design: &Design, samples_errors: bool) -> Document {
     let kind = match &design.connector {
         ConnectorSpec::Family(f) => {
             format!("{}, height / width {}", f.family().name(), rounded(f.aspect_ratio()))

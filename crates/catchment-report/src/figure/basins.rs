@@ -209,7 +209,7 @@ fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &D
         tick *= 0.1;
     }
     svg.rect(rect, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="1""#));
-    svg.text_up([rect.x - 46.0, rect.y + 0.5 * rect.h], LABEL, "share of the box [%]");
+    svg.text_up([rect.x - 46.0, rect.y + 0.5 * rect.h], LABEL, "share of the error box [%]");
     let mut minima: Vec<_> = hierarchy.tree.minima.iter().collect();
     minima.sort_by_key(|m| m.cells);
     // Symmetric minima have the same position: a dot with their number.
@@ -249,7 +249,7 @@ fn legend(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, [mut x,
         hierarchy.tree.minima.iter().any(|minimum| wanted(kind(minimum, acceptance, hierarchy)))
     };
     let kept = Outcome::ALL.into_iter().filter(|outcome| has(&|found| found == (*outcome, true)));
-    let mut entries: Vec<(String, &str)> = kept.map(|outcome| (dot(outcome, true), outcome.name())).collect();
+    let mut entries: Vec<(String, &str)> = kept.map(|outcome| (dot(outcome, true), outcome.word())).collect();
     if has(&|(_, kept)| !kept) {
         entries.push((dot(Outcome::Jammed, false), "merged into another"));
     }

@@ -52,7 +52,7 @@ pub fn jams(design: &Design, found: &Jams, connector: &Connector) -> Result<Pict
         .outcomes
         .iter()
         .filter(|(_, share)| share.count > 0)
-        .map(|(outcome, share)| format!("{} {}", outcome.name(), tenths(share.share)))
+        .map(|(outcome, share)| format!("{} {}", outcome.word(), tenths(share.share)))
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
     let panels: Vec<Panel<'_>> = found
@@ -79,7 +79,7 @@ fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> 
     });
     Panel {
         head: format!(
-            "jam {number}:  {} of jams, {} of the box",
+            "jam {number}:  {} of jams, {} of the error box",
             tenths(jam.of_jams),
             tenths(jam.of_box.share)
         ),
@@ -101,7 +101,7 @@ pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, Fig
         .outcomes
         .iter()
         .filter(|(outcome, share)| matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0)
-        .map(|(outcome, share)| format!(", {} {}", outcome.name(), tenths(share.share)))
+        .map(|(outcome, share)| format!(", {} {}", outcome.word(), tenths(share.share)))
         .collect();
     let story = format!(
         "where motions rest under a load along −z: {} random poses of the error box{}",
@@ -126,7 +126,7 @@ fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestPlace) -> P
         tail.push(report.escape_path(&report.design, rest));
     }
     Panel {
-        head: format!("rest {number}:  basin {} of the box{docked}", tenths(rest.of_box.share)),
+        head: format!("rest {number}:  basin {} of the error box{docked}", tenths(rest.of_box.share)),
         contacts: &rest.contacts,
         placement: MovingHalfPose { error: rest.pose, height: rest.height_d },
         tail,

@@ -38,7 +38,7 @@ pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Resul
     let story = format!(
         "first contact at {} → {}{halt} by the kinematic method",
         describe(design, &placement),
-        start.outcome.name()
+        start.outcome.word()
     );
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
     let frame = view.frame(Rect { x: 72.0, y: 68.0, w: width, h: height });
@@ -134,7 +134,7 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
         ("αₑ", "normal to vertical", degrees(lever.alpha_e)),
         ("θ₁", "lateral to normal", degrees(lever.theta_1)),
         ("θ₂", "normal to lever", degrees(lever.theta_2)),
-        ("βₚ + αₑ", "θ₂ when aligned", degrees(lever.aligned())),
+        ("βₚ + αₑ", "θ₂ when docked", degrees(lever.aligned())),
     ];
     let whose = match lever.corner {
         LeverBody::Moving => "a corner of the moving half on an edge",
@@ -150,11 +150,11 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
     let verdict = if lever.theta_2 < 0.0 {
         "θ₂ < 0: it turns away, a failed mate"
     } else if lever.theta_2 < lever.aligned() - 1e-9 {
-        "θ₂ is still to grow until aligned"
+        "θ₂ is still to grow until docked"
     } else if lever.theta_2 > lever.aligned() + 1e-9 {
-        "θ₂ is still to fall until aligned"
+        "θ₂ is still to fall until docked"
     } else {
-        "θ₂ = βₚ + αₑ: aligned"
+        "θ₂ = βₚ + αₑ: docked"
     };
     svg.text([x, 112.0 + 24.0 * rows.len() as f64 + 8.0], LABEL, Anchor::Start, INK, verdict);
 }

@@ -181,13 +181,13 @@ impl Legend {
     pub(super) fn of(map: &Map, onaa: bool) -> Self {
         let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
         Self::new(of, std::slice::from_ref(map), onaa, |outcome| {
-            format!("{} {} %", outcome.name(), short(100.0 * map.share(outcome)))
+            format!("{} {} %", outcome.word(), short(100.0 * map.share(outcome)))
         })
     }
 
     /// Of several maps, each of which has its own shares.
     pub(super) fn of_all(maps: &[Map], onaa: bool) -> Self {
-        Self::new("", maps, onaa, |outcome| outcome.name().to_owned())
+        Self::new("", maps, onaa, |outcome| outcome.word().to_owned())
     }
 
     fn new(of: &'static str, maps: &[Map], onaa: bool, words: impl Fn(Outcome) -> String) -> Self {

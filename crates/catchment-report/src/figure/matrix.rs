@@ -136,7 +136,7 @@ fn legend(svg: &mut Svg, found: &Slices, y: f64) {
     for outcome in Outcome::ALL.into_iter().filter(occurs) {
         let fill = hex(colour::outcome(outcome));
         let style = format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#);
-        word(svg, outcome.name(), &style);
+        word(svg, outcome.word(), &style);
     }
     if found.slices.iter().any(|s| !s.onaa.bounds.is_empty()) {
         word(svg, "largest square (ONAA)", &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#));

@@ -75,8 +75,8 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
     for outcome in order.into_iter().rev().filter(|outcome| acceptance.outcomes.contains(outcome)) {
         let y = height - 24.0;
         svg.circle([x + 5.0, y - 4.0], 4.5, &style(outcome));
-        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, outcome.name());
-        x += 38.0 + width_of(outcome.name(), LABEL);
+        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, outcome.word());
+        x += 38.0 + width_of(outcome.word(), LABEL);
     }
     if report.centered.is_some() {
         let y = height - 24.0;

@@ -80,7 +80,7 @@ pub fn slices(
         let mut above = Vec::new();
         if maps.len() > 1 {
             let share = short(100.0 * map.share(Outcome::Aligned));
-            above.push(format!("{} {share} % of this slice", Outcome::Aligned.name()));
+            above.push(format!("{} {share} % of this slice", Outcome::Aligned.word()));
         }
         if !is_central {
             above.push(map.fixed(&units));
@@ -147,11 +147,9 @@ mod tests {
         let of_grid = short(100.0 * ball.counts()[0] as f64 / ball.outcomes.len() as f64);
         assert_ne!(of_slice, of_grid);
         let all = drawn(&design, &ball, &[], &zero).unwrap();
-        assert_eq!(all.svg().matches(&format!("aligned {of_slice} % of this slice")).count(), 3);
+        assert_eq!(all.svg().matches(&format!("docked {of_slice} % of this slice")).count(), 3);
         let one = drawn(&design, &ball, &[[Dof::X, Dof::Y]], &zero).unwrap();
-        assert!(
-            one.svg().contains("of this slice:") && one.svg().contains(&format!("aligned {of_slice} %<"))
-        );
+        assert!(one.svg().contains("of this slice:") && one.svg().contains(&format!("docked {of_slice} %<")));
         assert!(!all.svg().contains(&format!("aligned {of_grid} %")));
         assert!(!one.svg().contains(&format!("aligned {of_grid} %")));
     }

@@ -42,7 +42,7 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     let (left, height) = (430.0, 400.0);
     let mut svg = Svg::new(960.0 + in_space, height + 130.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    let story = format!("from {} → {}", describe(design, &placed(first)), path.outcome.name());
+    let story = format!("from {} → {}", describe(design, &placed(first)), path.outcome.word());
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
 
     let frame = view.frame(Rect { x: 72.0, y: 74.0, w: left, h: height });
@@ -216,7 +216,7 @@ mod tests {
         let design = design([Dof::X, Dof::Pitch].into_iter().collect());
         let picture = trajectory(&design, &v_face(), &path()).unwrap();
         look("trajectory", &picture);
-        assert!(picture.svg().contains("from x = 17.5 mm, pitch = 25.8° → aligned"));
+        assert!(picture.svg().contains("from x = 17.5 mm, pitch = 25.8° → docked"));
         assert!(picture.svg().contains("pitch = 0° left"));
     }
 

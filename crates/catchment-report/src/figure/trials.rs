@@ -28,7 +28,7 @@ pub fn trials(report: &TrialsReport) -> Picture {
         let [lo, hi] = round.disagreeing_ci95.map(percent);
         let step = round.timestep.map_or_else(String::new, |step| format!(", time step {step} s"));
         format!(
-            "{} trials by {}{step}: {} of the box on the wrong side (95 %: {lo} … {hi})",
+            "{} trials by {}{step}: {} of the error box on the wrong side (95 %: {lo} … {hi})",
             round.trials,
             found.method,
             percent(round.disagreeing),
@@ -129,7 +129,7 @@ fn legend(svg: &mut Svg, found: &Trials, [mut x, y]: [f64; 2]) {
     let mut entries: Vec<(String, &str)> = Outcome::ALL
         .into_iter()
         .filter(|outcome| met(*outcome))
-        .map(|outcome| (style(outcome, false), outcome.name()))
+        .map(|outcome| (style(outcome, false), outcome.word()))
         .collect();
     entries.push((style(Outcome::Missed, true), "on the wrong side of the exact border"));
     for (style, words) in entries {

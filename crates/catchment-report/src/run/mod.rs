@@ -4,7 +4,7 @@ mod basins;
 mod certificate;
 mod seat;
 
-use super::document::{Printed, Style, heading, lines};
+use super::document::{Printed, Style, lines, setup};
 use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, RunBody, ToleranceReport, UprightReport};
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{
@@ -30,7 +30,7 @@ impl Printed for RunBody {
         let mut document = Document::default();
         self.describe_outcomes(&mut document);
         self.describe_limits(&mut document);
-        document.append(heading(&self.design, true));
+        document.append(setup(&self.design, true));
         self.describe_method(&mut document);
         if let Some(found) = &self.seat {
             seat::describe(&mut document, found, &self.design);

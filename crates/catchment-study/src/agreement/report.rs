@@ -7,14 +7,15 @@ use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Ta
 impl Subject for Agreement {
     const KIND: &'static str = "methods";
 
-    fn document(&self, _: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         let cells: Vec<String> = self.cells.iter().map(ToString::to_string).collect();
         let total = grouped(self.cells.iter().product());
-        document
-            .row("methods", format!("all that apply, on {} = {total} cells", cells.join(" × ")))
-            .section(None)
-            .table(self.table());
+        document.row("methods", format!("all that apply, on {} = {total} cells", cells.join(" × ")));
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
+        document.table(self.table());
         if self.agreement.len() > 1 {
             document
                 .section("agreement: share of the cells that both accept or both reject, in %")

@@ -73,10 +73,13 @@ impl Subject for Chance {
         notes.into_iter().map(|text| Warning::Note { text }).collect()
     }
 
+    fn setup(&self, design: &Design, document: &mut Document) {
+        document.row("method", format!("drop, {} trials in a rigid-body engine", grouped(self.trials)));
+        self.describe_circumstances(design, document);
+    }
+
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", format!("drop, {} trials in a rigid-body engine", grouped(self.trials)));
-        self.describe_circumstances(design, &mut document);
         document.table(self.records());
         if let Some(overall) = &self.overall {
             overall.describe(&mut document);

@@ -7,8 +7,7 @@ use catchment_core::document::{Column, ColumnFormat, Document, Subject, Table, g
 impl Subject for Convergence {
     const KIND: &'static str = "convergence";
 
-    fn document(&self, _: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         let tolerance = format!("{:.3}", 100.0 * self.settings.tolerance);
         let tolerance = tolerance.trim_end_matches('0').trim_end_matches('.');
         document.row(
@@ -17,6 +16,10 @@ impl Subject for Convergence {
                 "two refinements in a row change the Sum by less than {tolerance} % of itself, the ONAA edge by less than {tolerance} % of the error box"
             ),
         );
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
         for sequence in &self.sequences {
             document.titled(Some(sequence.method.to_owned())).table(self.table(sequence));
             document.paragraph(self.ending(&sequence.end));

@@ -43,8 +43,7 @@ impl Subject for Friction {
         warnings
     }
 
-    fn document(&self, _: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         document.row(
             "method",
             format!(
@@ -52,6 +51,10 @@ impl Subject for Friction {
                 grouped(self.motions)
             ),
         );
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
         document.section(None).table(self.table());
         document.paragraph(format!(
             "μ: friction coefficient; docks: share of the error box; other columns: poses of {}. lost: dock without friction, not at this μ; gained: the other way \

@@ -14,10 +14,13 @@ impl Subject for HoldingForces {
     const KIND: &'static str = "hold";
     const SAMPLES_ERRORS: bool = false;
 
+    fn setup(&self, design: &Design, document: &mut Document) {
+        self.describe_rest(DesignUnits::of(design), document);
+    }
+
     fn document(&self, design: &Design) -> Document {
         let units = DesignUnits::of(design);
         let mut document = Document::default();
-        self.describe_rest(units, &mut document);
         document.table(self.records());
         let force = self.force_unit();
         if !self.sideways.is_empty() {

@@ -51,13 +51,16 @@ impl Subject for TrialPlan {
         warnings
     }
 
+    fn setup(&self, design: &Design, document: &mut Document) {
+        let settings = &self.settings;
+        document.row("method", exact_motions(&format!("{} poses", grouped(self.motions)), settings.friction));
+        document.row("pattern", self.pattern(DesignUnits::of(design)));
+        document.row("accuracy", accuracy_words(design, &settings.accuracy));
+    }
+
     fn document(&self, design: &Design) -> Document {
         let units = DesignUnits::of(design);
-        let settings = &self.settings;
         let mut document = Document::default();
-        document.row("method", exact_motions(&format!("{} poses", grouped(self.motions)), settings.friction));
-        document.row("pattern", self.pattern(units));
-        document.row("accuracy", accuracy_words(design, &settings.accuracy));
         self.describe_counts(&mut document, units);
         document.section("first trials");
         let mut first = Table::new([

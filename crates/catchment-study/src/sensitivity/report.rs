@@ -7,10 +7,13 @@ use catchment_core::document::{Column, ColumnFormat, Document, Subject, Table, g
 impl Subject for Sensitivity {
     const KIND: &'static str = "sensitivity";
 
-    fn document(&self, _: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         let poses = grouped(self.settings.poses.unwrap_or_default());
         document.row("method", format!("descent, {poses} random poses, the same in every run"));
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
         document
             .section(None)
             .row("Sum", format!("{} {}", significant(self.sum), self.unit))

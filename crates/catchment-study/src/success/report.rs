@@ -27,9 +27,12 @@ impl Subject for Success {
         self.robots.iter().flat_map(of).collect()
     }
 
+    fn setup(&self, _: &Design, document: &mut Document) {
+        document.row("method", exact_motions(&self.poses_in_words(), self.settings.friction));
+    }
+
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
-        document.row("method", exact_motions(&self.poses_in_words(), self.settings.friction));
         document.table(self.records());
         for robot in &self.robots {
             robot.describe(design, &mut document);

@@ -15,13 +15,16 @@ const LONGEST_LIST: usize = 40;
 impl Subject for Sweep {
     const KIND: &'static str = "sweep";
 
-    fn document(&self, _: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         for axis in &self.settings.axes {
             document.row(axis.name(), axis.values.join(", "));
         }
         let count = grouped(self.designs.len());
         document.row("designs", format!("{count}, each by {}", self.settings.run.method.name()));
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
         self.describe_sums(&mut document);
         document.section(None);
         for (what, number) in [("largest Sum ▲", self.largest), ("smallest Sum ▼", self.smallest)] {

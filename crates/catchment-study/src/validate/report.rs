@@ -62,14 +62,17 @@ impl Subject for Validation {
         warnings
     }
 
-    fn document(&self, design: &Design) -> Document {
-        let units = DesignUnits::of(design);
-        let mut document = Document::default();
+    fn setup(&self, design: &Design, document: &mut Document) {
         document.row("method", format!("descent, {} motions, no grid", grouped(self.motions)));
         if self.settings.friction > 0.0 {
             document.row("friction", format!("{} between the halves (Coulomb)", self.settings.friction));
         }
         document.row("accuracy", accuracy_words(design, &self.settings.accuracy));
+    }
+
+    fn document(&self, design: &Design) -> Document {
+        let units = DesignUnits::of(design);
+        let mut document = Document::default();
         self.describe_verdict(&mut document);
         document.section(None).table(self.matrix());
         if let Some(friction) = &self.friction {
@@ -126,7 +129,7 @@ impl Validation {
 
     /// Trials by their predicted and observed outcome.
     fn matrix(&self) -> Table {
-        let outcomes = ["aligned", "elsewhere", "jammed", "missed"].map(Column::new);
+        let outcomes = ObservedOutcome::ALL.map(|observed| Column::new(observed.word()));
         let mut table = Table::new([Column::new("predicted \\ observed").left()].into_iter().chain(outcomes));
         let mut rows: Vec<(bool, Option<ObservedOutcome>)> = Vec::new();
         for Count { either, predicted, .. } in &self.counts {
@@ -141,7 +144,7 @@ impl Validation {
                 self.counts.iter().find(same).map_or(0, |count| count.trials).into()
             };
             let (either, predicted) = row;
-            let name = predicted.map_or("undecided", ObservedOutcome::name);
+            let name = predicted.map_or("undecided", ObservedOutcome::word);
             let name = if either { format!("either ({name})") } else { name.to_owned() };
             table.push([name.into()].into_iter().chain(ObservedOutcome::ALL.map(trials)));
         }
@@ -201,7 +204,7 @@ impl Validation {
             );
             table.push([
                 trial.trial.to_string().into(),
-                trial.observed.map(ObservedOutcome::name).into(),
+                trial.observed.map(ObservedOutcome::word).into(),
                 margin.into(),
                 units.pose(&trial.point.error).into(),
             ]);

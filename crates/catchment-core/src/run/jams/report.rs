@@ -25,11 +25,14 @@ impl Subject for Jams {
         open.into_iter().chain(self.barely_stuck().map(|text| Warning::Note { text })).collect()
     }
 
-    fn document(&self, design: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         let poses = format!("{} random poses", grouped(self.motions));
         document.row("method", exact_motions(&poses, self.settings.friction));
-        document.section(None).table(self.outcome_table());
+    }
+
+    fn document(&self, design: &Design) -> Document {
+        let mut document = Document::default();
+        document.table(self.outcome_table());
         document.paragraph(
             "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. A jam is a group of rests on the same \
              features, near each other; symmetric copies count as one. top: the foremost level face of a half; slopes are measured from level.",

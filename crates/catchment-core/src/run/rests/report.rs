@@ -20,10 +20,13 @@ impl Subject for Rests {
         undecided.map(|share| Warning::Undecided { cells: share.count }).into_iter().collect()
     }
 
-    fn document(&self, design: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         document.row("load", "along -z, through the COR");
         document.row("method", exact_motions(&format!("{} random poses", grouped(self.motions)), 0.0));
+    }
+
+    fn document(&self, design: &Design) -> Document {
+        let mut document = Document::default();
         let off = self.outcomes.iter().filter(|(outcome, share)| {
             matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0
         });

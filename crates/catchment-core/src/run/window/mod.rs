@@ -174,7 +174,7 @@ pub enum WindowError {
     #[error(transparent)]
     Friction(#[from] FrictionOutOfRange),
     /// Not even zero docks.
-    #[error("the mated pose itself is {}: there is no window around it", outcome.name())]
+    #[error("the mated pose itself is {}: there is no window around it", outcome.word())]
     NotDocked {
         /// Its outcome.
         outcome: Outcome,
@@ -207,7 +207,7 @@ pub enum WindowError {
     #[error("nothing is asked: every error is given, or has the proportion 0; leave one to be found")]
     Nothing,
     /// A pose within the given half-widths already fails.
-    #[error("what is given is too much by itself: with {} it is {}", place(error), outcome.name())]
+    #[error("what is given is too much by itself: with {} it is {}", place(error), outcome.word())]
     GivenFails {
         /// The pose error.
         error: PoseError,
@@ -215,7 +215,7 @@ pub enum WindowError {
         outcome: Outcome,
     },
     /// Right beside the mated pose some pose fails.
-    #[error("poses right beside the mated one fail, however near: {} is {}", place(error), outcome.name())]
+    #[error("poses right beside the mated one fail, however near: {} is {}", place(error), outcome.word())]
     AtHome {
         /// The pose error.
         error: PoseError,

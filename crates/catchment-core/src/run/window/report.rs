@@ -16,13 +16,15 @@ const LIMITING: f64 = 0.01;
 impl Subject for ToleranceWindow {
     const KIND: &'static str = "window";
 
-    fn document(&self, design: &Design) -> Document {
-        let mut document = Document::default();
+    fn setup(&self, _: &Design, document: &mut Document) {
         document.row(
             "method",
             exact_motions(&format!("{} poses", grouped(self.motions)), self.settings.friction),
         );
-        document.section(None);
+    }
+
+    fn document(&self, design: &Design) -> Document {
+        let mut document = Document::default();
         self.describe(&mut document, design);
         document.section(None);
         self.describe_worst(&mut document, design);

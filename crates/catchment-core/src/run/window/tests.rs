@@ -35,7 +35,7 @@ fn of_gallery(name: &str) -> Problem {
 /// box 2 % larger along its tight error contains a failure.
 #[test]
 fn no_pose_of_it_fails_and_a_larger_one_does() {
-    const POSES: u64 = 10_000;
+    const POSES: u64 = 5000;
     let exec = Exec::new();
     let all = DofSet::ALL;
     let given = [None, None, Some(0.05), Some(0.05), None];
