@@ -10,7 +10,7 @@ use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
 use catchment_core::document::{grouped, tenths};
-use catchment_core::run::jams::{FeatureContact, Jam, Jams, Stability, contacts_in_words, lifted};
+use catchment_core::run::jams::{FeatureContact, Jam, Jams, Stability, contacts_in_words, escape_height};
 use catchment_core::run::rests::RestPlace;
 use glam::{DMat3, DVec3};
 
@@ -54,7 +54,7 @@ pub fn jams(design: &Design, found: &Jams, connector: &Connector) -> Result<Pict
         .filter(|(_, share)| share.count > 0)
         .map(|(outcome, share)| format!("{} {}", outcome.word(), tenths(share.share)))
         .collect();
-    let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
+    let story = format!("rests of motions that do not dock; of the error box {}", all.join(", "));
     let panels: Vec<Panel<'_>> = found
         .jams
         .iter()
@@ -69,12 +69,12 @@ fn jam_panel<'a>(design: &Design, found: &Jams, number: usize, jam: &'a Jam) -> 
     let tail = jam.examined.map(|examined| {
         let level = match examined.stability {
             _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
-            Stability::Level => "near-level",
+            Stability::Level => "almost level",
             stability => stability.name(),
         };
         let way = examined
             .escape_path
-            .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(design, way.climb)));
+            .map_or_else(String::new, |way| format!("; {}", escape_height(design, way.climb)));
         format!("{level}{way}")
     });
     Panel {
@@ -104,7 +104,7 @@ pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, Fig
         .map(|(outcome, share)| format!(", {} {}", outcome.word(), tenths(share.share)))
         .collect();
     let story = format!(
-        "where motions rest under a load along −z: {} random poses of the error box{}",
+        "rests under a load along −z, from {} random poses of the error box{}",
         grouped(report.motions),
         off.concat()
     );

@@ -90,11 +90,11 @@ pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
 }
 
 /// The escape height in words.
-pub fn lifted(design: &Design, climb: f64) -> String {
+pub fn escape_height(design: &Design, climb: f64) -> String {
     if climb < NOTHING {
-        "not lifted at all".to_owned()
+        "escape height 0".to_owned()
     } else {
-        format!("lifted by {} at most", DesignUnits::of(design).fine(climb))
+        format!("escape height at most {}", DesignUnits::of(design).fine(climb))
     }
 }
 

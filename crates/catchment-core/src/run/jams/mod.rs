@@ -35,7 +35,7 @@ mod stability;
 mod tests;
 
 pub use depth::DepthError;
-pub use descriptions::{contact_in_words, contacts_in_words, lifted};
+pub use descriptions::{contact_in_words, contacts_in_words, escape_height};
 pub use escape::EscapePath;
 pub use pairs::{Sticks, TouchingPair, what_sticks};
 pub use stability::Stability;

@@ -1,7 +1,7 @@
 //! Text form of rests.
 
 use super::super::jams::descriptions::RestDescriptions;
-use super::super::jams::{contacts_in_words, lifted};
+use super::super::jams::{contacts_in_words, escape_height};
 use super::{RestPlace, Rests};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
@@ -87,10 +87,10 @@ impl Rests {
         RestDescriptions::of(design, 0.0).escape(depth, &self.leads_to(rest))
     }
 
-    /// The same for pictures: `lifted by 1.2 mm at most, and it slides off`.
+    /// The same for pictures: `escape height at most 1.2 mm; then it slides off`.
     pub fn escape_path(&self, design: &Design, rest: &RestPlace) -> String {
         let Some(depth) = rest.depth_at_most_d else { return "no escape path was found".to_owned() };
-        format!("{}, and it {}", lifted(design, depth), self.leads_to(rest))
+        format!("{}; then it {}", escape_height(design, depth), self.leads_to(rest))
     }
 
     fn leads_to(&self, rest: &RestPlace) -> String {
