@@ -4,7 +4,7 @@
     python3 site/gallery.py target/release/catchment peg-in-hole    one of them
     python3 site/gallery.py --page                              only docs/gallery.md, from the numbers that are stored
     python3 site/gallery.py --check                             says what is out of date; the program is not run
-    python3 site/gallery.py --check target/release/catchment    runs the quick designs again, too: their numbers must be those that are stored
+    python3 site/gallery.py --check target/release/catchment    runs the quick designs again, too: their numbers and warnings must be those that are stored
     python3 site/gallery.py --check target/release/catchment all    runs all of them again
 
 The numbers lie in site/gallery.json beside the SHA-256 of the design they belong to, and of the files that it names.
@@ -210,14 +210,17 @@ def stale(stored: dict) -> list[str]:
 
 
 def others(stored: dict, program: str, stems: list[str]) -> list[str]:
-    """Designs of which the program says otherwise now."""
+    """Designs with other results now."""
     wrong = []
     for stem in stems:
         design = DESIGNS / f"{stem}.toml"
         now, then = keep(call(program, "run", design, *as_on_the_page(design))), stored[stem]["run"]
+        again = f"python3 site/gallery.py {program} {stem}"
         if now["outcomes"] != then["outcomes"] or not isclose(now["sum"], then["sum"], rel_tol=CLOSE):
-            wrong.append(f"{stem}: Sum {then['sum']:.6g}, {then['outcomes']} are stored, and the program says "
-                         f"{now['sum']:.6g}, {now['outcomes']}: python3 site/gallery.py {program} {stem}")
+            wrong.append(f"{stem}: Sum {then['sum']:.6g}, {then['outcomes']} are stored, and the program computes "
+                         f"{now['sum']:.6g}, {now['outcomes']}: {again}")
+        if now["warnings"] != then["warnings"]:
+            wrong.append(f"{stem}: its warnings have other words or numbers now: {again}")
     return wrong
 
 

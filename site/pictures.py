@@ -62,7 +62,7 @@ PICTURES = {
     "invert": ["invert designs/pyramid.toml --heights designs/systems/wanted-bowl.csv -o PICTURE"],
     "jams": ["rests designs/v-face.toml --jams -o PICTURE"],
     "latch": ["latch designs/systems/latch.toml -o out", "out/latch"],
-    "overview": ["new v-face -o v-face.toml", "run v-face.toml -o out", "out/overview"],
+    "overview": ["run designs/v-face.toml -o out", "out/overview"],
     "parts": ["check designs/pyramid-assembled.toml -o PICTURE"],
     "place": [
         "place designs/meshes/assembled-socket.obj designs/meshes/assembled-plug.ply --unit mm -o design.toml --figure PICTURE"

@@ -161,12 +161,14 @@ impl Printed for TraceBody {
             document.paragraph("The halves never meet.");
         } else {
             let shown = self.waypoint_table();
-            let counts = (shown.rows.len(), self.waypoints.len());
+            let poses = match (shown.rows.len(), self.waypoints.len()) {
+                (_, 1) => "the motion ends where it begins".to_owned(),
+                (some, all) if some == all => format!("all {} poses of the motion", grouped(all)),
+                (some, all) => format!("{} of {} poses of the motion", grouped(some), grouped(all)),
+            };
             document.table(shown);
             document.paragraph(format!(
-                "{} of {} poses of the motion; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR along z",
-                grouped(counts.0),
-                grouped(counts.1),
+                "{poses}; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR along z",
                 rounded(self.design.alignment.rotation_length)
             ));
         }

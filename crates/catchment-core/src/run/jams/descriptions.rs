@@ -89,6 +89,10 @@ pub fn contacts_in_words(contacts: &[FeatureContact]) -> Vec<String> {
     pairs.into_iter().map(|(words, count)| words + &times(count)).collect()
 }
 
+/// What the names of faces mean ([`FaceOrientation::name`](crate::contact::feature::FaceOrientation::name)).
+pub(in crate::run) const FACES: &str = "top: the foremost level face of a half; underside: a face turned away from the other half; \
+     slopes are measured from level.";
+
 /// The escape height in words.
 pub fn escape_height(design: &Design, climb: f64) -> String {
     if climb < NOTHING {

@@ -1,6 +1,6 @@
 //! Text form of jams.
 
-use super::descriptions::{RestDescriptions, contact_in_words};
+use super::descriptions::{FACES, RestDescriptions, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
@@ -33,10 +33,10 @@ impl Subject for Jams {
     fn document(&self, design: &Design) -> Document {
         let mut document = Document::default();
         document.table(self.outcome_table());
-        document.paragraph(
+        document.paragraph(format!(
             "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. A jam is a group of rests on the same \
-             features, near each other; symmetric copies count as one. top: the foremost level face of a half; slopes are measured from level.",
-        );
+             features, near each other; symmetric copies count as one. {FACES}"
+        ));
         let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {
             document.section(None);

@@ -1,6 +1,6 @@
 //! Text form of rests.
 
-use super::super::jams::descriptions::RestDescriptions;
+use super::super::jams::descriptions::{FACES, RestDescriptions};
 use super::super::jams::{contacts_in_words, escape_height};
 use super::{RestPlace, Rests};
 use crate::acceptance::{Outcome, Warning};
@@ -54,7 +54,10 @@ impl Subject for Rests {
                 tenths(share)
             ));
         }
-        document.section(None).table(self.table());
+        if !self.rests.is_empty() {
+            document.section(None).paragraph(FACES);
+        }
+        document.table(self.table());
         document
     }
 }
