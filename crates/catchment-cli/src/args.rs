@@ -122,6 +122,15 @@ impl DesignArgs {
         .filter_map(|(option, key, given)| given.then_some((option, key)))
     }
 
+    /// The changes as they are typed: ` --free x,y,yaw`; empty without any.
+    pub(crate) fn as_typed(&self) -> String {
+        let free = self.free.map(|free| format!(" --free {}", free.to_string().replace(", ", ",")));
+        let cor = self.cor.map(|cor| format!(" --cor '{cor}'"));
+        let ratio = self.aspect_ratio.map(|ratio| format!(" --aspect-ratio {ratio}"));
+        let rho = self.rho.map(|rho| format!(" --rho '{rho}'"));
+        [free, cor, ratio, rho].into_iter().flatten().collect()
+    }
+
     /// Applies the changes.
     pub(crate) fn change(&self, mut draft: Draft) -> Result<Draft, ProblemError> {
         if let Some(free) = self.free {

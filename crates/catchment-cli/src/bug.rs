@@ -12,7 +12,7 @@ pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
     panic::set_hook(Box::new(|bug| {
         if !is_panic_expected() {
             // Nobody is left to tell when stderr itself is gone.
-            let _ = io::stderr().lock().write_all(told(bug).as_bytes());
+            let _ = io::stderr().lock().write_all(message(bug).as_bytes());
         }
     }));
     // Nothing of the work is used after a panic.
@@ -20,7 +20,7 @@ pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
 }
 
 /// What is said of a panic.
-fn told(bug: &PanicHookInfo<'_>) -> String {
+fn message(bug: &PanicHookInfo<'_>) -> String {
     let message = bug.payload_as_str().unwrap_or("no message");
     let place = bug.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);
     format!(
@@ -45,7 +45,7 @@ mod tests {
         let heard = Arc::new(Mutex::new(String::new()));
         let listener = Arc::clone(&heard);
         let ended = caught(|| {
-            panic::set_hook(Box::new(move |bug| listener.lock().unwrap().push_str(&told(bug))));
+            panic::set_hook(Box::new(move |bug| listener.lock().unwrap().push_str(&message(bug))));
             std::thread::scope(|scope| {
                 scope.spawn(|| panic!("a \u{1b}[2Jbug"));
             });

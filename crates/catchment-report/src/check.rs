@@ -8,7 +8,7 @@ use catchment_core::design::{
 };
 use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
 use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
-use catchment_core::pose::{Dof, DofSet, PoseError};
+use catchment_core::pose::{Dof, PoseError};
 use catchment_core::problem::Problem;
 use glam::{DAffine3, DVec3};
 use serde::Serialize;
@@ -229,10 +229,10 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         ConnectorSpec::Own(own) => {
             for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
                 row(name, &half(spec));
-                if let Some(told) = spec.meshing_told(design) {
+                if let Some(told) = spec.meshing_in_words(design) {
                     row("", &told);
                 }
-                if let Some(done) = spec.repairs_told(design) {
+                if let Some(done) = spec.repairs_in_words(design) {
                     row("", &done);
                 }
             }
@@ -263,9 +263,9 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         _ => "",
     };
     row("width D", &format!("{} {unit}{from}", design.width));
-    row("free errors", &names(alignment.free));
+    row("free errors", &alignment.free.to_string());
     if !alignment.dont_care.is_empty() {
-        row("ignored", &names(alignment.dont_care));
+        row("ignored", &alignment.dont_care.to_string());
     }
     row(
         "COR",
@@ -316,11 +316,11 @@ fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingR
     let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
         row(
             name,
-            &format!("{} in the fixed half's drawing = {} in the moving half's", point(fixed), point(moving)),
+            &format!("fixed half {}, moving half {}; they coincide when mated", point(fixed), point(moving)),
         );
     };
     places("face centre", fixed.face_center, moving.face_center);
-    places("COR in drawings", fixed.center_of_rotation, moving.center_of_rotation);
+    places("COR, as drawn", fixed.center_of_rotation, moving.center_of_rotation);
     let along = format!("{} and {} of the fixed half's drawing", direction(fixed.x), direction(fixed.y));
     row("errors in x and y", &format!("along {along}"));
     let is_assembled =
@@ -409,10 +409,6 @@ fn parts_of(parts: &[PartSpec]) -> String {
 fn chord_error(half: &HalfSpec) -> Option<f64> {
     let HalfSpec::Parts(parts) = half else { return None };
     parts.iter().filter_map(|part| part.shape.chord_error()).reduce(f64::max)
-}
-
-fn names(set: DofSet) -> String {
-    set.iter().map(Dof::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Without the last digits, which the conversion of units leaves.

@@ -240,7 +240,7 @@ impl<'a> OutcomesReport<'a> {
     }
 
     /// The numbers of the reported rows.
-    fn told(&self) -> impl Iterator<Item = usize> {
+    fn reported(&self) -> impl Iterator<Item = usize> {
         let all = if self.finished.is_some() { 0 } else { self.table.errors().len() };
         self.finished.unwrap_or_default().iter().copied().chain(0..all)
     }
@@ -275,7 +275,7 @@ impl<'a> OutcomesReport<'a> {
     pub fn to_csv(&self) -> Result<String, csv::Error> {
         let mut rows = OutcomeRows::new(self.problem, self.table, self.method, self.doubts);
         let mut text = rows.header()?;
-        for (number, end) in self.told().zip(self.ends) {
+        for (number, end) in self.reported().zip(self.ends) {
             text.push_str(&rows.push(number, *end)?);
         }
         text.push_str(&rows.rest()?);
@@ -290,7 +290,7 @@ impl<'a> OutcomesReport<'a> {
         let carried = self.table.carried();
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
-        let mut told = self.told().peekable();
+        let mut told = self.reported().peekable();
         let mut endings = EndContacts::new(self.problem, self.method);
         let poses = self.table.rows().zip(self.table.errors()).enumerate();
         let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
@@ -335,7 +335,7 @@ impl<'a> OutcomesReport<'a> {
             lines.push(format!("{jammed} crossed: a layer rests on one that is not its partner"));
         }
         if let Some(doubts) = self.doubts {
-            let may_stick = self.told().filter(|number| doubts.may_stick(*number)).count();
+            let may_stick = self.reported().filter(|number| doubts.may_stick(*number)).count();
             lines.push(format!(
                 "{may_stick} came by a place where Coulomb's law would let them stick as well"
             ));

@@ -168,7 +168,7 @@ impl Printed for TraceBody {
             };
             document.table(shown);
             document.paragraph(format!(
-                "{poses}; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR along z",
+                "{poses}; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR above the face centre of the fixed half",
                 rounded(self.design.alignment.rotation_length)
             ));
         }

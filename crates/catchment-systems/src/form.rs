@@ -310,7 +310,7 @@ impl<'t> Form<'t> {
         let text = text.replace('_', "");
         let parsed = text.parse::<Quantity>();
         match parsed
-            .map_err(|error: DesignDefect| told(&error, error.help()))
+            .map_err(|error: DesignDefect| message_and_advice(&error, error.help()))
             .and_then(|q| meaning(q).map_err(|message| (message, None)))
         {
             Ok(number) => Some(number),
@@ -417,7 +417,7 @@ impl<'t> Form<'t> {
     }
 }
 
-fn told(error: &impl Display, help: Option<String>) -> (String, Option<String>) {
+fn message_and_advice(error: &impl Display, help: Option<String>) -> (String, Option<String>) {
     (error.to_string(), help)
 }
 

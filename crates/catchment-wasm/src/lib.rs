@@ -49,7 +49,7 @@ impl Desk {
     }
 }
 
-fn told(error: impl Display) -> String {
+fn message(error: impl Display) -> String {
     error.to_string()
 }
 
@@ -58,9 +58,9 @@ fn problem(input: &[u8], design: usize, fixed: usize) -> Result<Problem, String>
     let cut = || format!("the input has {} bytes, fewer than announced", input.len());
     let (design, halves) = input.split_at_checked(design).ok_or_else(cut)?;
     let (fixed, moving) = halves.split_at_checked(fixed).ok_or_else(cut)?;
-    let design: Design = serde_json::from_slice(design).map_err(told)?;
+    let design: Design = serde_json::from_slice(design).map_err(message)?;
     let [fixed, moving] = [fixed, moving].map(Half::from_bytes);
-    Problem::of_halves(design, fixed.map_err(told)?, moving.map_err(told)?).map_err(told)
+    Problem::of_halves(design, fixed.map_err(message)?, moving.map_err(message)?).map_err(message)
 }
 
 /// Where `length` bytes of input go.
@@ -98,9 +98,9 @@ pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, frictio
         if !start.to_array().into_iter().all(f64::is_finite) {
             return Err("a pose error is no number".to_owned());
         }
-        let settings = DescentSettings::with_friction(friction).map_err(told)?;
+        let settings = DescentSettings::with_friction(friction).map_err(message)?;
         let (path, reason) = problem.trace(&start, &settings);
-        TraceReport::new(problem, &settings, start, &path, reason).to_json().map_err(told)
+        TraceReport::new(problem, &settings, start, &path, reason).to_json().map_err(message)
     };
     let said = traced();
     desk.answer(said)

@@ -9,6 +9,7 @@
 //! After `hold` comes `plan`, which needs numbers that only the reader has.
 
 use super::Command;
+use crate::args::DesignArgs;
 use crate::source::is_stream;
 use catchment::terminal::shown;
 use std::path::Path;
@@ -20,23 +21,27 @@ impl Command {
             // What came from stdin is not there any more.
             (!is_stream(path)).then(|| format!("catchment {command} {}{more}", quoted(path)))
         };
+        // The options that change the design hold for what follows, too.
+        let on = |command: &str, design: &DesignArgs, more: &str| {
+            of(command, &design.path, &(design.as_typed() + more))
+        };
         match self {
             Self::Place(args) => of("run", args.output()?, " -o out"),
-            Self::Check(args) => of("run", &args.design.path, " -o out"),
+            Self::Check(args) => on("run", &args.design, " -o out"),
             Self::Run(args) => match args.place.output() {
                 Some(out) if out.extension().is_none() => of("report", out, " -o page.html"),
-                _ => of("window", &args.design.path, ""),
+                _ => on("window", &args.design, ""),
             },
-            Self::Report(args) => of("view", &args.design.path, ""),
-            Self::Slices(args) => of("run", &args.design.path, " -o out"),
-            Self::Window(args) => of("rests", &args.design.path, " --jams"),
-            Self::Trace(args) if args.poses.is_none() => of("rests", &args.design.path, " --jams"),
-            Self::Jams(args) => of("friction", &args.search.design.path, ""),
-            Self::Friction(args) => of("hold", &args.design.path, ""),
-            Self::Rests(args) if args.jams => of("friction", &args.search.design.path, ""),
-            Self::Rests(args) => of("hold", &args.search.design.path, ""),
-            Self::Success(args) => of("window", &args.design.path, ""),
-            Self::Dynamics(args) => of("friction", &args.design.path, ""),
+            Self::Report(args) => on("view", &args.design, ""),
+            Self::Slices(args) => on("run", &args.design, " -o out"),
+            Self::Window(args) => on("rests", &args.design, " --jams"),
+            Self::Trace(args) if args.poses.is_none() => on("rests", &args.design, " --jams"),
+            Self::Jams(args) => on("friction", &args.search.design, ""),
+            Self::Friction(args) => on("hold", &args.design, ""),
+            Self::Rests(args) if args.jams => on("friction", &args.search.design, ""),
+            Self::Rests(args) => on("hold", &args.search.design, ""),
+            Self::Success(args) => on("window", &args.design, ""),
+            Self::Dynamics(args) => on("friction", &args.design, ""),
             _ => None,
         }
     }
@@ -75,6 +80,13 @@ mod tests {
                 words = next;
             }
         }
+    }
+
+    #[test]
+    fn changes_of_the_design_are_repeated() {
+        let words = "catchment run d.toml --free x,yaw --rho 0.4".split(' ').map(ToOwned::to_owned);
+        let Ok(cli) = args::parse(words.collect::<Vec<String>>()) else { panic!("it cannot be typed") };
+        assert_eq!(cli.command.next().unwrap(), "catchment window d.toml --free x,yaw --rho '0.4'");
     }
 
     #[test]

@@ -184,7 +184,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
         None => to_stdout(&found.text)?,
     }
-    to_stderr(&told(&found, args.moving.as_deref()));
+    to_stderr(&summary(&found, args.moving.as_deref()));
     Ok(ExitStatus::Done)
 }
 
@@ -270,7 +270,7 @@ fn is_file(said: &str) -> bool {
 }
 
 /// What was chosen, what came next, and what to look at.
-fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
+fn summary(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
     let head = format!(
@@ -286,7 +286,7 @@ fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let told = rows.iter().enumerate().map(|(k, one)| {
-        format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.told(&rows, unit))
+        format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.in_words(&rows, unit))
     });
     let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
     let help = found.doubts.iter().any(|doubt| doubt.contains("picture")).then(|| HELP.to_owned());
@@ -371,14 +371,14 @@ pub(crate) fn unit(text: &str) -> Result<LengthUnit, String> {
 /// How far a surface may move, in the unit of the files.
 fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
     let scale = LengthScale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
-    let told =
+    let refusal =
         |defect: DesignDefect| Failure::with_help(format!("--simplify {text:?}: {defect}"), defect.help());
-    let quantity: Quantity = text.parse().map_err(told)?;
+    let quantity: Quantity = text.parse().map_err(refusal)?;
     let help = || Some("say how far the surface may move, such as '0.01 mm'".to_owned());
     if quantity.unit == QuantityUnit::D {
         return Err(Failure::with_help(format!("--simplify {text:?}: D is not known yet"), help()));
     }
-    let most = quantity.drawn_length_d(&scale).map_err(told)?;
+    let most = quantity.drawn_length_d(&scale).map_err(refusal)?;
     if most > 0.0 {
         Ok(most)
     } else {

@@ -263,9 +263,9 @@ impl fmt::Display for Warning {
             ),
             Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
                 f,
-                "the Sum by the grid, {sum_grid:.4}, lies outside the 95 % CI {lo:.4} … {hi:.4} of the sampled poses: the grid is too \
-                 coarse or its method biased; do not rely on slices, pictures and shares of jams and misses, which use the grid; the AA (corrected \
-                 by the sampled poses), window and limits stay valid"
+                "the AA by the grid, {sum_grid:.4}, lies outside the 95 % CI {lo:.4} … {hi:.4} of the sampled poses: the grid is too \
+                 coarse or its method biased; do not rely on slices, pictures and shares of jams and misses, which use the grid, or raise its \
+                 resolution; the docked share and the AA (both corrected by the sampled poses), window and limits stay valid"
             ),
             Self::NoInterval => write!(
                 f,

@@ -104,13 +104,13 @@ impl std::error::Error for MatedProblem {}
 
 impl fmt::Display for MatedProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(DisplayUnit::IN_D))
+        f.write_str(&self.in_words(DisplayUnit::IN_D))
     }
 }
 
 impl MatedProblem {
     /// The problem as a sentence.
-    pub fn told(&self, told: DisplayUnit) -> String {
+    pub fn in_words(&self, told: DisplayUnit) -> String {
         match self {
             Self::Collision { overlap } => format!(
                 "in the aligned pose the halves overlap by {} along the approach: check face_height, mount, and that both halves are drawn \
@@ -234,7 +234,7 @@ pub(crate) struct ReleaseResult {
 
 impl LossOfSeat {
     /// The problem as a sentence.
-    pub fn told(&self, told: DisplayUnit) -> String {
+    pub fn in_words(&self, told: DisplayUnit) -> String {
         let let_go = match self.from {
             from if from == PoseError::default() => "a half let go without any error".to_owned(),
             from => format!("a half let go with an error of {}", told.error(&from)),

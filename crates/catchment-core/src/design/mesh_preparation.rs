@@ -110,7 +110,7 @@ impl Repairs {
     }
 
     /// As a line, with lengths in D written by `length`.
-    pub fn told(&self, length: impl Fn(f64) -> String) -> String {
+    pub fn in_words(&self, length: impl Fn(f64) -> String) -> String {
         let mut parts = Vec::new();
         let mut part = |count: usize, one: &str, many: &str| match count {
             0 => {}
@@ -152,13 +152,13 @@ impl HalfSpec {
     }
 
     /// The changes to its meshes, as a line in the unit of the design; `None` without changes.
-    pub fn repairs_told(&self, design: &Design) -> Option<String> {
+    pub fn repairs_in_words(&self, design: &Design) -> Option<String> {
         match self {
-            Self::Mesh(file) => told(file, design),
+            Self::Mesh(file) => repairs_of(file, design),
             Self::Parts(parts) => {
                 let mut lines: Vec<String> = Vec::new();
                 for file in parts.iter().filter_map(|part| part.shape.file()) {
-                    let Some(changes) = told(file, design) else { continue };
+                    let Some(changes) = repairs_of(file, design) else { continue };
                     let line = format!("{}: {changes}", shown(&file.path));
                     // A file may serve several parts.
                     if !lines.contains(&line) {
@@ -174,7 +174,7 @@ impl HalfSpec {
 
 impl HalfSpec {
     /// The meshing of its STEP files, as a line in the unit of the design; `None` without STEP files.
-    pub fn meshing_told(&self, design: &Design) -> Option<String> {
+    pub fn meshing_in_words(&self, design: &Design) -> Option<String> {
         match self {
             Self::Mesh(file) => meshing(file, design),
             Self::Parts(parts) => {
@@ -224,9 +224,9 @@ fn rounded_up(value: f64) -> f64 {
 }
 
 /// The changes to a mesh file.
-fn told(file: &FileSpec, design: &Design) -> Option<String> {
+fn repairs_of(file: &FileSpec, design: &Design) -> Option<String> {
     let repairs = &file.content.as_ref()?.repairs;
-    (!repairs.is_none()).then(|| repairs.told(|d| moved(d, design)))
+    (!repairs.is_none()).then(|| repairs.in_words(|d| moved(d, design)))
 }
 
 /// Displacement of a surface, in millimetres if the design has a unit, rounded up to two digits.
@@ -243,7 +243,7 @@ fn moved(d: f64, design: &Design) -> String {
 
 impl fmt::Display for Repairs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(|d| format!("{d:.1e} D")))
+        f.write_str(&self.in_words(|d| format!("{d:.1e} D")))
     }
 }
 

@@ -18,7 +18,7 @@ mod units;
 
 pub use number::{
     decimals, fixed, grouped, length, number, percent, rounded, rounded_down, significant, tenths,
-    tenths_between, with_error,
+    tenths_between, with_error, with_interval,
 };
 pub use table::{Cell, Column, ColumnFormat, Table};
 pub use units::DesignUnits;

@@ -80,6 +80,14 @@ pub fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
     format!("{value:.decimals$} ± {up:.decimals$}")
 }
 
+/// The value, and both ends of its interval, to as many decimals as two digits of the interval's half-width need.
+pub fn with_interval(value: f64, [lo, hi]: [f64; 2]) -> [String; 3] {
+    let error = (hi - value).max(value - lo);
+    let decimals =
+        if error > 0.0 && error.is_finite() { (1.0 - error.log10().floor()).clamp(0.0, 9.0) } else { 4.0 };
+    [value, lo, hi].map(|number| format!("{number:.*}", decimals as usize))
+}
+
 /// Thousands kept apart by thin gaps: 24 300 000.
 pub fn grouped(n: usize) -> String {
     let digits = n.to_string();

@@ -18,7 +18,7 @@
 use super::{MeritError, advance, axis_number, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::exec::{Cancelled, Exec};
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use rayon::prelude::*;
 
 /// A box with its centre at zero.
@@ -32,6 +32,9 @@ pub struct CenteredBox {
     pub reaches_border: bool,
     /// Number of sampled poses of it, all of which dock; `None` if it rests on cells.
     pub sampled: Option<usize>,
+    /// The errors that limit it: with one of them slightly larger and the others inside the box a pose fails. Empty if it rests on
+    /// cells.
+    pub limited_by: DofSet,
 }
 
 /// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
@@ -90,6 +93,7 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64], exec: &Exec) -> Resul
         half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
         reaches_border: scale >= border,
         sampled: None,
+        limited_by: DofSet::EMPTY,
     })
 }
 

@@ -158,7 +158,7 @@ pub trait PoseMethod: DecisionMethod {
     ///
     /// # Errors
     /// As for [`PoseMethod::follow`].
-    fn rest_told(
+    fn rest_observed(
         &self,
         problem: &Problem,
         domain: Domain,

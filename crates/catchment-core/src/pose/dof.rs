@@ -143,6 +143,14 @@ impl DofSet {
     }
 }
 
+/// Names with commas: `x, y, yaw`.
+impl fmt::Display for DofSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.iter().map(Dof::name).collect();
+        f.pad(&names.join(", "))
+    }
+}
+
 impl FromIterator<Dof> for DofSet {
     fn from_iter<I: IntoIterator<Item = Dof>>(iter: I) -> Self {
         iter.into_iter().fold(Self::EMPTY, Self::with)

@@ -237,7 +237,7 @@ impl Draft {
         let diagnostic = |problem: &MatedProblem| {
             let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.diagnostic(defect_keys::of_mated(problem), problem.told(told), help)
+            self.diagnostic(defect_keys::of_mated(problem), problem.in_words(told), help)
         };
         let list = problems.iter().map(diagnostic).collect();
         Diagnostics { list, source: self.source, omitted: 0 }

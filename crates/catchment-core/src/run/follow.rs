@@ -80,7 +80,7 @@ impl Problem {
             kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
             told(number, end);
         };
-        match follow.rest_told(self, Domain::Poses(poses.to_vec()), exec, &keep) {
+        match follow.rest_observed(self, Domain::Poses(poses.to_vec()), exec, &keep) {
             Ok((acceptance, ends)) => Ok(FollowedPoses { acceptance, ends, finished: None }),
             Err(DecideError::Cancelled(cancelled)) => {
                 let mut kept: Vec<(usize, End)> = kept.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -233,7 +233,7 @@ impl Problem {
     /// remedy.
     fn sentence(&self, doubt: &MatedProblem) -> String {
         let told = DisplayUnit::of(self.design());
-        let said = doubt.told(told);
+        let said = doubt.in_words(told);
         if !is_unstable(doubt) {
             return said;
         }
@@ -272,7 +272,7 @@ impl Problem {
         let told = DisplayUnit::of(self.design());
         Some(format!(
             "{}: draw the halves so that they are mated where they rest, or lock the degree of freedom in which they tip",
-            fall.told(told)
+            fall.in_words(told)
         ))
     }
 }

@@ -160,14 +160,14 @@ pub fn setup(design: &Design, samples_errors: bool) -> Document {
     document
 }
 
-/// The characteristic length in words: `25 mm, your input: √(rotational / lateral damping of the mount)`.
+/// The characteristic length in words: `characteristic length 25 mm = √(rotational / lateral damping of the mount), from the design …`.
 pub(crate) fn characteristic_length(rho: &str, turns: bool) -> String {
     let meaning = if turns {
-        "√(rotational / lateral damping of the mount)"
+        " = √(rotational / lateral damping of the mount), from the design (default 0.5 D)"
     } else {
-        "without effect, since no turn is free"
+        ", without effect, since no turn is free"
     };
-    format!("{rho}, your input: {meaning}")
+    format!("characteristic length {rho}{meaning}")
 }
 
 /// Which errors are free, and what each is: `x, y (shifts); yaw (turn about approach axis z); roll, pitch locked at 0`.

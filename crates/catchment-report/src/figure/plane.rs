@@ -135,15 +135,15 @@ impl Plane {
         if plane.through_contacts && halves.into_iter().all(shows) {
             return plane;
         }
-        if usual.offsets.len() > 1 || usual.is_told_by(&connector.fixed) {
+        if usual.offsets.len() > 1 || usual.shows_features_of(&connector.fixed) {
             return usual;
         }
         let turned = [PI / 4.0, -PI / 4.0, PI / 2.0].map(|azimuth| Self { azimuth, ..usual.clone() });
-        turned.into_iter().find(|plane| plane.is_told_by(&connector.fixed)).unwrap_or(usual)
+        turned.into_iter().find(|plane| plane.shows_features_of(&connector.fixed)).unwrap_or(usual)
     }
 
     /// Whether the profile of a half varies along the plane: it is no plain block there.
-    fn is_told_by(&self, half: &Half) -> bool {
+    fn shows_features_of(&self, half: &Half) -> bool {
         /// A block fills its bounds but for less than this share.
         const BLOCK: f64 = 0.02;
         let outlines = self.outlines(half, (DMat3::IDENTITY, DVec3::ZERO));

@@ -104,9 +104,9 @@ impl Page<'_> {
         let planes =
             self.planes.iter().map(|plane| grid::plane(plane, exec)).collect::<Result<Vec<_>, _>>()?;
         let data = json!({
-            "report": told(self.report)?,
-            "jams": self.jams.map(told).transpose()?,
-            "window": self.window.map(told).transpose()?,
+            "report": json_of(self.report)?,
+            "jams": self.jams.map(json_of).transpose()?,
+            "window": self.window.map(json_of).transpose()?,
             "friction": self.report.friction(),
             "notes": self.notes,
             "served": self.is_served,
@@ -167,7 +167,7 @@ fn packed(page: Html, id: &'static str, number: Option<usize>, bytes: &[u8]) -> 
 }
 
 /// A report without the parts that differ between equal runs, and without the design, which the run contains.
-fn told<T: serde::Serialize>(report: &T) -> Result<Value, serde_json::Error> {
+fn json_of<T: serde::Serialize>(report: &T) -> Result<Value, serde_json::Error> {
     let mut value = serde_json::to_value(report)?;
     value["timing"] = Value::Null;
     if value["kind"] != "run" {

@@ -9,9 +9,9 @@ use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, RunBody, Toler
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::document::{
     Cell, Column, DesignUnits, Document, Table, decimals, exact_motions, grouped, percent, significant,
-    tenths, with_error,
+    tenths, with_error, with_interval,
 };
-use catchment_core::pose::Dof;
+use catchment_core::pose::{Dof, DofSet};
 use catchment_core::run::Upright;
 use catchment_core::run::jams::{Jams, contacts_in_words};
 use std::borrow::Cow;
@@ -67,7 +67,6 @@ impl RunBody {
         };
         document.row("docked", docked);
         document.row("not docked", self.failures_in_words());
-        document.more("jammed: at rest elsewhere; missed: no contact, or slid off");
         if let Some(success) = &self.success {
             let [lo, hi] = success.ci95.unwrap_or(success.bracket).map(percent);
             let what =
@@ -124,10 +123,12 @@ impl RunBody {
     fn describe_meshes(&self, document: &mut Document, altered: bool) {
         let ConnectorSpec::Own(own) = &self.design.connector else { return };
         for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
-            if let Some(meshed) = half.meshing_told(&self.design).filter(|_| altered) {
+            if let Some(meshed) = half.meshing_in_words(&self.design).filter(|_| altered) {
                 document.row(name, meshed);
             }
-            if let Some(repaired) = half.repairs_told(&self.design).filter(|_| half.is_altered() == altered) {
+            if let Some(repaired) =
+                half.repairs_in_words(&self.design).filter(|_| half.is_altered() == altered)
+            {
                 document.row(name, repaired);
             }
         }
@@ -200,8 +201,7 @@ impl RunBody {
     fn describe_acceptance(&self, document: &mut Document) {
         let a = &self.acceptance;
         let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
-        let by = a.sum_ci95.map_or("", |_| " (95 % CI)");
-        document.row("AA (Sum)", format!("{}{by}", sum(a)));
+        document.row("AA (Sum)", sum_in_words(a));
         let means = "area of acceptance, in the literature the Sum: the volume of all pose errors that dock";
         document.more(match (a.sum_ci95, self.axes.is_empty()) {
             (None, _) => means.to_owned(),
@@ -241,24 +241,32 @@ impl RunBody {
 
     /// The tolerance window, and the limit of each error alone.
     fn describe_limits(&self, document: &mut Document) {
+        const OUTCOMES: &str = "jammed: at rest elsewhere; missed: no contact, or slid off";
         let centered = self.centered.as_ref();
+        document.section(None);
         if self.tolerances.is_empty() && centered.is_none() {
+            document.paragraph(OUTCOMES);
             return;
         }
-        document.section(None);
         let mut is_open = limits(document, &self.design, centered, &self.tolerances);
         if let Some(found) = &self.upright {
             document.paragraph("the same with roll and pitch locked at 0");
             is_open |= limits(document, &self.design, Some(&found.window), &found.tolerances);
         }
+        document.section(None).paragraph(OUTCOMES);
         match centered {
             Some(found) if found.followed => {
                 let all = found.sampled.map_or_else(
                     || "every pose sampled inside it docks".to_owned(),
                     |poses| format!("all of {} poses sampled inside it dock", grouped(poses)),
                 );
+                let limits = if found.limited_by.is_empty() {
+                    ""
+                } else {
+                    "; limited by: with any of these slightly larger and the others inside the window, poses fail"
+                };
                 document.paragraph(format!(
-                    "tolerance window: all errors at once; the error box shrunk in proportion until {all}"
+                    "tolerance window: all errors at once; the error box shrunk in proportion until {all}{limits}"
                 ));
             }
             Some(_) => {
@@ -303,6 +311,18 @@ pub(super) fn sum(a: &AcceptanceReport) -> String {
         (None, None) => significant(a.sum),
     };
     format!("{sum} {}", a.unit)
+}
+
+/// The same with both ends of the interval: `12.587 D²·rad³ (95 % CI 12.564 … 12.610)`.
+fn sum_in_words(a: &AcceptanceReport) -> String {
+    match a.sum_ci95 {
+        Some(ci95) if upper_end(a).is_none() => {
+            let [sum, lo, hi] = with_interval(a.sum, ci95);
+            format!("{sum} {} (95 % CI {lo} … {hi})", a.unit)
+        }
+        Some(_) => format!("{} (95 % CI)", sum(a)),
+        None => sum(a),
+    }
 }
 
 /// The upper end of an interval that is wider than twice the Sum.
@@ -390,6 +410,9 @@ fn limits(
         ]);
     }
     document.table(table);
+    if let Some(found) = window.filter(|found| !found.limited_by.is_empty()) {
+        document.row("limited by", found.limited_by.iter().copied().collect::<DofSet>().to_string());
+    }
     is_open
 }
 

@@ -217,6 +217,10 @@ pub struct CenteredReport {
     /// Number of sampled poses of the final cube, all of which dock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampled: Option<usize>,
+    /// Errors that limit the cube: with one of them slightly larger and the others inside the cube a pose fails; absent if the
+    /// cells determined the size.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limited_by: Vec<Dof>,
 }
 
 /// Figures of merit of the connector with roll and pitch locked.
@@ -466,8 +470,15 @@ impl From<CenteredBox> for CenteredReport {
     fn from(found: CenteredBox) -> Self {
         let bounds =
             found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
-        let (reaches_border, sampled) = (found.reaches_border, found.sampled);
-        Self { edge: found.scale, bounds, reaches_border, followed: sampled.is_some(), sampled }
+        let CenteredBox { scale: edge, reaches_border, sampled, limited_by, .. } = found;
+        Self {
+            edge,
+            bounds,
+            reaches_border,
+            followed: sampled.is_some(),
+            sampled,
+            limited_by: limited_by.iter().collect(),
+        }
     }
 }
 

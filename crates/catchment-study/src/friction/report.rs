@@ -7,6 +7,8 @@ use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Ta
 use catchment_core::run::jams::contact_in_words;
 use serde::Serializer;
 
+/// Fewer docking poses than this cannot resolve a share of 99 %.
+const FEW: usize = 100;
 /// Pairs of features that are shown.
 const SHOWN: usize = 6;
 
@@ -133,6 +135,13 @@ impl Friction {
                 format!("{:.3} (95 % CI {lo} … {hi})", kept.friction)
             };
             document.row(format!("{:.0} %", 100.0 * kept.share), friction);
+        }
+        if base < FEW {
+            document.paragraph(format!(
+                "{} are few: shares change in steps of {:.0} %, so 99 % means all of them. A larger sample gives finer shares.",
+                poses(base),
+                100.0 / base as f64
+            ));
         }
     }
 

@@ -43,14 +43,16 @@ impl Subject for HoldingForces {
         } else {
             (", torques about the COR", " or about this axis")
         };
+        let free = design.alignment.free;
         document.section(None).paragraph(format!(
             "Forces act {at} the face centre of the moving half{torques}. guided: the half can move only along this force{axis}, and up. free: it can move in \
-             all free errors."
+             {free} at once, and up."
         ));
         if self.slides() {
             let gap = units.fine(self.settings.play);
             document.paragraph(format!(
-                "0: not held: the half slides sideways under any force until its play, if it has any, is used up. Gaps up to {gap} count as closed."
+                "0: no contact resists: the half slides under any force until a wall stops it at the end of its play, or away if there is none. Gaps up to \
+                 {gap} count as closed."
             ));
         }
         document

@@ -306,7 +306,7 @@ impl Maker<'_> {
                 continue;
             };
             let sides = [-1.0, 1.0]
-                .map(|sign| sign * self.told_apart(&mut judge, &along, at, sign, resolution, number));
+                .map(|sign| sign * self.decisive_distance(&mut judge, &along, at, sign, resolution, number));
             let border = Border { along, at, sides };
             let fits = sides.iter().all(|side| is_within(at + side));
             if fits { &mut borders } else { &mut narrow }.push(border);
@@ -341,7 +341,7 @@ impl Maker<'_> {
 
     /// Distance from the border along a line at which a point is decisive, as a share of the length through
     /// the box.
-    fn told_apart(
+    fn decisive_distance(
         &self,
         judge: &mut DockingOracle<'_>,
         along: &[f64; 5],

@@ -135,18 +135,18 @@ impl Candidate {
     }
 
     /// The candidate in words, beside all of them, with lengths in this unit.
-    pub fn told(&self, all: &[Self], unit: LengthUnit) -> String {
+    pub fn in_words(&self, all: &[Self], unit: LengthUnit) -> String {
         let Self { lie, score, climb, shared, seat, .. } = self;
         if let Some([deep, play]) = self.sunk {
             return format!(
-                "{score:.2} (best 1): {lie}{}; seat {} deep, ±{} of sideways play at half depth; {seat}",
+                "{score:.2} (0: no seat, 1: steep seat without play): {lie}{}; sits {} deep along the approach, ±{} of sideways play at half depth; {seat}",
                 self.place_among(all, unit),
                 shown_length(deep, unit),
                 shown_length(play, unit)
             );
         }
         format!(
-            "{score:.2} (best 1): {lie}{}; seat slope {:.0} %, {:.0} % of the smaller part's broad side can touch; {seat}",
+            "{score:.2} (0: no seat, 1: steep seat without play): {lie}{}; seat slope {:.0} %, {:.0} % of the smaller part's broad side can touch; {seat}",
             self.place_among(all, unit),
             climb * 100.0,
             shared * 100.0

@@ -76,7 +76,7 @@ fn drawn(part: &PartFile, with: &[PartDetail], settings: &ProposalSettings) -> V
         let body = part.body.map(|body| {
             format!("# Of the separate bodies in it this one, the largest first.\nbody = {body}")
         });
-        let stated = stated.map(|unit| unit + " # of the file, which does not say it");
+        let stated = stated.map(|unit| unit + " # the file itself states no unit");
         let fewer = settings.simplify.map(|most| {
             let most = quoted(&format!("{most} {}", unit.symbol()));
             format!("# Described with fewer triangles: its surface may move so far.\nsimplify = {most}")
@@ -158,9 +158,7 @@ pub(super) fn text(
             line(&words);
         }
         if let PartLayout::Facing { fixed, moving, turned } = judged.lie {
-            line(
-                "# The direction in which its face looks, in its file. It is turned to +z, and the moving half then over.",
-            );
+            line("# The direction in which the mating face of this half looks, in its file.");
             line(&format!("facing = {}", [fixed, moving][k].written()));
             if k == 1 && turned > 0 {
                 line("# Then turned about the approach axis until the features fit.");

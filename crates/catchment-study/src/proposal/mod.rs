@@ -133,7 +133,7 @@ pub enum ProposalError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// A file does not state its unit, and the settings do not either.
-    #[error("{} does not say its unit: the part is {} in its file", shown(path), told(*size))]
+    #[error("{} does not say its unit: the part is {} in its file", shown(path), size_in_words(*size))]
     NoUnit {
         /// The file.
         path: PathBuf,
@@ -165,7 +165,7 @@ fn listed(tried: &[String]) -> String {
     if told.is_empty() { String::new() } else { format!(": {}", told.join("; ")) }
 }
 
-fn told(size: [f64; 3]) -> String {
+fn size_in_words(size: [f64; 3]) -> String {
     size.map(|side| file::number(side, 1e-3 * size.into_iter().fold(0.0, f64::max))).join(" × ")
 }
 

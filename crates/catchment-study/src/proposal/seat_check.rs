@@ -408,14 +408,14 @@ fn held(
         match (found.first(), loose) {
             (None, _) => {
                 if let Some(fall) = descent::fall(&Pair::new(&held, &alignment)) {
-                    return Err(fall.told(told));
+                    return Err(fall.in_words(told));
                 }
                 let Alignment { free, dont_care, docked, .. } = alignment;
                 return Ok(Seat { free, dont_care, settle, symmetry, play: docked.limits });
             }
             (Some(_), Some(dof)) => leave_out(&mut alignment, dof)?,
             (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
-            (Some(problem), None) => return Err(problem.told(told)),
+            (Some(problem), None) => return Err(problem.in_words(told)),
         }
     }
 }

@@ -109,7 +109,7 @@ fn first(
     let mean = descent::outcome(problem.pair(), &source.mean(), &source.motions).outcome;
     if mean != Outcome::Aligned {
         let failing = Failing { z: [0.0; 5], distance: 0.0, outcome: mean };
-        return Ok((Some(told(problem, source, failing)), 1));
+        return Ok((Some(nearest_failure(problem, source, failing)), 1));
     }
     let failed = sample.poses.iter().filter(|pose| pose.outcome != Outcome::Aligned);
     let mut candidates: Vec<([f64; 5], f64)> = failed
@@ -147,7 +147,7 @@ fn first(
         }
         exec.report(round as f64 / ROUNDS as f64, "what fails first");
     }
-    Ok((best.map(|failing| told(problem, source, failing)), motions + 1))
+    Ok((best.map(|failing| nearest_failure(problem, source, failing)), motions + 1))
 }
 
 /// Somewhere about a failing error, a little nearer.
@@ -209,7 +209,7 @@ fn nearest(
     Ok((failing.min_by(|a, b| a.distance.total_cmp(&b.distance)), motions))
 }
 
-fn told(problem: &Problem, source: &Source<'_>, failing: Failing) -> NearestFailure {
+fn nearest_failure(problem: &Problem, source: &Source<'_>, failing: Failing) -> NearestFailure {
     let error = source.pose(&failing.z, &SAME);
     let path = descent::trace(problem.pair(), &error, &source.motions);
     let last = path.waypoints.last();

@@ -46,13 +46,13 @@ impl Subject for Success {
 }
 
 impl Success {
-    /// `4 020 poses (200 sampled errors; the others for limits and the nearest failure)`
+    /// `4 020 poses (200 sampled errors; the others for the largest σ and the nearest failure)`
     fn poses_in_words(&self) -> String {
         let sampled: usize = self.robots.iter().map(|robot| robot.motions).sum();
         let all = grouped(self.motions);
         if sampled < self.motions {
             format!(
-                "{all} poses ({} sampled errors; the others for limits and the nearest failure)",
+                "{all} poses ({} sampled errors; the others for the largest σ and the nearest failure)",
                 grouped(sampled)
             )
         } else {
@@ -133,7 +133,9 @@ impl RobotDocking {
         let motions = grouped(self.motions);
         document.more(if self.grid.cells > 0 {
             let plain = grouped(two_digits(self.plain_motions));
-            format!("{motions} sampled errors, stratified: as precise as {plain} without strata")
+            format!(
+                "{motions} sampled errors (stratified sampling: as precise as {plain} independent samples)"
+            )
         } else {
             format!("{motions} sampled errors")
         });
@@ -247,9 +249,9 @@ impl RobotDocking {
             Column::new("σ"),
             Column::new("success with σ halved"),
             Column::new("gain (percentage points)"),
-            Column::new(format!("largest σ for {required}")),
+            Column::new(format!("largest σ for {required} success")),
         ]);
-        let mut is_open = false;
+        let (mut is_open, mut is_beyond) = (false, false);
         for improve in &self.improve {
             let axis = improve.axis;
             let alone = self.tolerable.alone.iter().find(|alone| alone.axis == axis);
@@ -258,6 +260,7 @@ impl RobotDocking {
                 Factor { is_more: true, .. } => format!("> {}", amount(design, axis, alone.sigma)),
                 _ => amount(design, axis, alone.sigma),
             });
+            is_beyond |= alone.is_some_and(|alone| alone.factor.is_more);
             let [lo, hi] = improve.gain_ci95;
             let may_be_none = lo <= 0.0 && hi >= 0.0;
             is_open |= may_be_none;
@@ -270,9 +273,16 @@ impl RobotDocking {
             ]);
         }
         document.section("which standard deviation σ to improve, most helpful first").table(table);
-        if is_open {
-            document.paragraph("?: the gain may be 0 (its 95 % CI includes 0)");
+        let mut legend = format!(
+            "largest σ: the largest standard deviation of this error, the others as given, at which {required} of the errors dock."
+        );
+        if is_beyond {
+            legend += " >: larger ones were not tried.";
         }
+        if is_open {
+            legend += " ?: the gain may be 0 (its 95 % CI includes 0).";
+        }
+        document.paragraph(legend);
         document.row("all σ together", self.tolerable.all.in_words(&required));
     }
 }

@@ -65,7 +65,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     let token = token();
     let (design, made) = (args.design.clone(), args.made.clone());
     let compute = move |resolution: Option<Resolution>, exec: &Exec| {
-        page(&design, &made.over(resolution), exec).map_err(|failure| told(&failure))
+        page(&design, &made.over(resolution), exec).map_err(|failure| message(&failure))
     };
     let desk = Arc::new(LivePage::new(args.exec.threads(), compute));
     desk.start(None);
@@ -91,7 +91,7 @@ fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<ServedPage,
 }
 
 /// What a page shows of a failure.
-fn told(failure: &Failure) -> String {
+fn message(failure: &Failure) -> String {
     failure.text().lines().map(printable).collect::<Vec<_>>().join("\n")
 }
 

@@ -1,6 +1,6 @@
 //! Exact descent as a method: every pose is followed separately.
 
-use super::{DescentSettings, End, rests, rests_told, run, step_dependence};
+use super::{DescentSettings, End, rests, rests_observed, run, step_dependence};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -87,14 +87,14 @@ impl PoseMethod for DescentSettings {
         Ok(rests(problem.pair(), domain, self, exec)?)
     }
 
-    fn rest_told(
+    fn rest_observed(
         &self,
         problem: &Problem,
         domain: Domain,
         exec: &Exec,
         finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
-        Ok(rests_told(problem.pair(), domain, self, exec, finished)?)
+        Ok(rests_observed(problem.pair(), domain, self, exec, finished)?)
     }
 
     fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {

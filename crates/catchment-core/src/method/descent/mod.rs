@@ -261,11 +261,11 @@ pub fn rests(
     settings: &DescentSettings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
-    rests_told(pair, domain, settings, exec, &|_, _| {})
+    rests_observed(pair, domain, settings, exec, &|_, _| {})
 }
 
 /// The same; `finished` is called for every pose as soon as it has come to rest.
-pub(super) fn rests_told(
+pub(super) fn rests_observed(
     pair: &Pair,
     domain: Domain,
     settings: &DescentSettings,

@@ -1,7 +1,7 @@
 //! Drop tests as a method: every pose is decided separately.
 
 use super::engine::SUNK;
-use super::{DropError, DropSettings, run, run_told};
+use super::{DropError, DropSettings, run, run_observed};
 use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -70,14 +70,14 @@ impl PoseMethod for DropSettings {
         Ok(run(problem.pair(), domain, self, exec)?)
     }
 
-    fn rest_told(
+    fn rest_observed(
         &self,
         problem: &Problem,
         domain: Domain,
         exec: &Exec,
         finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
-        Ok(run_told(problem.pair(), domain, self, exec, finished)?)
+        Ok(run_observed(problem.pair(), domain, self, exec, finished)?)
     }
 
     fn give(&self) -> f64 {

@@ -101,11 +101,11 @@ pub fn run(
     settings: &DropSettings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
-    run_told(pair, domain, settings, exec, &|_, _| {})
+    run_observed(pair, domain, settings, exec, &|_, _| {})
 }
 
 /// The same; `finished` is called for every pose as soon as it is decided.
-fn run_told(
+fn run_observed(
     pair: &Pair,
     domain: Domain,
     settings: &DropSettings,

@@ -186,8 +186,12 @@ impl<'a> RestDescriptions<'a> {
         let rise = match (examined.stability, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
                 format!(
-                    "almost level: displaced by {push} in its easiest direction, the COR rises {}",
-                    self.units.fine(rise)
+                    "level: displaced by {push} in its easiest direction, the COR {}",
+                    if rise < NOTHING {
+                        "does not rise".to_owned()
+                    } else {
+                        format!("rises only {}", self.units.fine(rise))
+                    }
                 )
             }
             (Stability::Ridge, _) => {
@@ -209,7 +213,7 @@ impl<'a> RestDescriptions<'a> {
         if climb < NOTHING {
             format!("0: pushed sideways it {to} without rising")
         } else {
-            format!("at most {}: raised by this, it {to}", self.units.fine(climb))
+            format!("at most {}: raised by this on the easiest path found, it {to}", self.units.fine(climb))
         }
     }
 
@@ -246,15 +250,21 @@ impl<'a> RestDescriptions<'a> {
                 words.starts_with(&contact_in_words(&contact.fixed, &contact.moving))
             };
             let mut at: Vec<String> = Vec::new();
+            let mut is_listed = false;
             for contact in contacts.iter().filter(pair) {
                 let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
                 let place = format!("at {fixed} in the fixed half's drawing, {moving} in the moving half's");
-                if places.len() < MOST_CONTACTS && !places.contains(&place) {
+                if places.contains(&place) {
+                    is_listed = true;
+                } else if places.len() < MOST_CONTACTS {
                     places.push(place.clone());
                     at.push(place);
                 }
             }
             document.row(if k == 0 { "  contact" } else { "" }, words);
+            if at.is_empty() && is_listed {
+                document.more("at the same place");
+            }
             for place in at {
                 document.more(place);
             }
@@ -262,7 +272,9 @@ impl<'a> RestDescriptions<'a> {
     }
 
     fn drawn(self, feature: &NamedFeature) -> String {
-        let part = feature.part.map_or_else(String::new, |part| format!(", part {part} (numbered from 0),"));
+        let part = feature
+            .part
+            .map_or_else(String::new, |part| format!(", on part {part} of its parts (numbered from 0),"));
         format!("{}{part}", self.units.point(feature.drawn_d))
     }
 }

@@ -18,7 +18,7 @@
 //! centre is that of the largest cube of cells, or zero if the cube there is larger.
 
 use super::WindowSettings;
-use super::search::Search;
+use super::search::{Search, Shrunk};
 use super::space::Space;
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
@@ -28,7 +28,7 @@ use crate::merit::centered::CenteredBox;
 use crate::merit::onaa::Onaa;
 use crate::merit::tolerance::Tolerance;
 use crate::method::descent;
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
 
 /// With which motions cubes are sought, and with how many.
@@ -57,8 +57,8 @@ pub(in crate::run) fn follow(
     let centered = if let Some(known) = centered {
         known
     } else {
-        let Cube { scale, reaches_border } = about([0.0; 5], 0.0)?;
-        CenteredBox { scale, half_widths: sides(scale), reaches_border, sampled: Some(by.random) }
+        let Cube { scale, reaches_border, limited_by } = about([0.0; 5], 0.0)?;
+        CenteredBox { scale, half_widths: sides(scale), reaches_border, sampled: Some(by.random), limited_by }
     };
     let centered = within(&centered, &merits.tolerances);
     let mut center = [0.0; 5];
@@ -82,11 +82,14 @@ pub(in crate::run) fn follow(
 pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> CenteredBox {
     let share = |limit: &Tolerance| {
         let half_width = found.half_widths.iter().find(|(axis, _)| *axis == limit.dof)?.1;
-        (half_width > limit.symmetric()).then(|| limit.symmetric() / half_width)
+        (half_width > limit.symmetric()).then(|| (limit.symmetric() / half_width, limit.dof))
     };
-    let share = limits.iter().filter_map(share).fold(1.0, f64::min);
+    let Some((share, tightest)) = limits.iter().filter_map(share).min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return found.clone();
+    };
     let half_widths = found.half_widths.iter().map(|(axis, half)| (*axis, share * half)).collect();
-    CenteredBox { scale: share * found.scale, half_widths, ..*found }
+    let limited_by = DofSet::EMPTY.with(tightest);
+    CenteredBox { scale: share * found.scale, half_widths, limited_by, ..*found }
 }
 
 /// The largest box in the proportions of `settings`, by as many motions as a cube; `None` if there is none.
@@ -105,6 +108,7 @@ pub(in crate::run) fn window_of(
         half_widths: problem.alignment().free.iter().map(|axis| (axis, half_widths[axis.index()])).collect(),
         reaches_border: search.worst().is_none(),
         sampled: Some(by.random),
+        limited_by: search.limiting(found.scale),
     }))
 }
 
@@ -112,6 +116,8 @@ pub(in crate::run) fn window_of(
 struct Cube {
     scale: f64,
     reaches_border: bool,
+    /// Empty about another centre than zero.
+    limited_by: DofSet,
 }
 
 fn about(
@@ -121,7 +127,7 @@ fn about(
     by: &Effort<'_>,
     exec: &Exec,
 ) -> Result<Cube, Cancelled> {
-    let none = Cube { scale: 0.0, reaches_border: false };
+    let none = Cube { scale: 0.0, reaches_border: false, limited_by: DofSet::EMPTY };
     let middle = descent::outcome(problem.pair(), &PoseError::from_array(center), by.motions).outcome;
     let space = Space::about(problem, center);
     if middle != Outcome::Aligned || space.border() <= least {
@@ -130,7 +136,10 @@ fn about(
     let search = Search::new(problem, space, by.seed, by.motions);
     let mut search = search.above(least).within(2 * by.random);
     let found = search.shrink(by.random, exec)?;
-    Ok(found.map_or(none, |found| Cube { scale: found.scale, reaches_border: search.worst().is_none() }))
+    Ok(found.map_or(none, |Shrunk { scale, .. }| {
+        let limited_by = if center == [0.0; 5] { search.limiting(scale) } else { DofSet::EMPTY };
+        Cube { scale, reaches_border: search.worst().is_none(), limited_by }
+    }))
 }
 
 #[cfg(test)]
@@ -152,13 +161,15 @@ mod tests {
             is_followed: true,
         };
         let half_widths = vec![(Dof::X, 0.2), (Dof::Yaw, 0.4)];
-        let found = CenteredBox { scale: 0.8, half_widths, reaches_border: false, sampled: Some(7) };
+        let limited_by = DofSet::EMPTY.with(Dof::X);
+        let found =
+            CenteredBox { scale: 0.8, half_widths, reaches_border: false, sampled: Some(7), limited_by };
         let wide = [limit(Dof::X, 0.3, 0.2), limit(Dof::Yaw, 0.5, 0.5)];
         assert_eq!(within(&found, &wide), found);
         let tight = [limit(Dof::X, 0.3, 0.3), limit(Dof::Yaw, 0.5, 0.3)];
         let smaller = within(&found, &tight);
         assert!((smaller.scale - 0.6).abs() < 1e-12 && (smaller.half_widths[0].1 - 0.15).abs() < 1e-12);
-        assert_eq!(smaller.sampled, Some(7));
+        assert_eq!((smaller.sampled, smaller.limited_by), (Some(7), DofSet::EMPTY.with(Dof::Yaw)));
     }
 
     /// A search that has used its motions on the first directions is still certified by samples: other

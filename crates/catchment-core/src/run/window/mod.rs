@@ -246,6 +246,7 @@ impl ToleranceWindow {
             half_widths: self.sides.iter().map(|side| (side.axis, side.half_width)).collect(),
             reaches_border: self.worst.is_none(),
             sampled: Some(self.certificate.motions),
+            limited_by: self.limiting(),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Text form of a window.
 
-use super::{ToleranceWindow, WindowCertificate, WindowDetails};
+use super::{ToleranceWindow, WindowAxis, WindowCertificate, WindowDetails};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::document::{Cell, Column, DesignUnits, Document, Subject, Table, exact_motions, grouped};
+use crate::pose::DofSet;
 use glam::DVec3;
 
 /// Contacts of the worst pose that are shown.
@@ -44,6 +45,15 @@ impl WindowDetails {
             document.paragraph("* the error box ends here: the limit may be larger");
         }
         document.section(None);
+        let limiting = self.limiting();
+        if !limiting.is_empty() {
+            document.row(
+                "limited by",
+                format!(
+                    "{limiting}: with any of these 1 % larger and the others inside the window, poses fail"
+                ),
+            );
+        }
         let WindowCertificate { motions, failing_at_most, redrawn } = self.certificate;
         if motions == 0 {
             document.row("certificate", "none: no random poses were sampled");
@@ -62,6 +72,15 @@ impl WindowDetails {
         }
     }
 
+    /// The errors that may hardly grow while the others stay in the window.
+    pub(super) fn limiting(&self) -> DofSet {
+        let is_limit = |side: &&WindowAxis| {
+            Some(side.axis) == self.tightest
+                || (!side.beside_reaches_border && side.beside <= (1.0 + LIMITING) * side.half_width)
+        };
+        self.sides.iter().filter(is_limit).map(|side| side.axis).collect()
+    }
+
     fn table(&self, design: &Design) -> Table {
         let units = DesignUnits::of(design);
         let mut table = Table::new([
@@ -72,26 +91,21 @@ impl WindowDetails {
             Column::data("alone_reaches_border"),
             Column::new("limit, others in window").key("beside"),
             Column::data("beside_reaches_border"),
-            Column::new("").left(),
         ]);
         for side in &self.sides {
             let reach = |to: f64, is_border: bool| {
                 let star = if is_border { "*" } else { "" };
                 Cell::shown(format!("{}{star}", units.half_width(side.axis, to)), to)
             };
-            let is_limit = Some(side.axis) == self.tightest
-                || (!side.beside_reaches_border && side.beside <= (1.0 + LIMITING) * side.half_width);
-            let tightest = if is_limit { "limits the window" } else { "" };
-            let given = if side.given { "given" } else { tightest };
+            let given = if side.given { " (given)" } else { "" };
             table.push([
-                side.axis.name().into(),
+                Cell::shown(format!("{}{given}", side.axis), side.axis.name()),
                 reach(side.half_width, false),
                 side.given.into(),
                 reach(side.alone, side.alone_reaches_border),
                 side.alone_reaches_border.into(),
                 reach(side.beside, side.beside_reaches_border),
                 side.beside_reaches_border.into(),
-                given.into(),
             ]);
         }
         table

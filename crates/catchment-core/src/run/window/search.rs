@@ -12,7 +12,7 @@ use crate::acceptance::{Outcome, Stream};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, Follower};
 use crate::method::{affordable, motions_in};
-use crate::pose::PoseError;
+use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
 use rayon::prelude::*;
 
@@ -43,6 +43,8 @@ const MARGIN: f64 = 1e-3;
 const MOST_MARGIN: f64 = 0.1;
 /// Windows that are tried before it is given up.
 pub(super) const WINDOWS: usize = 50;
+/// How many times as large as in the window an error is to see whether it limits it.
+const SLIGHTLY: f64 = 1.01;
 /// Below this scale, as a share of the largest, there is no window.
 const NONE: f64 = 1e-4;
 /// Samples between two checks whether one failed.
@@ -145,6 +147,22 @@ impl<'a> Search<'a> {
     /// The nearest pose that fails.
     pub(super) fn worst(&self) -> Option<PoseError> {
         self.nearest.map(|failing| self.space.pose(&failing.along, failing.scale))
+    }
+
+    /// The errors that limit a window about zero of this scale: with one of them slightly larger and the others inside the window
+    /// a pose fails. Tried is the nearest failing pose, with all errors but one put back into the window. Empty if nothing failed.
+    pub(super) fn limiting(&self, scale: f64) -> DofSet {
+        let Some(worst) = self.worst() else { return DofSet::EMPTY };
+        let (worst, half_widths) = (worst.to_array(), self.space.half_widths(scale));
+        let fails = |axis: &Dof| {
+            let inside = |k: usize| worst[k].clamp(-half_widths[k], half_widths[k]);
+            let (k, mut error) = (axis.index(), std::array::from_fn(inside));
+            error[k] = worst[k].signum() * worst[k].abs().max(SLIGHTLY * half_widths[k]);
+            let end = descent::outcome(self.problem.pair(), &PoseError::from_array(error), &self.settings);
+            end.outcome != Outcome::Aligned
+        };
+        let is_outside = |axis: &Dof| worst[axis.index()].abs() > half_widths[axis.index()];
+        Dof::ALL.into_iter().filter(is_outside).filter(fails).collect()
     }
 
     /// Searches for failures, and reduces the window until no sampled pose of it fails. `None` if poses fail

@@ -72,7 +72,7 @@ pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError>
             5,
             Row {
                 name: "PolyBot",
-                words: told(&words, shape.area(), shape.onaa()),
+                words: lines(&words, shape.area(), shape.onaa()),
                 problem: Some(problem("polybot")?),
                 width: 1.0,
                 region: Region::Closed(shape),
@@ -87,7 +87,7 @@ pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError>
             6,
             Row {
                 name: "DRAGON",
-                words: told(&words, area_d2, shape.onaa()),
+                words: lines(&words, area_d2, shape.onaa()),
                 problem: None,
                 width: 1.0,
                 region: Region::OfNumber(shape),
@@ -99,7 +99,7 @@ pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError>
 }
 
 /// The words of a row: its name, its area and edge.
-fn told(words: &[&str], area: f64, edge: f64) -> Vec<String> {
+fn lines(words: &[&str], area: f64, edge: f64) -> Vec<String> {
     let mut lines = vec![format!("{} D²", trimmed(area, 6)), format!("ONAA {} D", trimmed(edge, 4))];
     lines.extend(words.iter().map(|&words| words.to_owned()));
     lines
@@ -134,9 +134,9 @@ fn of_family(
         (Zraa::Region { .. }, Family::Cone) => {
             let shape = AcceptanceShape::Disc(0.5 * width);
             let area = if width > 1.0 { "π/2, as amour is published" } else { "π/4" };
-            told(&[area, words], shape.area(), shape.onaa())
+            lines(&[area, words], shape.area(), shape.onaa())
         }
-        (Zraa::Region { area, .. }, _) => told(&[words], *area, square.edge),
+        (Zraa::Region { area, .. }, _) => lines(&[words], *area, square.edge),
     };
     Ok(Row { name, words, problem: Some(problem), width, region: Region::Computed(zraa, square) })
 }
