@@ -181,7 +181,7 @@ fn metres_are_told_in_millimetres() {
     let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
     assert!(
         told.starts_with("exit 0")
-            && told.contains("6 mm deep, ±0.")
+            && told.contains("6 mm deep along the approach, ±0.")
             && told.contains(" mm of sideways play at half depth"),
         "{told}"
     );

@@ -126,7 +126,7 @@ fn what_is_drawn_in_metres_is_answered_in_millimetres() {
     assert!(printed.starts_with("exit 0") && printed.contains("width D 41.5 mm"), "{printed}");
     let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(design.contains("width = 41.5") && design.contains("unit = \"mm\""), "{design}");
-    assert!(design.contains("unit = \"m\" # of the file"), "{design}");
+    assert!(design.contains("unit = \"m\" # the file itself states no unit"), "{design}");
     let told = run(home.path(), &["check", "d.toml"]);
     assert!(told.contains("41.5 mm"), "{told}");
 }

@@ -27,7 +27,9 @@ fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
     let told = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
     assert!(
         told.starts_with("exit 0\n")
-            && told.contains("escape height at most 10.36 mm: raised by this, it settles in"),
+            && told.contains(
+                "escape height at most 10.36 mm: raised by this on the easiest path found, it settles in"
+            ),
         "{told}"
     );
     assert!(told.contains("first-order immobile: any small displacement raises the COR"), "{told}");

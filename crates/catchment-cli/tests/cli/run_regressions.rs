@@ -60,11 +60,11 @@ fn the_picture_of_five_dimensions_shows_the_sum_of_its_table() {
     let args = ["run", pyramid.to_str().unwrap(), "--resolution", "6", "--samples", "300", "-o", "out"];
     let said = run(home.path(), &args);
     assert!(said.starts_with("exit 0"), "{said}");
-    // `  AA (Sum)       12.59 ± 0.23 D²·rad³ (…`
+    // `  AA (Sum)       12.59 D²·rad³ (95 % CI 12.36 … 12.82)`; the picture has half of the interval: `12.59 ± 0.23`.
     let line = said.lines().find(|line| line.trim_start().starts_with("AA (Sum) ")).unwrap();
     let sum = line.trim_start().trim_start_matches("AA (Sum)").trim_start();
-    let sum = sum.split(" (").next().unwrap();
-    assert!(sum.contains(" ± "), "{line}");
+    assert!(sum.contains(" (95 % CI "), "{line}");
+    let sum = &format!("Sum {} ± ", sum.split(' ').next().unwrap());
     for name in ["overview.svg", "slices.svg"] {
         let picture = fs::read_to_string(home.path().join("out").join(name)).unwrap();
         assert!(picture.contains(sum), "{name} does not say {sum}");

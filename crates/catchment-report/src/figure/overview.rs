@@ -101,6 +101,6 @@ mod tests {
         assert!(picture.svg().contains(told), "{}", picture.svg());
         assert!(picture.svg().contains("of this slice:") && picture.svg().contains("jammed 100 %"));
         assert!(picture.svg().contains("slice beside zero"));
-        assert!(report.table().contains("AA (Sum)       10.5 ± 3.9 D²·rad³ (95 % CI)\n"));
+        assert!(report.table().contains("AA (Sum)       10.5 D²·rad³ (95 % CI 6.6 … 14.4)\n"));
     }
 }

@@ -209,7 +209,7 @@ impl Overall {
         let plain =
             if self.plain_trials.is_finite() { self.plain_trials.round() as usize } else { usize::MAX };
         let sure = if self.grid_cells > 0 && plain < usize::MAX {
-            format!(", stratified: as precise as {} without strata", grouped(plain))
+            format!(" (stratified sampling: as precise as {} independent ones)", grouped(plain))
         } else {
             String::new()
         };

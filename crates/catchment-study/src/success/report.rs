@@ -133,9 +133,7 @@ impl RobotDocking {
         let motions = grouped(self.motions);
         document.more(if self.grid.cells > 0 {
             let plain = grouped(two_digits(self.plain_motions));
-            format!(
-                "{motions} sampled errors (stratified sampling: as precise as {plain} independent samples)"
-            )
+            format!("{motions} sampled errors (stratified sampling: as precise as {plain} independent ones)")
         } else {
             format!("{motions} sampled errors")
         });

@@ -185,14 +185,12 @@ impl<'a> RestDescriptions<'a> {
         }
         let rise = match (examined.stability, examined.rise_at_most_d) {
             (Stability::Level, Some(rise)) => {
-                format!(
-                    "level: displaced by {push} in its easiest direction, the COR {}",
-                    if rise < NOTHING {
-                        "does not rise".to_owned()
-                    } else {
-                        format!("rises only {}", self.units.fine(rise))
-                    }
-                )
+                let (level, rises) = if rise < NOTHING {
+                    ("level", "does not rise".to_owned())
+                } else {
+                    ("almost level", format!("rises only {}", self.units.fine(rise)))
+                };
+                format!("{level}: displaced by {push} in its easiest direction, the COR {rises}")
             }
             (Stability::Ridge, _) => {
                 format!(
