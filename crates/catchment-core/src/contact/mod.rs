@@ -17,6 +17,7 @@
 
 mod bounds;
 pub mod brute;
+mod cache;
 mod candidates;
 mod cone;
 mod crease;
@@ -66,11 +67,10 @@ pub use side_by_side::SideBySide;
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::{CorPose, DofSet};
+use cache::{MotionCache, SeatCache};
 use glam::{DMat3, DVec2, DVec3};
-use mated::ReleaseResult;
 use search::Trees;
 use shape::Shape;
-use std::sync::OnceLock;
 use turned::Turned;
 
 /// Product of the numbers of facets from which on halves have trees, for heights and motions: for pins in
@@ -110,15 +110,8 @@ pub struct Pair {
     mirrors: Vec<Mirror>,
     tight: bool,
     mated_height: f64,
-    homing: OnceLock<bool>,
-    /// Range of the seat in yaw alone, in both directions, in radians.
-    spins: OnceLock<[f64; 2]>,
-    /// Motions of a half that is slightly off.
-    about_mated: OnceLock<ReleaseResult>,
-    /// Whether its seat has no rim somewhere.
-    leaks: OnceLock<bool>,
-    /// Seconds that a motion takes.
-    motion_seconds: OnceLock<f64>,
+    pub(crate) seat_cache: SeatCache,
+    pub(crate) motion_cache: MotionCache,
 }
 
 impl Pair {
@@ -134,7 +127,7 @@ impl Pair {
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
         let trees = has_trees(count, tight).then(|| Trees::over(&fixed_shapes, &moving_shapes));
-        let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
+        let (alignment, mated_height) = (alignment.clone(), f64::NEG_INFINITY);
         let mut pair = Self {
             fixed,
             moving,
@@ -146,11 +139,8 @@ impl Pair {
             mirrors,
             tight,
             mated_height,
-            homing,
-            spins: OnceLock::new(),
-            about_mated: OnceLock::new(),
-            leaks: OnceLock::new(),
-            motion_seconds: OnceLock::new(),
+            seat_cache: SeatCache::default(),
+            motion_cache: MotionCache::default(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
@@ -169,11 +159,8 @@ impl Pair {
             pair.trees = Some(Trees::over(&pair.fixed_shapes, &pair.moving_shapes));
         }
         if free != self.alignment.free {
-            pair.homing = OnceLock::new();
-            pair.spins = OnceLock::new();
-            pair.about_mated = OnceLock::new();
-            pair.leaks = OnceLock::new();
-            pair.motion_seconds = OnceLock::new();
+            pair.seat_cache = SeatCache::default();
+            pair.motion_cache = MotionCache::default();
         }
         pair
     }
@@ -198,32 +185,6 @@ impl Pair {
     #[cfg(test)]
     pub(crate) fn without_trees(&self) -> Self {
         Self { trees: None, lists: true, ..self.clone() }
-    }
-
-    /// Whether all motion near the mated pose leads to it; `find` is called once to determine it.
-    pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
-        *self.homing.get_or_init(find)
-    }
-
-    /// Range of the seat in yaw alone, in both directions, in radians; `find` is called once to determine it.
-    pub(crate) fn spins(&self, find: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
-        *self.spins.get_or_init(find)
-    }
-
-    /// Motions of a half that is released slightly off the mated pose; `find` is called once to determine
-    /// them.
-    pub(crate) fn about_mated(&self, find: impl FnOnce() -> ReleaseResult) -> ReleaseResult {
-        *self.about_mated.get_or_init(find)
-    }
-
-    /// Seconds that a motion takes; `find` is called once to determine them.
-    pub(crate) fn motion_seconds(&self, find: impl FnOnce() -> f64) -> f64 {
-        *self.motion_seconds.get_or_init(find)
-    }
-
-    /// Whether the rim of the seat has a gap; `find` is called once to determine it.
-    pub(crate) fn leaks(&self, find: impl FnOnce() -> bool) -> bool {
-        *self.leaks.get_or_init(find)
     }
 
     /// h₀, the z of the COR at first contact at zero error, in D; −∞ if the halves pass each other by.

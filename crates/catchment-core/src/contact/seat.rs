@@ -97,7 +97,7 @@ impl<'a> Seat<'a> {
     /// enough may still leave.
     pub fn leaks(&mut self) -> bool {
         let pair = self.pair;
-        pair.leaks(|| self.ways_out().any(|way| self.leaks_along(way)))
+        *pair.seat_cache.leaks.get_or_init(|| self.ways_out().any(|way| self.leaks_along(way)))
     }
 
     /// Along each free error, either way, and all of them together: by so much per look.
@@ -167,7 +167,7 @@ impl<'a> Seat<'a> {
             let holds = |k: &usize| self.is_deep(&PoseError { yaw: sign * step * *k as f64, ..*mated });
             step * (1..=most).take_while(holds).count() as f64
         };
-        let [minus, plus] = pair.spins(|| [reaches(-1.0), reaches(1.0)]);
+        let [minus, plus] = *pair.seat_cache.spins.get_or_init(|| [reaches(-1.0), reaches(1.0)]);
         // As along any path, the end itself is not tested.
         (-minus - step..=plus + step).contains(&off.yaw)
     }

@@ -20,7 +20,7 @@ pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>())
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
     if pair.asks_trees() {
-        return (DESCENT_SECONDS / pair.motion_seconds(|| counted(pair))).min(1.0);
+        return (DESCENT_SECONDS / *pair.motion_cache.seconds.get_or_init(|| counted(pair))).min(1.0);
     }
     let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
     let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;

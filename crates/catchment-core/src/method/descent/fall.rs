@@ -51,7 +51,7 @@ pub(super) fn home(pair: &Pair) -> f64 {
 }
 
 fn about(pair: &Pair) -> ReleaseResult {
-    pair.about_mated(|| {
+    *pair.motion_cache.about_mated.get_or_init(|| {
         let settings = DescentSettings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);

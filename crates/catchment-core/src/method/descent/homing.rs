@@ -41,7 +41,7 @@ pub(super) fn all_dock(pair: &Pair) -> bool {
     if pair.is_tight() || pair.is_large() || !all_count(pair) {
         return false;
     }
-    pair.is_homing(|| {
+    *pair.motion_cache.homing.get_or_init(|| {
         let stream = Stream::new(SEED);
         let (free, settings) = (pair.alignment.free, DescentSettings::default());
         let mut motion = Motion::new(pair, &settings);
@@ -75,6 +75,6 @@ mod tests {
         // A budget in which nothing docks.
         let spent = DescentSettings { max_steps: 1, ..DescentSettings::default() };
         let _ = outcome(&pair, &PoseError { x: 0.3, ..PoseError::default() }, &spent);
-        assert!(pair.is_homing(|| false) && all_dock(&pair));
+        assert!(pair.motion_cache.homing.get() == Some(&true) && all_dock(&pair));
     }
 }
