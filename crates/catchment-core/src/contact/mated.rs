@@ -269,7 +269,7 @@ pub fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
     } else if above < -CONTACT_TOLERANCE {
         problems.push(MatedProblem::Gap { gap: -above });
     }
-    problems.extend(deepest(pair, height, DofSet::ALL, &exec.part([0.0, DEEPEST], STAGE)));
+    problems.extend(deepest(pair, DofSet::ALL, &exec.part([0.0, DEEPEST], STAGE)));
     // The play of the seat is only defined if there is a seat.
     if problems.is_empty() {
         if let Some(half) = round_half(pair) {
@@ -312,11 +312,12 @@ pub fn round_half(pair: &Pair) -> Option<&'static str> {
 
 /// Whether an error in some of the free degrees of freedom lets the aligned half sink deeper.
 pub(crate) fn sinking(pair: &Pair, among: DofSet) -> Option<MatedProblem> {
-    deepest(pair, pair.mated_height(), among, &Exec::new())
+    deepest(pair, among, &Exec::new())
 }
 
 /// The probe that sinks deepest, if it sinks more than rounding and curvature explain.
-fn deepest(pair: &Pair, aligned: f64, among: DofSet, exec: &Exec) -> Option<MatedProblem> {
+fn deepest(pair: &Pair, among: DofSet, exec: &Exec) -> Option<MatedProblem> {
+    let aligned = pair.mated_energy();
     let matters = |dof: &Dof| among.contains(*dof) && !pair.alignment.dont_care.contains(*dof);
     let free: Vec<Dof> = pair.alignment.free.iter().filter(matters).collect();
     let mut nearby = pair.about(PROBE);
@@ -334,7 +335,7 @@ fn deepest(pair: &Pair, aligned: f64, among: DofSet, exec: &Exec) -> Option<Mate
             continue;
         }
         // Passing by altogether is the deepest fall there is.
-        let sinks = nearby.height(&error).map_or(f64::INFINITY, |height| aligned - height);
+        let sinks = nearby.energy(&error).map_or(f64::INFINITY, |energy| aligned - energy);
         if sinks > SLOPE * PROBE && worst.is_none_or(|(most, _)| sinks > most) {
             worst = Some((sinks, error));
         }

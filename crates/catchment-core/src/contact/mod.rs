@@ -38,6 +38,7 @@ mod nearby;
 mod overlap;
 mod plan;
 mod play;
+mod push;
 mod raster;
 mod search;
 mod seat;
@@ -66,7 +67,7 @@ pub use side_by_side::SideBySide;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
-use crate::pose::{CorPose, DofSet};
+use crate::pose::{CorPose, DofSet, PoseError};
 use cache::{MotionCache, SeatCache};
 use glam::{DMat3, DVec2, DVec3};
 use search::Trees;
@@ -202,6 +203,11 @@ impl Pair {
     /// hole: the inner half can only move as its contacts permit, one after another.
     pub fn is_tight(&self) -> bool {
         self.tight
+    }
+
+    /// Lateral position of the COR and rotation of the moving half at a pose error.
+    pub fn pose(&self, error: &PoseError) -> CorPose {
+        CorPose::from_error(error, self.alignment.center_of_rotation, self.alignment.free)
     }
 
     /// z of the COR at first contact, in D; `None` if the halves pass each other by.

@@ -128,28 +128,36 @@ impl<'a> Nearby<'a> {
     /// The height of first contact at a pose error, in D; `None` if the halves pass each other by. Fast if
     /// the last pose was near.
     pub fn height(&mut self, error: &PoseError) -> Option<f64> {
-        let lateral = self.go_to(error);
+        let lateral = self.go_to(error).lateral;
         self.height_below(lateral, f64::INFINITY).0
     }
 
-    /// Whether the height of first contact at a pose error is above `level`, in D: faster than the height if
-    /// it is.
+    /// The potential energy at first contact at a pose error, in D; `None` if the halves pass each other by.
+    pub fn energy(&mut self, error: &PoseError) -> Option<f64> {
+        let pose = self.go_to(error);
+        let height = self.height_below(pose.lateral, f64::INFINITY).0?;
+        Some(self.turned.pair.energy(&pose, height))
+    }
+
+    /// Whether the potential energy at first contact at a pose error is above `level`, in D: faster than the
+    /// energy if it is.
     pub fn is_above(&mut self, error: &PoseError, level: f64) -> bool {
-        let lateral = self.go_to(error);
-        self.turned.is_stopped_above(lateral, level)
+        let pose = self.go_to(error);
+        let height = self.turned.pair.height_at(&pose, level);
+        self.turned.is_stopped_above(pose.lateral, height)
     }
 
     /// Whether the halves touch at a pose error, however deep, and do not pass each other by: cheaper than the height.
     pub fn touches(&mut self, error: &PoseError) -> bool {
-        self.is_above(error, f64::NEG_INFINITY)
+        let lateral = self.go_to(error).lateral;
+        self.turned.is_stopped_above(lateral, f64::NEG_INFINITY)
     }
 
-    /// Moves to a pose error, for heights; returns the position of the COR.
-    fn go_to(&mut self, error: &PoseError) -> DVec2 {
-        let alignment = &self.turned.pair.alignment;
-        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+    /// Moves to a pose error, for heights.
+    fn go_to(&mut self, error: &PoseError) -> CorPose {
+        let pose = self.turned.pair.pose(error);
         self.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
-        pose.lateral
+        pose
     }
 
     /// All contacts, and all features closer than `reach` along their normals, with the COR at `position`.

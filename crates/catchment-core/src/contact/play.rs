@@ -91,7 +91,7 @@ fn along(pair: &Pair, free: &[Dof], ways: &[Vec<f64>], play: &mut [Play], exec: 
             .filter(|(_, sign)| **sign != 0.0)
             .map(|(dof, _)| BEYOND * pair.alignment.docked.most_play(*dof) / way[dof.index()].abs())
             .fold(f64::INFINITY, f64::min);
-        (way, reach(nearby, pair.mated_height() + LEVEL, &way, farthest), farthest)
+        (way, reach(nearby, pair.mated_energy() + LEVEL, &way, farthest), farthest)
     };
     let groups: Vec<&[Vec<f64>]> = ways.chunks(TOGETHER).collect();
     let found = exec.each(groups.len(), usize::MAX, STAGE, |k, _| {

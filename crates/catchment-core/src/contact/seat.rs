@@ -1,19 +1,20 @@
 //! The seat: the region of poses that count as docked.
 //!
 //! ```text
-//!     h │╲   rim    ╱‾‾‾‾    S: the part of { q : h(q) ≤ h₀ + depth } that is connected with the mated pose.
-//!       │ ╲___    __╱         A half that has reached h₀ + depth in S stays in S as long as the force lasts.
+//!     U │╲   rim    ╱‾‾‾‾    S: the part of { q : U(q) ≤ U₀ + depth } that is connected with the mated pose.
+//!       │ ╲___    __╱         A half that has reached U₀ + depth in S stays in S as long as the force lasts.
 //!       │     ╲__╱            On the rim it lies deeper than at its start, and is not docked; in a hole beside the
 //!       │      S ╎            mated hole it is as deep, and not docked either.
 //!       └──────┴─┴───── q
 //! ```
 //!
-//! h₀ is the height of first contact at zero error. S is entered from above. A half at rest below h₀ − depth
+//! U is the potential energy at first contact, U₀ that at zero error; with the constant push the heights of the
+//! COR. S is entered from above. A half at rest below U₀ − depth
 //! has left the seat through its floor: the mated pose is then not a minimum, and that rest is a different
 //! pose. If the rim of a hollow is lower than the level of its seat, S *leaks*: it extends over the rim to a
 //! region below the floor, and a half in it need not stay ([`Seat::leaks`]). Whether a pose is connected with
 //! the mated pose is tested along four paths in the pose error: straight, and with its yaw, its rotation or
-//! its translation first; along each path h must stay at or below h₀ + depth. Poses nearer than [`CORE`]
+//! its translation first; along each path U must stay at or below U₀ + depth. Poses nearer than [`CORE`]
 //! count as connected. The range of the seat in yaw alone, which is the full circle for round halves, is
 //! computed once per pair.
 //!
@@ -50,27 +51,27 @@ impl<'a> Seat<'a> {
         Self { pair, nearby: pair.about(4.0 * PATH_STEP) }
     }
 
-    /// The greatest height of the COR at which a half is seated, in D.
+    /// The greatest potential energy at which a half is seated, in D.
     pub fn level(&self) -> f64 {
-        self.pair.mated_height() + self.pair.alignment.docked.depth
+        self.pair.mated_energy() + self.pair.alignment.docked.depth
     }
 
     /// Whether a half with this error, its COR at `height`, is in the seat: deep enough, and connected with the mated pose.
     pub fn holds(&mut self, error: &PoseError, height: f64) -> bool {
-        height <= self.level() && self.is_connected(error)
+        self.pair.energy_at(error, height) <= self.level() && self.is_connected(error)
     }
 
-    /// The smallest height of the COR at which a half at rest is in the seat, in D: as far below the mated
-    /// height as the greatest is above, and at least the rounding of drawings. A half that rests deeper has
+    /// The smallest potential energy at which a half at rest is in the seat, in D: as far below that of the
+    /// mated pose as the greatest is above, and at least the rounding of drawings. A half that rests deeper has
     /// left the mated pose for another.
     pub fn floor(&self) -> f64 {
-        self.pair.mated_height() - self.pair.alignment.docked.depth.max(CONTACT_TOLERANCE)
+        self.pair.mated_energy() - self.pair.alignment.docked.depth.max(CONTACT_TOLERANCE)
     }
 
     /// Whether a half that rests with this error, its COR at `height`, counts as docked: no deeper than the seat, and within the limits of the
     /// design.
     pub fn allows(&self, error: &PoseError, height: f64) -> bool {
-        if height < self.floor() {
+        if self.pair.energy_at(error, height) < self.floor() {
             return false;
         }
         let alignment = &self.pair.alignment;
@@ -130,9 +131,9 @@ impl<'a> Seat<'a> {
         let looks = alignment.free.iter().map(ends).fold(MOST_LOOKS, f64::min) as usize;
         for k in 1..=looks {
             let error = PoseError::from_array(way.map(|part| k as f64 * part));
-            match self.nearby.height(&error) {
-                Some(height) if height > level => return false,
-                Some(height) if height >= floor => {}
+            match self.nearby.energy(&error) {
+                Some(energy) if energy > level => return false,
+                Some(energy) if energy >= floor => {}
                 _ => return true,
             }
         }

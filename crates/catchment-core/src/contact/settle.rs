@@ -6,7 +6,7 @@
 //!               ╲ ▁▁▁╱                       ╲▁▁▁╱
 //! ```
 //!
-//! A compass search on the height of first contact h over the free errors that count: of all combinations of
+//! A compass search on the potential energy at first contact over the free errors that count: of all combinations of
 //! signs the step with the deepest descent is taken, and repeated while it descends. If no step descends, the
 //! step is halved, from `FIRST` to `LAST`. The search stays near: a half that sinks farther than `FARTHEST`
 //! has run off. Not promised: the end of a ravine between all of these directions; [`mated`](super::mated)
@@ -16,7 +16,7 @@ use super::Pair;
 use super::play::{directions, unit};
 use crate::connector::Connector;
 use crate::design::Alignment;
-use crate::pose::{CorPose, Dof, PoseError};
+use crate::pose::{Dof, PoseError};
 use glam::{DAffine3, DVec3};
 
 /// First and last step, in the ρ-metric.
@@ -43,16 +43,16 @@ pub fn rest(pair: &Pair) -> Option<PoseError> {
         })
         .collect();
     let mut nearby = pair.about(4.0 * FIRST);
-    let (mut at, mut height, mut step) = ([0.0; 5], pair.mated_height(), FIRST);
+    let (mut at, mut energy, mut step) = ([0.0; 5], pair.mated_energy(), FIRST);
     while step >= LAST {
         let mut best: Option<(f64, [f64; 5])> = None;
         for way in &ways {
             let next = going(at, way, step);
-            let lowest = best.map_or(height - SLOPE * step, |(lowest, _)| lowest);
+            let lowest = best.map_or(energy - SLOPE * step, |(lowest, _)| lowest);
             if nearby.is_above(&PoseError::from_array(next), lowest) {
                 continue;
             }
-            match nearby.height(&PoseError::from_array(next)) {
+            match nearby.energy(&PoseError::from_array(next)) {
                 Some(found) if found < lowest => best = Some((found, *way)),
                 Some(_) => {}
                 // They pass each other by: nothing holds them.
@@ -65,8 +65,8 @@ pub fn rest(pair: &Pair) -> Option<PoseError> {
         };
         loop {
             let next = going(at, &way, step);
-            match nearby.height(&PoseError::from_array(next)) {
-                Some(found) if found < height - SLOPE * step => (at, height) = (next, found),
+            match nearby.energy(&PoseError::from_array(next)) {
+                Some(found) if found < energy - SLOPE * step => (at, energy) = (next, found),
                 Some(_) => break,
                 None => return None,
             }
@@ -87,12 +87,11 @@ fn going(from: [f64; 5], way: &[f64; 5], step: f64) -> [f64; 5] {
 pub fn settled(connector: Connector, alignment: &Alignment) -> Option<Connector> {
     let pair = Pair::new(&connector, alignment);
     let error = rest(&pair)?;
-    let cor = alignment.center_of_rotation;
-    let pose = CorPose::from_error(&error, cor, alignment.free);
+    let pose = pair.pose(&error);
     let height = pair.height(&pose)?;
     // The moving half as it lies in the world at rest becomes the new moving half; without pose error the
     // face centres coincide.
-    let from_cor = DAffine3::from_translation(DVec3::new(0.0, 0.0, cor));
+    let from_cor = DAffine3::from_translation(DVec3::new(0.0, 0.0, alignment.center_of_rotation));
     let at_rest = DAffine3 { matrix3: pose.rotation, translation: pose.lateral.extend(height) };
     Some(connector.settled(at_rest * from_cor, error))
 }

@@ -1,8 +1,8 @@
-//! The gradient field of the landscape: at every cell the height, the contact that carries the half, and the
+//! The gradient field of the landscape: at every cell the energy, the contact that carries the half, and the
 //! exact gradient.
 //!
 //! ```text
-//!   h │  ╲ patch 0                 At one rotation the height is piecewise linear in x and y. A cell keeps its height
+//!   h │  ╲ patch 0                 At one rotation the height is piecewise linear in x and y. A cell keeps its energy
 //!     │    ╲____╱ patch 2          and the number of its patch; a patch keeps the gradient of the height, which is
 //!     │   patch 1                  affine in x and y too:
 //!     └────┴────┴────▶ x
@@ -18,7 +18,7 @@ use super::{Fold, GradientFieldPart, Grid, LandscapeError, Resolution};
 use crate::advice::Advice;
 use crate::contact::{HeightEnvelope, Pair};
 use crate::exec::Exec;
-use crate::pose;
+use crate::pose::{self, CorPose};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -57,15 +57,15 @@ impl Patch {
 /// Per representative rotation: its patches.
 pub type Patches = Vec<Box<[Patch]>>;
 
-/// Heights and gradients over the kept half, or quarter, of an error grid.
+/// Energies and gradients of the height over the kept half, or quarter, of an error grid.
 #[derive(Debug, Clone)]
 pub struct GradientField {
     /// The whole grid.
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
-    /// z of the COR at first contact at every stored cell, in D; −∞ if the halves pass each other by.
-    pub heights: Vec<f32>,
+    /// Potential energy at first contact at every stored cell, in D; −∞ if the halves pass each other by.
+    pub energies: Vec<f32>,
     /// Per kept cell: number of its patch within its rotation; [`GradientField::NOTHING`] without contact.
     pub carriers: Vec<u16>,
     /// Per representative rotation: its patches.
@@ -97,9 +97,9 @@ impl GradientField {
     {
         let fold = folded(pair, grid)?;
         let all = 0..fold.representatives();
-        let GradientFieldPart { grid, fold, heights, carriers, patches, .. } =
+        let GradientFieldPart { grid, fold, energies, carriers, patches, .. } =
             part_of(pair, grid, fold, all, exec, linear)?;
-        Ok(Self { grid, fold, heights, carriers, patches })
+        Ok(Self { grid, fold, energies, carriers, patches })
     }
 
     /// The gradient field of some of the representative rotations, numbered as in the [`Fold`] of the grid: that of the whole, bit
@@ -145,20 +145,20 @@ where
         carriers.copy_from_slice(slab);
         patches.into_boxed_slice()
     };
-    let (heights, carriers, patches) =
+    let (energies, carriers, patches) =
         slabs(pair, grid, &fold, representatives.clone(), GradientField::BYTES_PER_CELL, exec, linear, keep)?;
-    Ok(GradientFieldPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
+    Ok(GradientFieldPart { grid: grid.clone(), fold, representatives, energies, carriers, patches })
 }
 
-/// Heights over the kept cells of an error grid, and to which side of every cell its gradient points: a byte in the place of patches.
+/// Energies over the kept cells of an error grid, and to which side of every cell its gradient points: a byte in the place of patches.
 #[derive(Debug, Clone)]
 pub struct DescentDirections {
     /// The whole grid.
     pub grid: Grid,
     /// Which cells are kept.
     pub fold: Fold,
-    /// z of the COR at first contact at every stored cell, in D; −∞ if the halves pass each other by.
-    pub heights: Vec<f32>,
+    /// Potential energy at first contact at every stored cell, in D; −∞ if the halves pass each other by.
+    pub energies: Vec<f32>,
     /// Per kept cell: bit k where entry k of its gradient is negative; [`DescentDirections::NOTHING`] without contact.
     pub below: Vec<u8>,
 }
@@ -198,12 +198,12 @@ impl DescentDirections {
             }
         };
         let all = 0..fold.representatives();
-        let (heights, below, _) = slabs(pair, grid, &fold, all, Self::BYTES_PER_CELL, exec, linear, keep)?;
-        Ok(Self { grid: grid.clone(), fold, heights, below })
+        let (energies, below, _) = slabs(pair, grid, &fold, all, Self::BYTES_PER_CELL, exec, linear, keep)?;
+        Ok(Self { grid: grid.clone(), fold, energies, below })
     }
 }
 
-/// Heights, and the results of `keep` for the carriers and patches of every rotation: a value for each cell,
+/// Energies, and the results of `keep` for the carriers and patches of every rotation: a value for each cell,
 /// and a value for each rotation.
 #[expect(clippy::too_many_arguments, reason = "two callers, side by side")]
 #[expect(clippy::type_complexity, reason = "what two callers take apart at once")]
@@ -228,20 +228,20 @@ where
         let largest = Resolution::largest_that_fits(budget, bytes_per_cell, grid.axes.len());
         vec![Advice::AtMostResolution(largest)]
     })?;
-    let mut heights = vec![0f32; kept];
+    let mut energies = vec![0f32; kept];
     let mut values = vec![C::default(); kept];
     let done = AtomicUsize::new(0);
     let all = exec.install(|| {
-        heights
+        energies
             .par_chunks_exact_mut(slab)
             .zip(values.par_chunks_exact_mut(slab))
             .enumerate()
             .map_init(
                 || (Slab::new(pair, slab), vec![0u16; slab]),
-                |(buffer, carriers), (k, (heights, values))| {
+                |(buffer, carriers), (k, (energies, values))| {
                     exec.check()?;
                     let error = grid.pose(fold.rotation(representatives.start + k) * slab);
-                    let patches = buffer.fill(grid, &error, linear(&error), heights, carriers)?;
+                    let patches = buffer.fill(grid, &error, linear(&error), energies, carriers)?;
                     let made = keep(carriers, patches, values);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     exec.report(done as f64 / representatives.len() as f64, "heights");
@@ -250,7 +250,7 @@ where
             )
             .collect::<Result<Vec<P>, LandscapeError>>()
     })?;
-    Ok((heights, values, all))
+    Ok((energies, values, all))
 }
 
 /// Buffers of a thread that fills slabs.
@@ -274,7 +274,7 @@ impl<'a> Slab<'a> {
         grid: &Grid,
         error: &pose::PoseError,
         linear: L,
-        heights: &mut [f32],
+        energies: &mut [f32],
         carriers: &mut [u16],
     ) -> Result<Vec<Patch>, LandscapeError> {
         let rotation = error.rotation();
@@ -284,7 +284,9 @@ impl<'a> Slab<'a> {
         self.numbers.clear();
         let mut patches = Vec::new();
         for (k, carrier) in self.carriers.iter().enumerate() {
-            heights[k] = self.heights[k] as f32;
+            let pose =
+                CorPose { lateral: lateral(lattices, (k % x.count) as f64, (k / x.count) as f64), rotation };
+            energies[k] = self.pair.energy(&pose, self.heights[k]) as f32;
             carriers[k] = if *carrier == HeightEnvelope::NOTHING {
                 GradientField::NOTHING
             } else {
@@ -323,7 +325,7 @@ mod tests {
     use crate::contact::Contact;
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
     use crate::landscape::Landscape;
-    use crate::pose::{CorPose, Dof};
+    use crate::pose::Dof;
 
     fn pair(family: Family) -> Pair {
         let mut alignment = Alignment::default_for(Some(family));
@@ -334,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn heights_are_those_of_the_landscape_and_gradients_those_of_a_contact() {
+    fn energies_are_those_of_the_landscape_and_gradients_those_of_a_contact() {
         for family in [Family::Pyramid, Family::XFace3d, Family::VFace, Family::SFace, Family::Cone] {
             let pair = pair(family);
             let cells = if pair.alignment.free.len() == 2 { 12 } else { 4 };
@@ -345,7 +347,7 @@ mod tests {
             let mut carried = 0;
             for cell in 0..grid.len() {
                 let kept = field.fold.kept_cell(cell);
-                let (a, b) = (field.heights[kept], landscape.heights[cell]);
+                let (a, b) = (field.energies[kept], landscape.heights[cell]);
                 assert!(a == b || (a - b).abs() < 1e-6, "{family:?} {cell}: {a} {b}");
                 let slab = field.fold.slab();
                 let representative = kept / slab;
@@ -386,7 +388,7 @@ mod tests {
             let linear = |_: &pose::PoseError| |g: &Gradient| *g;
             let field = GradientField::compute(&pair, &grid, &Exec::new(), linear).unwrap();
             let falls = DescentDirections::compute(&pair, &grid, &Exec::new(), linear).unwrap();
-            assert_eq!(field.heights, falls.heights);
+            assert_eq!(field.energies, falls.energies);
             let (slab, nx) = (field.fold.slab(), grid.axis(Dof::X).map_or(1, |a| a.cells));
             for (kept, below) in falls.below.iter().enumerate() {
                 let carrier = field.carriers[kept];
@@ -412,7 +414,7 @@ mod tests {
             GradientField::compute(&pair, &grid, &exec, |_| |g: &Gradient| *g).unwrap()
         };
         let (one, three) = (with(1), with(3));
-        assert_eq!(one.heights, three.heights);
+        assert_eq!(one.energies, three.energies);
         assert_eq!(one.carriers, three.carriers);
         assert_eq!(one.patches, three.patches);
     }

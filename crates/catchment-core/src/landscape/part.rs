@@ -23,8 +23,8 @@ pub struct GradientFieldPart {
     pub fold: Fold,
     /// Which of the representative rotations.
     pub representatives: Range<usize>,
-    /// Their heights, as in [`GradientField::heights`].
-    pub heights: Vec<f32>,
+    /// Their energies, as in [`GradientField::energies`].
+    pub energies: Vec<f32>,
     /// Their carriers, as in [`GradientField::carriers`].
     pub carriers: Vec<u16>,
     /// Their patches, as in [`GradientField::patches`].
@@ -96,13 +96,13 @@ impl GradientField {
             return Err(MergeError::Different);
         }
         complete(parts.iter().map(|part| part.representatives.clone()), fold.representatives())?;
-        let (mut heights, mut carriers, mut patches) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut energies, mut carriers, mut patches) = (Vec::new(), Vec::new(), Vec::new());
         for part in parts {
-            heights.extend(part.heights);
+            energies.extend(part.energies);
             carriers.extend(part.carriers);
             patches.extend(part.patches);
         }
-        Ok(Self { grid, fold, heights, carriers, patches })
+        Ok(Self { grid, fold, energies, carriers, patches })
     }
 }
 
@@ -153,7 +153,7 @@ mod tests {
         for parts in [1, 2, 7] {
             let part = |range| GradientField::part(&pair, &grid, range, &exec, linear).unwrap();
             let merged = GradientField::merge(cut(whole.fold.representatives(), parts).map(part)).unwrap();
-            assert_eq!(merged.heights, whole.heights);
+            assert_eq!(merged.energies, whole.energies);
             assert_eq!(merged.carriers, whole.carriers);
             assert_eq!(merged.patches, whole.patches);
         }

@@ -147,7 +147,8 @@ impl Seating {
 impl Deeper {
     /// The deepest of these rests, if it is below the mated pose by more than the rounding of drawings.
     fn of(pair: &Pair, rests: &[End]) -> Option<Self> {
-        let sinks = |end: &End| Some((pair.mated_height() - end.height?, end.error));
+        let sinks =
+            |end: &End| Some((pair.mated_energy() - pair.energy_at(&end.error, end.height?), end.error));
         let (sinks, error) = rests.iter().filter_map(sinks).max_by(|a, b| a.0.total_cmp(&b.0))?;
         (sinks > CONTACT_TOLERANCE).then_some(Self { sinks, error })
     }

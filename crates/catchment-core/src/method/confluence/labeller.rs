@@ -1,7 +1,7 @@
-//! Labels the kept cells of a gradient field in order of rising height.
+//! Labels the kept cells of a gradient field in order of rising potential energy.
 //!
 //! ```text
-//!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by height; a batch reads the results of earlier batches only
+//!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by energy; a batch reads the results of earlier batches only
 //!           ├──┼──┼──┼──┼──┤
 //!   then    thin jams mended, some inherited cells followed to their end
 //! ```
@@ -46,12 +46,12 @@ const SEED: u64 = 0xc0f1;
 impl Labeller<'_> {
     /// Labels all kept cells.
     pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, InheritedLabels), Cancelled> {
-        let DescentDirections { grid, fold, heights, below } = self.falls;
+        let DescentDirections { grid, fold, energies, below } = self.falls;
         let touches = |cell: &u32| below[*cell as usize] != DescentDirections::NOTHING;
         let mut order: Vec<u32> = (0..below.len() as u32).filter(touches).collect();
         exec.install(|| {
             order.par_sort_unstable_by(|a, b| {
-                heights[*a as usize].total_cmp(&heights[*b as usize]).then(a.cmp(b))
+                energies[*a as usize].total_cmp(&energies[*b as usize]).then(a.cmp(b))
             });
         });
         let mut labels = vec![Label::own(Outcome::Missed); below.len()];

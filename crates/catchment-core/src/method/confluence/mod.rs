@@ -2,7 +2,7 @@
 //! cells that are already decided.
 //!
 //! ```text
-//!   ·   ·   ·   ·   ·        cells by rising height. For each cell:
+//!   ·   ·   ·   ·   ·        cells by rising potential energy. For each cell:
 //!         ╲                    1  if the 2ⁿ centres ahead along the exact direction of descent are known and agree,
 //!   ·   ·  ╲·   ·   ·             the cell inherits their outcome without a motion
 //!           ╰─╮                2  if not, its exact motion, until it is among centres that agree
@@ -26,7 +26,7 @@
 //! are followed to their end. For 5-D grids of the pyramid and the 3-D X-Face it is one or two in ten
 //! thousand. Outcomes hold at the centres of cells, not between two of them.
 //!
-//! Memory: 10 bytes per kept cell (height, sides, order, label; [`DescentDirections`] keeps a half or a quarter of a
+//! Memory: 10 bytes per kept cell (energy, sides, order, label; [`DescentDirections`] keeps a half or a quarter of a
 //! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue
 //! 1987: here the map is the motion itself. Lengths in D, angles in radians.
 

@@ -76,8 +76,9 @@ fn about(pair: &Pair) -> ReleaseResult {
                 return None;
             }
             let height = height.unwrap_or(f64::NEG_INFINITY);
-            let sinks = pair.mated_height() - height;
-            let is_seated = height >= seat.floor() && seat.holds(&rest, height);
+            let energy = pair.energy_at(&rest, height);
+            let sinks = pair.mated_energy() - energy;
+            let is_seated = energy >= seat.floor() && seat.holds(&rest, height);
             (sinks > CONTACT_TOLERANCE && !is_seated).then_some(LossOfSeat { from, rest, sinks })
         };
         let fall = starts(pair).into_iter().find_map(&mut falls);

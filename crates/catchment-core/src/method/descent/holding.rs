@@ -30,7 +30,7 @@ use super::projection::{MAX_COORDINATES, Vector, dot};
 use super::sticking::{Sticking, Touching};
 use super::{DescentSettings, Pair};
 use crate::contact::{Contact, Meeting};
-use crate::pose::{CorPose, PoseError};
+use crate::pose::PoseError;
 use glam::{DMat3, DQuat, DVec3};
 
 /// A force on the moving half and its moment about the centre of rotation, world axes; in preloads, and preloads times D.
@@ -93,8 +93,7 @@ impl Holding {
     pub fn at_rest(pair: &Pair, error: &PoseError, height: f64, near: f64) -> Option<Self> {
         let settings = DescentSettings { friction: 1.0, ..DescentSettings::default() };
         let mut motion = Motion::new(pair, &settings);
-        let alignment = &pair.alignment;
-        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        let pose = pair.pose(error);
         let state = State {
             cor: pose.lateral.extend(height),
             rotation: pose.rotation,

@@ -29,7 +29,6 @@ mod homing;
 mod immobility;
 mod motion;
 mod projection;
-mod push;
 mod rest;
 mod rows;
 mod sliding;

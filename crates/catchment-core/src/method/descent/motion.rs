@@ -4,8 +4,7 @@
 use super::coulomb::Coulomb;
 use super::fall::{fall, home};
 use super::homing;
-use super::projection::{Projection, Vector};
-use super::push::Push;
+use super::projection::{Projection, Vector, dot};
 use super::rest::TOUCHING;
 use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
@@ -14,7 +13,7 @@ use super::{DescentSettings, End, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
 use crate::pose::{CorPose, PoseError, rotation};
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// Position of the moving half.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +25,13 @@ pub(super) struct State {
     pub(super) spin: DQuat,
     /// (roll, pitch, yaw) if some rotation is locked; unused if all three are free.
     pub(super) angles: [f64; 3],
+}
+
+impl State {
+    /// Lateral position of the COR, and rotation.
+    pub(super) fn pose(&self) -> CorPose {
+        CorPose { lateral: self.cor.truncate(), rotation: self.rotation }
+    }
 }
 
 /// How long a motion is followed.
@@ -107,8 +113,6 @@ pub(super) struct Motion<'a> {
     pub(super) coulomb: Coulomb,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
-    /// The push.
-    pub(super) push: Push,
     /// Largest distance of a moving corner from the COR.
     pub(super) radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
@@ -133,7 +137,6 @@ impl<'a> Motion<'a> {
             projection: Projection::default(),
             coulomb: Coulomb::default(),
             sliding: Sliding::default(),
-            push: Push,
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
@@ -157,7 +160,7 @@ impl<'a> Motion<'a> {
         let mut pace = Pace::new(self.settings.step);
         let Some(mut state) = self.touch_down(error) else { return End::missed(*error) };
         let mut travelled = 0.0;
-        let mut mark = (0, travelled, self.push.energy(&state));
+        let mut mark = (0, travelled, self.energy(&state));
         // A seated half stays seated, so the outcome "docked" is known before it comes to rest, unless some
         // rests do not count.
         let (mut seated, mut asked, mut docked) = (false, false, false);
@@ -169,7 +172,7 @@ impl<'a> Motion<'a> {
                 state = self.feel(&state);
             } else if self.pair.asks_trees() {
                 let far = self.pair.alignment.length(&self.error_of(&state));
-                let climbed = self.push.energy(&state) - self.push.energy(&self.home());
+                let climbed = self.energy(&state) - self.pair.mated_energy();
                 if far <= near && climbed >= TAPER * far {
                     travelled += far;
                     state = self.home();
@@ -186,7 +189,7 @@ impl<'a> Motion<'a> {
             // A half below the seat's level stays in its part of the level set, so one test decides whether
             // that part is the seat. If all motions near the mated pose lead to it, coming near suffices, and
             // a half that slides off needs no test.
-            let energy = self.push.energy(&state);
+            let energy = self.energy(&state);
             let deep = !self.homing && energy <= self.seat.level();
             // Below the floor of the seat the half has left it, and does not climb back.
             let above = energy >= self.seat.floor();
@@ -232,8 +235,7 @@ impl<'a> Motion<'a> {
 
     /// The moving half lowered at `error` to first contact; `None` without contact.
     fn touch_down(&mut self, error: &PoseError) -> Option<State> {
-        let alignment = &self.pair.alignment;
-        let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        let start = self.pair.pose(error);
         self.nearby.leave();
         self.sliding.forget();
         self.coulomb.begin_at(None);
@@ -263,7 +265,7 @@ impl<'a> Motion<'a> {
         let rests_well = |motion: &mut Self| {
             outcome == Outcome::Jammed
                 && (seated || motion.is_seated(last))
-                && motion.seat.allows(&error, motion.push.energy(last))
+                && motion.seat.allows(&error, last.cor.z)
         };
         // A half that leaves is no longer docked, whatever it was before.
         let docked = docked && outcome != Outcome::Missed || rests_well(self);
@@ -280,7 +282,7 @@ impl<'a> Motion<'a> {
     /// Whether a displacement from a state, whose lateral part has this length, lowers the energy too little to go on.
     pub(super) fn is_too_gentle(&self, state: &State, u: &Vector, length: f64) -> bool {
         let least = self.settings.slope_threshold;
-        least > 0.0 && self.push.work(state, u) <= least * length
+        least > 0.0 && self.work(state, u) <= least * length
     }
 
     pub(super) fn moved(&self, state: &State, u: &Vector) -> State {
@@ -332,16 +334,29 @@ impl<'a> Motion<'a> {
 
     /// Whether the half has come into the seat.
     fn is_seated(&mut self, state: &State) -> bool {
-        let energy = self.push.energy(state);
-        energy <= self.seat.level() && {
+        self.energy(state) <= self.seat.level() && {
             let error = self.error_of(state);
-            self.seat.holds(&error, energy)
+            self.seat.holds(&error, state.cor.z)
         }
     }
 
+    /// The push at a state.
+    pub(super) fn push(&self, state: &State) -> Vector {
+        self.pair.push(&state.pose(), state.cor.z)
+    }
+
+    /// The potential energy at a state, in D.
+    pub(super) fn energy(&self, state: &State) -> f64 {
+        self.pair.energy(&state.pose(), state.cor.z)
+    }
+
+    /// By how much a displacement from a state lowers the energy, to first order, in D.
+    pub(super) fn work(&self, state: &State, u: &Vector) -> f64 {
+        dot(&self.push(state), u)
+    }
+
     pub(super) fn error_of(&self, state: &State) -> PoseError {
-        let pose = CorPose { lateral: DVec2::new(state.cor.x, state.cor.y), rotation: state.rotation };
-        let mut error = pose.to_error(self.pair.alignment.center_of_rotation);
+        let mut error = state.pose().to_error(self.pair.alignment.center_of_rotation);
         // Locked rotations stay exactly 0: no detour through the matrix.
         if !self.spherical {
             [error.roll, error.pitch, error.yaw] = state.angles;

@@ -116,7 +116,7 @@ impl Motion<'_> {
         }
         let (mut state, mut moved, mut seam) = (*state, 0.0, TOUCHING);
         for _ in 0..PASSES {
-            let push = self.push.at(&state).map(|part| PUSH * part);
+            let push = self.push(&state).map(|part| PUSH * part);
             self.turn(&state.rotation, state.cor.truncate(), FARTHEST);
             self.nearby.contacts_within(state.cor, 2.0 * TOUCHING, seam, &mut self.contacts);
             // An overlap beyond the border of a contact's features does not count.

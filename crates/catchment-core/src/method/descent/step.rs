@@ -110,7 +110,7 @@ impl Motion<'_> {
                 let next = self.moved(state, &u);
                 let allowed = self.settings.surprise * pace.step.min(longest);
                 if let Some(home) = self.home_of(&next).filter(|home| {
-                    let [home, next, here] = [home, &next, state].map(|at| self.push.energy(at));
+                    let [home, next, here] = [home, &next, state].map(|at| self.energy(at));
                     (home - next).abs() <= allowed && home <= here
                 }) {
                     self.turn(&home.rotation, home.cor.truncate(), pace.step);
@@ -126,9 +126,9 @@ impl Motion<'_> {
                 if below.is_none() && !blocked {
                     return Advance::Ended(Outcome::Missed, next);
                 }
-                let energy = self.push.energy(&landed);
-                let rise = energy - self.push.energy(&next);
-                let climbs = energy > self.push.energy(state) + ROUNDING;
+                let energy = self.energy(&landed);
+                let rise = energy - self.energy(&next);
+                let climbs = energy > self.energy(state) + ROUNDING;
                 let rises = rise > allowed || climbs;
                 halve = if blocked {
                     // A wall without a known contact becomes a contact, if it is new; or the contact that
@@ -163,9 +163,7 @@ impl Motion<'_> {
                         (u, length) = self.displacement(state, pace);
                         continue;
                     }
-                    if climbs
-                        && pace.step <= longest * REST_SHARE
-                        && self.push.work(state, &u) <= GENTLE * length
+                    if climbs && pace.step <= longest * REST_SHARE && self.work(state, &u) <= GENTLE * length
                     {
                         // The bottom of a smooth hollow, within a step.
                         return Advance::Ended(Outcome::Jammed, *state);
@@ -198,7 +196,7 @@ impl Motion<'_> {
         let step = *step;
         *most = self.most_reach();
         let rotation_length = self.pair.alignment.rotation_length;
-        let push = self.push.at(state);
+        let push = self.push(state);
         let Self { projection, coulomb, rows, settings, .. } = self;
         let contacts = rows.contacts(settings.friction);
         // A displacement, its length in the ρ-metric, and on level ground, the widest gap that it closes.

@@ -117,7 +117,7 @@ impl Touching {
 
     fn see_those(&mut self, touches: impl Fn(&Contact) -> bool, motion: &Motion, state: &State) {
         let axes = motion.axes(state);
-        self.push = motion.push.at(state);
+        self.push = motion.push(state);
         self.rows.clear();
         self.tangents.clear();
         for (contact, _) in motion.contacts.iter().filter(|(contact, _)| touches(contact)) {

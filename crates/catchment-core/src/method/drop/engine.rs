@@ -132,8 +132,9 @@ impl<'a> Engine<'a> {
             }
             seen(step, &fall);
             let apart = self.apart(cor, &rotation);
+            let energy = self.pair.energy(&CorPose { lateral: cor.truncate(), rotation }, cor.z);
             // The path into the seat is searched only once: a half deep enough stays in its connected part.
-            seated = (seat.floor() - SUNK..=seat.level()).contains(&cor.z)
+            seated = (seat.floor() - SUNK..=seat.level()).contains(&energy)
                 && (seated || seat.holds(&self.end(Outcome::Aligned, cor, &rotation).error, cor.z));
             settled = if seated { settled + 1 } else { 0 };
             if settled >= SETTLED && all_count {

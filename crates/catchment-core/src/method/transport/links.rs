@@ -112,7 +112,7 @@ impl<'a> Links<'a> {
     pub(super) fn of(&self, cell: u32, scratch: &mut Scratch, out: &mut Vec<Link>) -> CellFlow {
         let start = out.len();
         let place = self.place(cell);
-        let height = self.field.heights[cell as usize];
+        let height = self.field.energies[cell as usize];
         let Scratch { front, next } = scratch;
         front.clear();
         front.push(Corner { place, mirror: Mirror { x: false, y: false }, weight: 1.0 });
@@ -125,7 +125,7 @@ impl<'a> Links<'a> {
                 }
                 let leaves = self.corners(from, |corner| {
                     let to = corner.place.cell;
-                    let h = self.field.heights[to as usize];
+                    let h = self.field.energies[to as usize];
                     if to == cell && self.is_its_own_image(&corner) {
                         // The motion returned to its own cell.
                     } else if h == f32::NEG_INFINITY {

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //!        ╭─╮
-//!   ╲   ╱   ╲        climb: the highest point of the path above the rest; beyond it exact motion leads lower, to the mated
-//!    ╲_╱     ╲       pose, or off
+//!   ╲   ╱   ╲        climb: the greatest potential energy of the path above that of the rest; beyond it exact motion leads
+//!    ╲_╱     ╲       lower, to the mated pose, or off
 //!     ↑ rest  ▼
 //! ```
 //!
 //! Paths are straight in position and rotation: along every error, towards the mated pose, at random, and
 //! then around the best. Each is evaluated every [`STEP`]; the best is evaluated [`FINER`] times as densely,
-//! and again around its highest point. The climb belongs to an existing path, so it is an upper bound on the
+//! and again around its point of greatest energy. The climb belongs to an existing path, so it is an upper bound on the
 //! escape height.
 
 use super::rests::RestEnd;
@@ -39,7 +39,7 @@ const LEAST_WAYS: f64 = 4.0;
 const ELSEWHERE: f64 = 0.1;
 /// Motions keep so far from walls, in D, and heights beside a wall differ by that on its slope.
 const OPEN: f64 = tolerance::TOUCHING;
-/// Height difference that counts as lower, in D: above the accuracy of motions.
+/// Difference in energy that counts as lower, in D: above the accuracy of motions.
 const LOWER: f64 = 1e-5;
 
 /// An escape path from a jam.
@@ -80,6 +80,7 @@ struct EscapeAttempt {
 }
 
 struct Search<'a> {
+    pair: &'a Pair,
     space: Space,
     rest: &'a RestEnd,
     nearby: Nearby<'a>,
@@ -104,6 +105,7 @@ pub(in crate::run) fn escape_path(
     let simple = if space.count() <= FEW { WAYS_OF_FEW } else { WAYS };
     let ways = (simple * affordable(pair).sqrt()).max(LEAST_WAYS) as u64 * space.count() as u64;
     let mut search = Search {
+        pair,
         rest,
         nearby: pair.about(2.0 * STEP),
         follower: Follower::new(pair, motions),
@@ -143,12 +145,12 @@ impl Search<'_> {
     /// Looks along a way, no higher than the best so far.
     fn try_way(&mut self, way: &[f64; 5]) {
         let most = self.best.map_or(f64::INFINITY, |best| best.out.climb);
-        let (mut top, mut last, mut climbing) = (0.0f64, self.rest.height, false);
-        let mut asked = 0.0;
+        let (mut top, mut climbing, mut asked) = (0.0f64, false, 0.0);
+        let (mut height, mut last) = (self.rest.height, self.rest.energy);
         for k in 1..=(FARTHEST / STEP) as usize {
             let length = k as f64 * STEP;
             let pose = self.space.displaced(self.rest, way, length);
-            let z = match self.look(&pose, last + STEEPEST * STEP) {
+            height = match self.look(&pose, height + STEEPEST * STEP) {
                 HeightAside::At(z) => z,
                 HeightAside::Blocked => return,
                 HeightAside::Gone => {
@@ -156,24 +158,25 @@ impl Search<'_> {
                     return self.found(way, length, top, (Outcome::Missed, over));
                 }
             };
-            top = top.max(z - self.rest.height);
+            let energy = self.pair.energy(&pose, height);
+            top = top.max(energy - self.rest.energy);
             if top >= most {
                 return;
             }
-            let falls = z < last - LOWER * STEP;
+            let falls = energy < last - LOWER * STEP;
             // Level ground beyond is another rest as soon as it is far enough.
             let is_level = self.leaving != EscapeCriterion::Jam
                 && top > LOWER
-                && z <= last + LOWER * STEP
+                && energy <= last + LOWER * STEP
                 && (climbing || length - asked > ELSEWHERE);
-            if z < self.rest.height - LOWER || falls && climbing || is_level {
+            if energy < self.rest.energy - LOWER || falls && climbing || is_level {
                 (climbing, asked) = (false, length);
                 if let Some(to) = self.leads_out(way, length) {
                     return self.found(way, length, top, to);
                 }
             }
-            climbing |= z > last + LOWER * STEP;
-            last = z;
+            climbing |= energy > last + LOWER * STEP;
+            last = energy;
         }
     }
 
@@ -198,7 +201,9 @@ impl Search<'_> {
             EscapeCriterion::Jam => self.follower.settle(&from),
             EscapeCriterion::Rest { .. } => self.follower.come_to_rest(&from),
         };
-        let is_lower = end.height.is_some_and(|height| height < self.rest.height - LOWER);
+        let is_lower = end
+            .height
+            .is_some_and(|height| self.pair.energy_at(&end.error, height) < self.rest.energy - LOWER);
         let is_out = match (end.outcome, self.leaving) {
             (Outcome::Missed, _) | (Outcome::Aligned, EscapeCriterion::Jam) => true,
             (Outcome::Undecided, _) => false,
@@ -216,26 +221,28 @@ impl Search<'_> {
         step_length(lateral, turned, self.space.rho()) > ELSEWHERE
     }
 
-    /// The climb of a path, sampled more and more densely around its highest point.
+    /// The climb of a path, sampled more and more densely around its point of greatest energy.
     fn finer(&mut self, best: &EscapeAttempt) -> EscapePath {
         let mut top = best.out.climb;
         let (mut from, mut to, mut last) = (0.0, best.length, self.rest.height);
         let mut step = STEP;
         for _ in 0..LOOKS {
             step /= FINER as f64;
-            let (begun, mut highest) = (last, (from, last));
+            let (begun, start) = (last, self.space.displaced(self.rest, &best.along, from));
+            let mut highest = (from, last, self.pair.energy(&start, last));
             for k in 1..((to - from) / step).round() as usize {
                 let length = from + k as f64 * step;
                 let pose = self.space.displaced(self.rest, &best.along, length);
                 if let HeightAside::At(z) = self.look(&pose, last + STEEPEST * STEP) {
-                    if z > highest.1 {
-                        highest = (length, z);
+                    let energy = self.pair.energy(&pose, z);
+                    if energy > highest.2 {
+                        highest = (length, z, energy);
                     }
                     last = z;
                 }
             }
-            top = top.max(highest.1 - self.rest.height);
-            // Start a step before the highest point; the height there is at least the height at the start of
+            top = top.max(highest.2 - self.rest.energy);
+            // Start a step before the point of greatest energy; the height there is at least the height at the start of
             // this search.
             last = begun.max(highest.1 - STEEPEST * step);
             (from, to) = ((highest.0 - step).max(0.0), (highest.0 + step).min(best.length));

@@ -50,6 +50,8 @@ pub(in crate::run) struct RestEnd {
     pub(in crate::run) error: PoseError,
     pub(in crate::run) pose: CorPose,
     pub(in crate::run) height: f64,
+    /// The potential energy there, in D.
+    pub(in crate::run) energy: f64,
     /// Gaps up to this touch, in D.
     pub(in crate::run) touching: f64,
     /// The contacts, by pairs of features in their order.
@@ -111,8 +113,8 @@ impl PoseFollower<'_> {
 
     pub(super) fn rested(&self, rest: &Rest) -> Option<RestEnd> {
         let height = rest.height.filter(|_| self.is_rest(rest.outcome))?;
-        let alignment = self.problem.alignment();
-        let pose = CorPose::from_error(&rest.error, alignment.center_of_rotation, alignment.free);
+        let pose = self.problem.pair().pose(&rest.error);
+        let energy = self.problem.pair().energy(&pose, height);
         let mut by_pair: BTreeMap<[u32; 2], Vec<Contact>> = BTreeMap::new();
         for (contact, meeting) in &rest.contacts {
             let pair = self.features.meeting(contact, meeting, &pose.rotation);
@@ -127,7 +129,7 @@ impl PoseFollower<'_> {
             met.iter().map(|met| classes(self.features, met.features)).collect();
         signature.sort_unstable();
         let Rest { outcome, error, touching, .. } = *rest;
-        Some(RestEnd { outcome, error, pose, height, touching, met, signature })
+        Some(RestEnd { outcome, error, pose, height, energy, touching, met, signature })
     }
 
     /// Stability of a rest, its escape path, and whether it comes back after a displacement; with the end of
@@ -148,8 +150,7 @@ impl PoseFollower<'_> {
         let returned = (0..displaced).filter(|k| {
             let way = space.random(stream, *k as u64);
             let end = self.end(&mut follower, &space.error(rest, &way, OFF));
-            let pose =
-                CorPose::from_error(&end.error, pair.alignment.center_of_rotation, pair.alignment.free);
+            let pose = pair.pose(&end.error);
             let off = step_length(
                 pose.lateral - rest.pose.lateral,
                 angle_between(&pose.rotation, &rest.pose.rotation),

@@ -1,4 +1,4 @@
-//! Stability of a rest: the rise of the half when it is displaced.
+//! Stability of a rest: the rise of the potential energy when the half is displaced.
 //!
 //! ```text
 //!   sharp      ╲  ╱     it rises in proportion to the push           contacts on all sides
@@ -227,7 +227,7 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
     let mut rise = |way: &[f64; 5], push: f64| {
         let pose = space.displaced(rest, way, push);
         match ground(&mut nearby, &pose, rest.height + STEEPEST * push) {
-            HeightAside::At(z) => z - rest.height,
+            HeightAside::At(z) => pair.energy(&pose, z) - rest.energy,
             HeightAside::Blocked => f64::INFINITY,
             HeightAside::Gone => f64::NEG_INFINITY,
         }

@@ -198,7 +198,7 @@ impl Motion<'_> {
             return Advance::Moved(landed, 0.0);
         }
         // Rims have crossed on the way without a contact between them.
-        match self.until_event(state, &self.push.at(state), state.cor.z - z) {
+        match self.until_event(state, &self.push(state), state.cor.z - z) {
             Reached::At(next, _) => Advance::Moved(next, 0.0),
             Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),
         }
@@ -231,10 +231,10 @@ impl Motion<'_> {
             tangents.extend(self.tangents(&contact, state, &axes));
         }
         let contacts = Contacts { rows: &rows, tangents: &tangents, friction: self.settings.friction };
-        let touching = |_| 0.0;
+        let (push, touching) = (self.push(state), |_| 0.0);
         let u = self
             .coulomb
-            .displacement(&mut self.projection, &self.push.at(state), contacts, touching, 1.0)
+            .displacement(&mut self.projection, &push, contacts, touching, 1.0)
             .unwrap_or_default();
         (self.sliding.rows, self.sliding.tangents) = (rows, tangents);
         self.sliding.carrying.clear();

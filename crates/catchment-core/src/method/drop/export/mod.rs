@@ -20,7 +20,7 @@ use super::pieces::{Part, parts};
 use super::settings::{DropSettings, Launch, Push, SettingError};
 use super::turning::Turning;
 use crate::connector::{Half, Surface};
-use crate::contact::{Pair, Seat};
+use crate::contact::Pair;
 use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec3};
 
@@ -151,7 +151,7 @@ impl<'a> Scene<'a> {
             self.turning_damping(),
             s.friction,
             s.restitution,
-            Seat::new(self.pair).level(),
+            self.pair.mated_height() + alignment.docked.depth,
             s.lost_beyond,
             s.timeout,
         )
