@@ -4,8 +4,9 @@
     python3 site/gallery.py target/release/catchment peg-in-hole    one of them
     python3 site/gallery.py --page                              only docs/gallery.md, from the numbers that are stored
     python3 site/gallery.py --check                             says what is out of date; the program is not run
-    python3 site/gallery.py --check target/release/catchment    runs the quick designs again, too: their numbers and warnings must be those that are stored
-    python3 site/gallery.py --check target/release/catchment all    runs all of them again
+    python3 site/gallery.py --check target/release/catchment [DRAWN]
+                                                                runs all of them, too: their numbers and warnings must be those that are stored;
+                                                                their pictures go into the folder DRAWN/gallery
 
 The numbers lie in site/gallery.json beside the SHA-256 of the design they belong to, and of the files that it names.
 """
@@ -29,8 +30,6 @@ PAGE = ROOT / "docs/gallery.md"
 RUN = ["--samples", "1000"]
 CELLS = {1: "200", 2: "60", 3: "24"}
 WINDOW = ["--motions", "1000"]
-#: Designs that a check runs again, a second or two each: two errors and three, families, meshes and drawings, with play and without.
-QUICK = ["charging-dock", "container-corner", "peg-in-hole", "pyramid-charger", "usb-a", "v-groove"]
 #: Sines of another system's library may differ in their last bits.
 CLOSE = 1e-9
 
@@ -64,17 +63,22 @@ def as_on_the_page(design: Path) -> list[str]:
     return ["--resolution", CELLS[free.count('"') // 2], *RUN]
 
 
-def measured(program: str, design: Path) -> dict:
-    """What the program says of a design; its picture goes into docs/gallery."""
+def ran(program: str, design: Path, pictures: Path) -> dict:
+    """The numbers of a run; its picture goes into a folder."""
     with tempfile.TemporaryDirectory() as home:
         run = call(program, "run", design, *as_on_the_page(design), "-o", f"{home}/out")
-        window = call(program, "window", design, *WINDOW)
         for kind in ("overview", "solids"):
             picture = Path(home) / f"out/{kind}.png"
             if picture.exists():
-                (PICTURES / f"{design.stem}.png").write_bytes(picture.read_bytes())
+                (pictures / f"{design.stem}.png").write_bytes(picture.read_bytes())
                 break
-    return {"digest": digest(design), "run": keep(run), "window": keep_window(window)}
+    return keep(run)
+
+
+def measured(program: str, design: Path) -> dict:
+    """What the program says of a design; its picture goes into docs/gallery."""
+    run, window = ran(program, design, PICTURES), call(program, "window", design, *WINDOW)
+    return {"digest": digest(design), "run": run, "window": keep_window(window)}
 
 
 def keep(run: dict) -> dict:
@@ -209,12 +213,12 @@ def stale(stored: dict) -> list[str]:
     return wrong
 
 
-def others(stored: dict, program: str, stems: list[str]) -> list[str]:
+def others(stored: dict, program: str, pictures: Path) -> list[str]:
     """Designs with other results now."""
+    pictures.mkdir(parents=True, exist_ok=True)
     wrong = []
-    for stem in stems:
-        design = DESIGNS / f"{stem}.toml"
-        now, then = keep(call(program, "run", design, *as_on_the_page(design))), stored[stem]["run"]
+    for stem in sorted(stored):
+        now, then = ran(program, DESIGNS / f"{stem}.toml", pictures), stored[stem]["run"]
         again = f"python3 site/gallery.py {program} {stem}"
         if now["outcomes"] != then["outcomes"] or not isclose(now["sum"], then["sum"], rel_tol=CLOSE):
             wrong.append(f"{stem}: Sum {then['sum']:.6g}, {then['outcomes']} are stored, and the program computes "
@@ -224,21 +228,21 @@ def others(stored: dict, program: str, stems: list[str]) -> list[str]:
     return wrong
 
 
-def check(stored: dict, program: str | None, every: bool) -> None:
+def check(stored: dict, program: str | None, drawn: str | None) -> None:
     wrong = stale(stored)
-    again = [] if wrong or program is None else sorted(stored) if every else QUICK
-    if again:
-        wrong = others(stored, program, again)
+    if program and not wrong:
+        with tempfile.TemporaryDirectory() as home:
+            wrong = others(stored, program, Path(drawn or home) / "gallery")
     if wrong:
         raise SystemExit("\n".join(wrong))
-    print(f"gallery: {len(stored)} designs with their numbers, pictures and page; {len(again)} of them run again")
+    print(f"gallery: {len(stored)} designs with their numbers, pictures and page{', all run again' if program else ''}")
 
 
 def main() -> None:
     args = sys.argv[1:]
     stored = json.loads(NUMBERS.read_text(encoding="utf-8")) if NUMBERS.exists() else {}
     if args[:1] == ["--check"]:
-        check(stored, args[1] if len(args) > 1 else None, args[2:] == ["all"])
+        check(stored, *(args[1:] + [None, None])[:2])
         return
     if args != ["--page"]:
         if not args or args[0].startswith("-"):
