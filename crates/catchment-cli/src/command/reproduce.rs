@@ -61,6 +61,15 @@ impl ReproduceArgs {
     fn output(&self) -> Option<&Path> {
         file(self.output.as_deref())
     }
+
+    /// What is to be computed.
+    fn request(&self) -> Request {
+        let settings = ReproduceSettings { exact: self.exact || self.form.markdown };
+        let mut request = Request::of(&self.tables, settings);
+        // The page of the documentation has everything but the study that is no table.
+        request.figure |= self.tables.is_empty() && self.form.markdown;
+        request
+    }
 }
 
 /// How the result is printed.
@@ -105,10 +114,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         return accuracy(args);
     }
     let started = Instant::now();
-    let mut request =
-        Request::of(&args.tables, ReproduceSettings { exact: args.exact || args.form.markdown });
-    // The page of the documentation has everything but the study that is no table.
-    request.figure |= args.tables.is_empty() && args.form.markdown;
+    let request = args.request();
     if request.coverage && (args.form.csv || args.form.markdown || args.output().is_some()) {
         let help = Some("print it as text or with --json".to_owned());
         return Err(Failure::with_help(format!("{COVERAGE} is no table of published entries"), help));
@@ -162,4 +168,22 @@ fn accuracy(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     };
     to_stdout(&text)?;
     Ok(ExitStatus::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::FromArgMatches as _;
+
+    /// How exact values are computed and shown has tests of its own: they take half a minute per table.
+    #[test]
+    fn exact_values_are_computed_where_they_are_asked_for() {
+        let exact = |words: &str| {
+            let command = ReproduceArgs::augment_args(clap::Command::new("reproduce"));
+            let read = command.try_get_matches_from(words.split(' ')).unwrap();
+            ReproduceArgs::from_arg_matches(&read).unwrap().request().settings.exact
+        };
+        assert!(exact("reproduce 5.2 --exact") && exact("reproduce --markdown"));
+        assert!(!exact("reproduce 5.2"));
+    }
 }

@@ -100,7 +100,9 @@ fn every_method_that_applies_stands_beside_the_others() {
         "--time-limit",
         "10 min",
     ];
-    let report = json(home.path(), &[&args[..], &["--json"]].concat());
+    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    let report = fs::read(home.path().join("out/report.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
     let methods = report["methods"].as_array().unwrap();
     let decided = methods.iter().filter(|m| m["result"].is_object()).count();
     assert!(decided >= 5 && methods.iter().any(|m| m["method"] == "kinematic"), "{report}");
@@ -112,7 +114,6 @@ fn every_method_that_applies_stands_beside_the_others() {
             assert_eq!(row[j], other[k]);
         }
     }
-    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     assert!(
         told.contains("Jaccard: accepted by both") && told.contains("wrote out: report.json, methods.csv"),
         "{told}"
@@ -122,12 +123,12 @@ fn every_method_that_applies_stands_beside_the_others() {
         ["methods.csv", "methods.png", "methods.svg", "report.json"]
     );
     // What does not apply, and what takes too long, is named with the reason.
-    let told = run(home.path(), &[&args[..], &["--cor", "0.5"]].concat());
+    let hardly = ["run", "v.toml", "--method", "all", "--time-limit", "0.001 ms", "--cor", "0.5"];
+    let told = run(home.path(), &hardly);
     assert!(
         told.contains("without kinematic: ") && told.contains("center_of_rotation must not be"),
         "{told}"
     );
-    let told = run(home.path(), &["run", "v.toml", "--method", "all", "--time-limit", "0.001 ms"]);
     assert!(
         told.starts_with("exit 0\n") && told.contains("without descent: it takes longer than the 0.000001 s"),
         "{told}"

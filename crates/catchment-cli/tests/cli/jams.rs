@@ -104,14 +104,17 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 /// The alike quarter turns of a pyramid, and what friction alone holds.
 #[test]
 fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
-    let folder = super::designs();
-    let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300"]);
+    let home = home();
+    fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
+    let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "-o", "jams.json"];
+    let told = run(home.path(), &args);
     assert!(told.contains("  neighbours     held by friction alone;"), "{told}");
     assert!(!told.contains("ridge") && told.contains("  friction       may stick from"), "{told}");
     let words: Vec<&str> = told.split_whitespace().collect();
     assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
-    let report = json(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "--json"]);
+    let report = fs::read(home.path().join("jams.json")).unwrap();
+    let report: Value = serde_json::from_slice(&report).unwrap();
     let jams = report["jams"].as_array().unwrap();
     let turned = jams.iter().find(|jam| jam["docked_with_symmetry"] == 4).unwrap();
     assert!((turned["pose"]["yaw"].as_f64().unwrap().abs() - std::f64::consts::FRAC_PI_2).abs() < 0.01);

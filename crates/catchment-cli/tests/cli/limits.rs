@@ -39,12 +39,12 @@ fn a_small_address_space_ends_with_an_answer_or_a_message() {
     let dir = home.path();
     let design = designs().join("pyramid.toml");
     fs::copy(&design, dir.join("p.toml")).unwrap();
-    fs::write(dir.join("q.csv"), "x\n".to_owned() + &"0.01\n".repeat(20_000)).unwrap();
+    fs::write(dir.join("q.csv"), "x\n".to_owned() + &"0.01\n".repeat(5000)).unwrap();
     let commands = [
         "check p.toml",
-        "run v.toml --resolution 400",
+        "run v.toml --resolution 400 --samples 50",
         "run p.toml --free x,y,yaw --resolution 60 --method flood",
-        "run p.toml --free x,y,yaw --resolution 60 -o out",
+        "run p.toml --free x,y,yaw --resolution 20 --samples 50 -o out",
         "slices v.toml --resolution 100",
         "outcome p.toml --poses q.csv",
         "trace v.toml --pose x=0.1 -o t.png --force",
@@ -176,7 +176,7 @@ fn a_process_without_descriptors_leaves_nothing_behind() {
     let mut refused = 0;
     for most in 5..16 {
         for args in [
-            "run v.toml --method flood --resolution 6 -o out",
+            "run v.toml --free x --method flood --resolution 6 -o out",
             "export v.toml --pose x=0.1 -o trial",
             "schema -o s.json --force",
         ] {
@@ -338,7 +338,7 @@ fn who_waits_for_a_pipe_listens() {
     ] {
         let mut child =
             catchment(dir).args(args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(300));
+        std::thread::sleep(Duration::from_millis(100));
         let asked = Instant::now();
         Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
         while child.try_wait().unwrap().is_none() {
@@ -401,7 +401,7 @@ fn extreme_but_allowed_alignments_end() {
     for args in [
         "check far.toml --cor 100",
         "check far.toml --rotation-length 0.001",
-        "run v.toml --cor 100 --resolution 10 --samples 500",
+        "run v.toml --cor 100 --resolution 4 --samples 50",
         "run v.toml --cor=-100 --rotation-length 0.1 --resolution 10 --samples 500",
         "run far.toml --rotation-length 1000 --resolution 10 --samples 500",
     ] {

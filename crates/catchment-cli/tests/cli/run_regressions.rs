@@ -118,7 +118,7 @@ fn every_kind_of_report_has_one_head() {
         ("zraa", &["zraa", "v.toml", "--json"]),
         ("slices", &["slices", "v.toml", "--resolution", "3", "--json"]),
         ("comparison", &["compare", "v.toml", "--methods", "descent,flood", "--resolution", "4", "--json"]),
-        ("methods", &["run", "v.toml", "--method", "all", "--resolution", "4", "--samples", "0", "--json"]),
+        ("methods", &["run", "v.toml", "--free", "x", "--method", "all", "--resolution", "4", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "20", "--json"]),
         ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
         ("solids", &["solids", "v.toml", "--json"]),

@@ -85,7 +85,7 @@ fn stopped_and_resumed_it_writes_what_it_would_have_written() {
         let axes = ["--over", "aspect_ratio=0.5,1", "--over", "cor=-1..1/8", "--resolution", "12"];
         let mut command = catchment(home.path());
         command.args(
-            [&["sweep", "v.toml"], &axes[..], &["--samples", "1500", "--threads", "2", "-o", out]].concat(),
+            [&["sweep", "v.toml"], &axes[..], &["--samples", "400", "--threads", "2", "-o", out]].concat(),
         );
         command
     };

@@ -99,15 +99,3 @@ fn tables_are_written_with_pictures_and_exact_values() {
     fs::write(dir.path().join("out/holiday.png"), "").unwrap();
     assert!(run(dir.path(), &["reproduce", "2.1", "-o", "out"]).contains("cannot write"));
 }
-
-#[test]
-fn exact_values_stand_beside_printed_ones() {
-    let report = json(&designs(), &["reproduce", "5.2", "--exact", "--json"]);
-    let table = &report["tables"][0];
-    assert_eq!(
-        (table["method"].as_str(), table["summary"]["computed"].as_u64()),
-        (Some("partition"), Some(25))
-    );
-    let exact = table["entries"][2][2]["exact"]["value"].as_f64().unwrap();
-    assert!((0.5..3.0).contains(&exact), "{table}");
-}

@@ -14,8 +14,20 @@ fn every_json_has_one_head_and_its_fields() {
     let seen = "line,x,pitch,outcome\n1,0.1,0,jammed\n1,0.2,0,aligned\n1,0.9,0,missed\n";
     std::fs::write(home.path().join("seen.csv"), seen).unwrap();
     std::fs::copy(super::designs().join("x-face.toml"), home.path().join("x.toml")).unwrap();
-    let chance =
-        ["chance", "v.toml", "--draw", "speed=1", "--trials", "2", "--overall", "100", "--pose", "x=0.1"];
+    let chance = [
+        "chance",
+        "v.toml",
+        "--draw",
+        "speed=1",
+        "--trials",
+        "2",
+        "--overall",
+        "100",
+        "--pose",
+        "x=0.1",
+        "--timeout",
+        "1",
+    ];
     let calls: [(&str, &[&str]); 25] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
@@ -45,7 +57,7 @@ fn every_json_has_one_head_and_its_fields() {
         ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),
         ("comparison", &["compare", "v.toml", "--methods", "descent,flood", "--resolution", "8", "--json"]),
-        ("methods", &[&run[..], &["--method", "all"]].concat()),
+        ("methods", &[&run[..], &["--free", "x", "--method", "all"]].concat()),
         ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
         ("solids", &["solids", "v.toml", "--json"]),
         ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),

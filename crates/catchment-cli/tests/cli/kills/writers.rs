@@ -16,8 +16,8 @@ pub(super) const WRITERS: [Writer; 35] = [
     Writer {
         name: "run -o",
         versions: [
-            &["run", "v.toml", "--resolution", "6", "--samples", "0", "-o", TARGET],
-            &["run", "v.toml", "--resolution", "7", "--samples", "0", "-o", TARGET],
+            &["run", "v.toml", "--free", "x", "--resolution", "6", "--samples", "0", "-o", TARGET],
+            &["run", "v.toml", "--free", "x", "--resolution", "7", "--samples", "0", "-o", TARGET],
         ],
     },
     Writer {

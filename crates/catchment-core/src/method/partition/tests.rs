@@ -173,11 +173,12 @@ fn exact(pair: &Pair, cells: usize) -> f64 {
 fn sums_come_to_those_of_exact_descents() {
     for (family, ratio, cor) in FIVE {
         let pair = pair(family, ratio, cor, 1.0, &[]);
-        let exact = exact(&pair, 100);
+        // Of some 1000 accepted cells a grid counts 0.3·√240 = 5 too many or too few, 0.5 %: so it does with borders of 240 cells.
+        let exact = exact(&pair, 60);
         // In the thin ravine of the last family the crest between two watersheds is a ten-thousandth of D
         // high.
-        let strips = if (family, ratio) == (Family::VFace, 0.5) { 64 } else { 24 };
-        let partition = run(&pair, &PartitionSettings { slices: 50, strips }, &Exec::new()).unwrap();
+        let strips = if (family, ratio) == (Family::VFace, 0.5) { 64 } else { 16 };
+        let partition = run(&pair, &PartitionSettings { slices: 32, strips }, &Exec::new()).unwrap();
         let sum = partition.measure(Outcome::Aligned);
         println!("{} AR {ratio} COR {cor}: {sum:.4} for {exact:.4}", family.name());
         assert!((sum / exact - 1.0).abs() < 0.03, "{} AR {ratio} COR {cor}: {sum} {exact}", family.name());

@@ -219,6 +219,8 @@ fn regions_agree_with_small_steps_downhill() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
     /// A skew pyramid in its socket accepts exactly the socket's rim, seen from the apex: every facet leads
     /// away from its own side of the rim, and every valley to the apex.
     #[test]
@@ -316,8 +318,8 @@ fn locking_lips_and_pins_have_closed_forms_too() {
 #[test]
 fn a_ring_of_four_pins_and_four_holes() {
     let ring = PinHole { pins: 4, hermaphroditic: true, pin_radius: 0.04, chamfer: 0.04, ..PinHole::DEFAULT };
-    let spec = PinHole { clearance: 0.002, chord_error: 0.002, ..ring };
-    assert!(sheets_of(&pair(spec.into())).len() > 20_000);
+    let spec = PinHole { clearance: 0.002, chord_error: 0.008, ..ring };
+    assert!(sheets_of(&pair(spec.into())).len() > 10_000);
     let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
     let half_angle = (1.0 - spec.chord_error / mouth).acos();
     let n = 4.0 * (std::f64::consts::PI / half_angle / 4.0).ceil();

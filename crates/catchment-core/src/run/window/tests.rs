@@ -35,7 +35,7 @@ fn of_gallery(name: &str) -> Problem {
 /// box 2 % larger along its tight error contains a failure.
 #[test]
 fn no_pose_of_it_fails_and_a_larger_one_does() {
-    const POSES: u64 = 5000;
+    const POSES: u64 = 2000;
     let exec = Exec::new();
     let all = DofSet::ALL;
     let given = [None, None, Some(0.05), Some(0.05), None];
@@ -82,9 +82,9 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
                 }
                 problem.follow(&PoseError::from_array(error)).outcome != Outcome::Aligned
             };
-            let failed = (0..1000).filter(|k| fails(*k)).count();
+            let failed = (0..300).filter(|k| fails(*k)).count();
             // The search left no failure among the 2000 poses that it sampled beyond the window.
-            assert!(failed <= 3, "{failed} of 1000 with {} up to {}", side.axis.name(), side.beside);
+            assert!(failed <= 1, "{failed} of 300 with {} up to {}", side.axis.name(), side.beside);
         }
     }
 }
@@ -136,7 +136,7 @@ fn it_is_the_same_on_any_number_of_threads() {
     let problem = problem(Family::Pyramid, DofSet::ALL);
     let on = |threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        run(&problem, &WindowSettings { motions: Some(5000), ..WindowSettings::default() }, &exec).unwrap()
+        run(&problem, &WindowSettings { motions: Some(1000), ..WindowSettings::default() }, &exec).unwrap()
     };
     let one = on(1);
     assert_eq!(one, on(2));

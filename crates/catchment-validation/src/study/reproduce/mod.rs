@@ -138,7 +138,15 @@ pub fn reproduce(
     exec: &Exec,
 ) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
-    let table = ReproducibleTable::of(table).ok_or_else(unknown)?;
+    beside(ReproducibleTable::of(table).ok_or_else(unknown)?, settings, exec)
+}
+
+/// Our values beside those that a table has printed.
+fn beside(
+    table: &ReproducibleTable,
+    settings: &ReproduceSettings,
+    exec: &Exec,
+) -> Result<TableComparison, ReproduceError> {
     let published = table.published()?;
     let columns = published.columns.len();
     let rows: Vec<Vec<recipe::RecipeEntry>> = exec.install(|| {

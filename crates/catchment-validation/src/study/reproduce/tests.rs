@@ -193,3 +193,21 @@ fn tables_of_the_partition_have_both_values() {
     assert_eq!(Some(exact), other.exact(2, 4, &Exec::new()).unwrap());
     assert!(exact.value > 2.0 && exact.value < 3.5, "{exact:?}");
 }
+
+/// The first row of a table stands for all.
+#[test]
+fn exact_values_stand_beside_printed_ones() {
+    let whole = ReproducibleTable::of("5.2").unwrap();
+    let with = |exact| beside(&whole.first_row(), &ReproduceSettings { exact }, &Exec::new()).unwrap();
+    let table = with(true);
+    let [entries] = &table.entries[..] else { panic!("{table:?}") };
+    for (column, entry) in entries.iter().enumerate() {
+        assert_eq!(entry.exact, whole.recipe.exact(0, column, &Exec::new()).unwrap(), "{column}");
+        assert_eq!(entry.exact_ratio, entry.exact.map(|exact| exact.value / entry.published));
+        assert!((0.5..3.5).contains(&entry.exact.unwrap().value), "{entry:?}");
+    }
+    assert!(
+        table.summary.exact_mean_log_ratio.is_some() && table.notes.last().unwrap().starts_with("Exact: ")
+    );
+    assert!(with(false).entries[0].iter().all(|entry| entry.exact.is_none()));
+}
