@@ -1,7 +1,8 @@
 //! Agreement of each pair of methods for a design.
 
 use super::Picture;
-use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
+use super::draw::layout::Layout;
+use super::number_map::{Colouring, Digits, NumberMap, number_maps};
 use crate::AgreementReport;
 use catchment_study::agreement::PairAgreement;
 
@@ -19,11 +20,11 @@ pub fn agreement(report: &AgreementReport) -> Picture {
         colouring: Colouring::Deficit([0.5, 1.0]),
     };
     let cells: Vec<String> = report.cells.iter().map(ToString::to_string).collect();
-    let story = [format!("every method that applies, on {} cells", cells.join(" × "))];
-    let sheet =
-        NumberSheet { title: &report.design.name, story: &story, cell: [76.0, 40.0], least_width: 560.0 };
+    let head = Layout::of(&report.design)
+        .story(format!("every method that applies, on {} cells", cells.join(" × ")));
     number_maps(
-        &sheet,
+        head,
+        [76.0, 40.0],
         &[
             map("share of the cells that both accept or both reject", |a| a.agreement),
             map("Jaccard: accepted by both, of all that one accepts", |a| a.jaccard),

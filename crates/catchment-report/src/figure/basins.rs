@@ -9,9 +9,10 @@
 //!             ≈0   …            ∞
 //! ```
 
-use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short, tick_label};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, TICK_LINE, short, tick_label};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n, width_of};
+use super::draw::layout::{Layout, Legend, Panel};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, n};
 use super::{FigureError, Picture, headline};
 use crate::Report;
 use catchment_core::acceptance::{Acceptance, Outcome};
@@ -27,6 +28,8 @@ const MARGIN: f64 = 1.6;
 const DOTS: usize = 2000;
 /// Maximum number of dots for several minima that are labelled with their number.
 const COUNTED: usize = 60;
+/// Width of the frames, in SVG units.
+const WIDTH: f64 = 548.0;
 /// Width of the places for 0 and for ∞, in SVG units.
 const PLACE: f64 = 34.0;
 
@@ -87,13 +90,6 @@ pub fn basins(
     }
     let design = &report.design;
     let units = ShownUnits::of(design);
-    let (left, width) = (78.0, 548.0);
-    let scale = Depths { left, width, lo: (lo / MARGIN).max(hi * 10f64.powf(-DECADES)), hi: hi * MARGIN };
-    let top = Rect { x: left, y: 101.0, w: width, h: 210.0 };
-    let bottom = Rect { y: top.y + top.h + 22.0, h: 170.0, ..top };
-    let mut svg = Svg::new(bottom.x + bottom.w + 28.0, bottom.y + bottom.h + 84.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &headline(report));
     let unit = units.symbol();
     let shown = |depth: f64| significant(depth * units.lengths());
     let why = match hierarchy.tolerance.reason {
@@ -105,13 +101,23 @@ pub fn basins(
     let accepted = 100.0 * acceptance.counts()[0] as f64 / total;
     let story =
         format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
-    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
     let drawn = if minima > DOTS { format!(" (the {DOTS} largest are drawn)") } else { String::new() };
-    let story = format!(
+    let counts = format!(
         "{minima} minima{drawn}, {merged} basins after merging; what lies left of the line is merged"
     );
-    svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
+    let panel = |height: f64| Panel::of([WIDTH, height]).beside().with_room([8.0, 0.0, 0.0, 0.0]);
+    let (mut svg, frames) = Layout::of(design)
+        .story(headline(report))
+        .story(story)
+        .story(counts)
+        .row([panel(210.0)])
+        .row([panel(170.0).below()])
+        .legend(legend(acceptance, hierarchy))
+        .open();
+    let [top, bottom] = [frames[0], frames[1]];
+    let (lo, hi) = ((lo / MARGIN).max(hi * 10f64.powf(-DECADES)), hi * MARGIN);
+    let scale = Depths { left: top.x, width: WIDTH, lo, hi };
 
     if let ToleranceReason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
         let (a, b) = (scale.px(a), scale.px(b));
@@ -135,7 +141,7 @@ pub fn basins(
     for (x, value) in scale.ticks(units.lengths()) {
         for rect in [top, bottom] {
             let y = rect.y + rect.h;
-            svg.line([x, y], [x, y + 4.0], &format!(r#"stroke="{SOFT}" stroke-width="0.8""#));
+            svg.line([x, y], [x, y + 4.0], TICK_LINE);
         }
         svg.text([x, bottom.y + bottom.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(value));
     }
@@ -143,13 +149,12 @@ pub fn basins(
         svg.text([scale.px(depth), bottom.y + bottom.h + 15.5], TICK, Anchor::Middle, SOFT, words);
     }
     let label = format!("depth, depth tolerance [{unit}]");
-    svg.text([left + 0.5 * width, bottom.y + bottom.h + 33.0], LABEL, Anchor::Middle, INK, &label);
+    svg.text([top.x + 0.5 * WIDTH, bottom.y + bottom.h + 33.0], LABEL, Anchor::Middle, INK, &label);
     if tolerance > 0.0 {
         let x = scale.px(tolerance);
         let style = format!(r#"stroke="{INK}" stroke-width="1.2" stroke-dasharray="5 3""#);
         svg.line([x, top.y], [x, bottom.y + bottom.h], &style);
     }
-    legend(&mut svg, acceptance, hierarchy, [left, bottom.y + bottom.h + 62.0]);
     Ok(Picture::of(svg))
 }
 
@@ -204,7 +209,7 @@ fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &D
     let mut tick = 1.0;
     while tick * total >= 1.0 {
         let y = py(tick);
-        svg.line([rect.x - 4.0, y], [rect.x, y], &format!(r#"stroke="{SOFT}" stroke-width="0.8""#));
+        svg.line([rect.x - 4.0, y], [rect.x, y], TICK_LINE);
         svg.text([rect.x - 7.0, y + 3.8], TICK, Anchor::End, SOFT, &tick_label(100.0 * tick));
         tick *= 0.1;
     }
@@ -244,19 +249,17 @@ fn dot(outcome: Outcome, kept: bool) -> String {
 }
 
 /// The kinds of dots that are drawn.
-fn legend(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, [mut x, y]: [f64; 2]) {
+fn legend(acceptance: &Acceptance, hierarchy: &Hierarchy) -> Legend {
     let has = |wanted: &dyn Fn((Outcome, bool)) -> bool| {
         hierarchy.tree.minima.iter().any(|minimum| wanted(kind(minimum, acceptance, hierarchy)))
     };
     let kept = Outcome::ALL.into_iter().filter(|outcome| has(&|found| found == (*outcome, true)));
-    let mut entries: Vec<(String, &str)> = kept.map(|outcome| (dot(outcome, true), outcome.word())).collect();
+    let legend =
+        kept.fold(Legend::default(), |legend, outcome| legend.dot(dot(outcome, true), outcome.word()));
     if has(&|(_, kept)| !kept) {
-        entries.push((dot(Outcome::Jammed, false), "merged into another"));
-    }
-    for (style, words) in entries {
-        svg.circle([x + 5.0, y - 4.0], 5.0, &style);
-        svg.text([x + 15.0, y], LABEL, Anchor::Start, INK, words);
-        x += 42.0 + width_of(words, LABEL);
+        legend.dot(dot(Outcome::Jammed, false), "merged into another")
+    } else {
+        legend
     }
 }
 

@@ -4,7 +4,8 @@ use super::super::{PlanReport, ValidationReport};
 use super::Picture;
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
 use super::draw::colour::{self, Rgb, hex, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline, width_of};
+use super::draw::layout::{self, Layout, Legend};
+use super::draw::svg::{INK, JOIN, Rect, SOFT, Svg, polyline};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::percent;
@@ -23,9 +24,6 @@ const SIDE: f64 = 250.0;
 const LOW: f64 = 70.0;
 /// Panels beside each other.
 const PER_ROW: usize = 3;
-/// Between panels, beside and below.
-const BESIDE: f64 = 74.0;
-const BELOW: f64 = 72.0;
 
 /// Mark of a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,31 +107,15 @@ fn draw(
     words: &[(Shape, bool, &str)],
 ) -> Picture {
     let units = ShownUnits::of(design);
-    let [left, top] = [70.0, 118.0];
     let height = if panels.iter().any(|panel| panel.across.len() > 1) { SIDE } else { LOW };
-    let (columns, rows) = (panels.len().clamp(1, PER_ROW), panels.len().div_ceil(PER_ROW).max(1));
-    let wide = left + columns as f64 * (SIDE + BESIDE) - BESIDE + 30.0;
-    let met: Vec<_> = words
-        .iter()
-        .filter(|(shape, wrong, _)| {
-            marks.iter().any(|mark| if *wrong { mark.wrong } else { mark.shape == *shape })
-        })
-        .collect();
-    let note = note(panels);
-    let legend = 150.0 + met.iter().map(|(.., words)| 40.0 + width_of(words, LABEL)).sum::<f64>();
-    let width =
-        [story, note].map(|words| width_of(words, LABEL) + 48.0).into_iter().fold(wide.max(legend), f64::max);
-    let mut svg = Svg::new(width, top + rows as f64 * (height + BELOW) - 22.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
-    key(&mut svg, &met, panels.iter().any(|panel| !panel.is_projection()), note);
-    for (number, panel) in panels.iter().enumerate() {
-        let rect = Rect {
-            x: left + (number % PER_ROW) as f64 * (SIDE + BESIDE),
-            y: top + (number / PER_ROW) as f64 * (height + BELOW),
-            w: SIDE,
-            h: height,
-        };
+    let panel = |panel: &Panel| layout::Panel::with_axes([SIDE, height]).over(beside(panel, &units));
+    let (mut svg, frames) = Layout::of(design)
+        .story(story)
+        .story(note(panels))
+        .grid(PER_ROW, panels.iter().map(panel))
+        .legend(legend(marks, words, panels.iter().any(|panel| !panel.is_projection())))
+        .open();
+    for (panel, rect) in panels.iter().zip(frames) {
         one(&mut svg, panel, marks, &units, rect);
     }
     Picture::of(svg)
@@ -151,23 +133,21 @@ fn note(panels: &[Panel]) -> &'static str {
     }
 }
 
-fn key(svg: &mut Svg, met: &[&(Shape, bool, &str)], has_region: bool, note: &str) {
-    let (mut x, y) = (24.0, 74.0);
-    if has_region {
-        let shade = hex(region());
-        svg.rect(
-            Rect { x, y: y - 10.0, w: 14.0, h: 12.0 },
-            &format!(r#"fill="{shade}" stroke="{SOFT}" stroke-width="0.5""#),
-        );
-        svg.text([x + 20.0, y], LABEL, Anchor::Start, INK, "docks, exactly");
-        x += 40.0 + width_of("docks, exactly", LABEL);
-    }
-    for (shape, wrong, words) in met {
-        mark(svg, [x + 5.0, y - 4.0], *shape, *wrong);
-        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
-        x += 36.0 + width_of(words, LABEL);
-    }
-    svg.text([24.0, y + 18.0], LABEL, Anchor::Start, SOFT, note);
+fn legend(marks: &[Mark], words: &[(Shape, bool, &str)], has_region: bool) -> Legend {
+    let region =
+        has_region.then(|| format!(r#"fill="{}" stroke="{SOFT}" stroke-width="0.5""#, hex(region())));
+    let legend =
+        region.map_or_else(Legend::default, |style| Legend::default().square(style, "docks, exactly"));
+    let occurs = |shape: Shape, wrong: bool| {
+        marks.iter().any(|mark| if wrong { mark.wrong } else { mark.shape == shape })
+    };
+    words.iter().filter(|(shape, wrong, _)| occurs(*shape, *wrong)).fold(
+        legend,
+        |legend, (shape, wrong, words)| {
+            let (shape, wrong) = (*shape, *wrong);
+            legend.mark(*words, move |svg, at| mark(svg, at, shape, wrong))
+        },
+    )
 }
 
 /// The errors that a panel does not show: `yaw = 20°`, `yaw = 20° ± 0.3°`, and of a projection `yaw −5 … 12 deg`.
@@ -202,8 +182,6 @@ fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: R
     };
     let planar = panel.across.len() > 1;
     let frame = PlotFrame { rect, x: scale(0), y: scale(1) };
-    let (others, size) = (beside(panel, units), if panel.is_projection() { TICK } else { LABEL });
-    svg.text([rect.x, rect.y - 8.0], size, Anchor::Start, INK, &others);
     if !panel.is_projection() {
         svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
     }

@@ -4,7 +4,8 @@
 use super::super::solids::{bounds, in_words, is_angle};
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, CURVES, Rgb, hex, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::draw::layout::{Layout, Legend, Panel, filled};
+use super::draw::svg::{JOIN, Rect, Svg, polyline};
 use super::solid::{self, Body};
 use super::{FigureError, Picture};
 use catchment_core::connector::{Facet, Surface};
@@ -21,28 +22,25 @@ pub fn bodies(design: &Design, shape: &Solids) -> Result<Picture, FigureError> {
     if shape.solids.is_empty() || lo == hi {
         return Err(FigureError::Empty { what: "the shape has no bodies" });
     }
-    let stories = [in_words(shape.subject).to_owned(), made_of(shape)];
-    let width = stories.iter().map(|story| width_of(story, LABEL) + 48.0).fold(560.0, f64::max);
-    let rect = Rect { x: 78.0, y: 84.0, w: width - 102.0, h: 420.0 };
-    let mut svg = Svg::new(width, rect.y + rect.h + 76.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    for (story, y) in stories.iter().zip([49.0, 66.0]) {
-        svg.text([24.0, y], LABEL, Anchor::Start, SOFT, story);
-    }
-    if shape.dimension == 2 {
-        flat(&mut svg, rect, design, shape, [lo, hi]);
+    let is_flat = shape.dimension == 2;
+    let size = [520.0, 420.0];
+    let panel = if is_flat {
+        Panel::with_axes(size)
     } else {
-        let whole = Rect { x: 24.0, w: width - 48.0, ..rect };
-        in_space(&mut svg, whole, shape)?;
-        let axes = format!(
-            "to the right {}, backwards {}, upwards {}",
-            axis(shape, 0),
-            axis(shape, 1),
-            axis(shape, 2)
-        );
-        svg.text([24.0, rect.y + rect.h + 30.0], LABEL, Anchor::Start, INK, &axes);
+        let [right, back, up] = [0, 1, 2].map(|k| axis(shape, k));
+        Panel::of(size).under(format!("to the right {right}, backwards {back}, upwards {up}"))
+    };
+    let (mut svg, frames) = Layout::of(design)
+        .story(in_words(shape.subject))
+        .story(made_of(shape))
+        .row([panel])
+        .legend(legend(shape))
+        .open();
+    if is_flat {
+        flat(&mut svg, frames[0], design, shape, [lo, hi]);
+    } else {
+        in_space(&mut svg, frames[0], shape)?;
     }
-    legend(&mut svg, shape, [24.0, rect.y + rect.h + 58.0]);
     Ok(Picture::of(svg))
 }
 
@@ -139,7 +137,7 @@ fn surface(solid: &Solid) -> Surface {
     Surface { vertices: solid.vertices.clone(), facets, edges: Vec::new(), convex: true }
 }
 
-fn legend(svg: &mut Svg, shape: &Solids, [mut x, y]: [f64; 2]) {
+fn legend(shape: &Solids) -> Legend {
     /// Most pieces that have words of their own.
     const MOST: usize = 4;
     let entries: Vec<(Rgb, String)> = match shape.subject {
@@ -156,9 +154,5 @@ fn legend(svg: &mut Svg, shape: &Solids, [mut x, y]: [f64; 2]) {
             })
             .collect(),
     };
-    for (fill, words) in entries {
-        svg.rect(Rect { x, y: y - 10.0, w: 12.0, h: 12.0 }, &format!(r#"fill="{}""#, hex(fill)));
-        svg.text([x + 18.0, y], LABEL, Anchor::Start, INK, &words);
-        x += 42.0 + width_of(&words, LABEL);
-    }
+    entries.into_iter().fold(Legend::default(), |legend, (fill, words)| legend.square(filled(fill), words))
 }

@@ -1,10 +1,11 @@
 //! Docking probability of drop tests: over two errors, with the border of exact motions; and over speed.
 
-use super::draw::axis::{PlotFrame, ShownUnits, short};
-use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
+use super::draw::chart::{self, Chart, ChartLine, ChartPoint, Mark, Spacing};
 use super::draw::colour::{CURVES, Rgb, hex, sequential};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
-use super::{FigureError, Picture};
+use super::draw::layout::{Layout, Legend, Panel, stroked};
+use super::draw::svg::{JOIN, Rect, Svg};
+use super::{FigureError, Picture, map};
 use crate::ChanceReport;
 use catchment_core::poses::Circumstance;
 use catchment_study::chance::{ChanceMap, unit_of};
@@ -15,10 +16,6 @@ const EXACT: Rgb = [0x1f, 0x29, 0x33];
 /// Side of a map, and size of a chart, in SVG units.
 const SIDE: f64 = 340.0;
 const CHART: [f64; 2] = [400.0, 300.0];
-/// Steps of the bar of colours.
-const STEPS: usize = 50;
-/// Shares that are written beside it.
-const MARKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Draws the map, and the curve, as far as they were requested.
 ///
@@ -29,27 +26,28 @@ pub fn chance(report: &ChanceReport) -> Result<Picture, FigureError> {
     if map.is_none() && report.curve.is_empty() {
         return Err(FigureError::Empty { what: "neither a map nor a curve against speed was asked for" });
     }
-    let top = 116.0;
-    let (mut width, mut height) = (24.0, top);
-    if map.is_some() {
-        width += 54.0 + SIDE + 92.0;
-        height = top + SIDE + 74.0;
-    }
-    let chart = Rect { x: width + 58.0, y: top, w: CHART[0], h: CHART[1] };
-    if !report.curve.is_empty() {
-        width = chart.x + chart.w + 28.0;
-        height = height.max(top + chart.h + 56.0);
-    }
-    let mut svg = Svg::new(width.max(620.0), height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
-    for (k, words) in story(report).iter().enumerate() {
-        svg.text([24.0, 50.0 + 16.0 * k as f64], LABEL, Anchor::Start, SOFT, words);
-    }
+    let lines = lines(report);
+    let mut panels = Vec::new();
     if let Some(map) = map {
-        cells(&mut svg, report, map, Rect { x: 78.0, y: top, w: SIDE, h: SIDE });
+        let trials = map.cells.first().map_or(0, |cell| cell.trials);
+        let border = "border of what docks by exact quasi-static motion";
+        panels.push(
+            Panel::with_axes([SIDE; 2])
+                .with_bar()
+                .over(format!("share of {trials} trials that dock"))
+                .under(Legend::default().line(stroked(EXACT, 2.0), border)),
+        );
     }
     if !report.curve.is_empty() {
-        curve(&mut svg, report, chart);
+        panels.push(Panel::with_axes(CHART).over(chart::legend(&lines)));
+    }
+    let layout = story(report).into_iter().fold(Layout::of(&report.design), Layout::story);
+    let (mut svg, frames) = layout.row(panels).open();
+    if let Some(map) = map {
+        cells(&mut svg, report, map, frames[0])?;
+    }
+    if let (false, Some(rect)) = (report.curve.is_empty(), frames.last()) {
+        curve(&mut svg, report, &lines, *rect);
     }
     Ok(Picture::of(svg))
 }
@@ -79,7 +77,7 @@ fn story(report: &ChanceReport) -> Vec<String> {
     lines
 }
 
-fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) {
+fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) -> Result<(), FigureError> {
     let units = ShownUnits::of(&report.design);
     let [first, second] = [&map.axes[0], &map.axes[1]];
     let frame = PlotFrame { rect, x: units.axis(first), y: units.axis(second) };
@@ -107,66 +105,39 @@ fn cells(svg: &mut Svg, report: &ChanceReport, map: &ChanceMap, rect: Rect) {
         }
     }
     svg.path(&border, &format!(r##"fill="none" stroke="#ffffff" stroke-width="4.2" {JOIN}"##));
-    svg.path(&border, &format!(r#"fill="none" stroke="{}" stroke-width="2" {JOIN}"#, hex(EXACT)));
+    svg.path(&border, &stroked(EXACT, 2.0));
     svg.end();
     frame.draw(svg);
-    let trials = map.cells.first().map_or(0, |cell| cell.trials);
-    let words = format!("share of {trials} trials that dock");
-    svg.text([rect.x, rect.y - 10.0], LABEL, Anchor::Start, INK, &words);
-    bar(svg, Rect { x: rect.x + rect.w + 18.0, y: rect.y, w: 14.0, h: rect.h });
-    let y = rect.y + rect.h + 58.0;
-    svg.line(
-        [rect.x, y - 4.0],
-        [rect.x + 20.0, y - 4.0],
-        &format!(r#"stroke="{}" stroke-width="2""#, hex(EXACT)),
-    );
-    svg.text(
-        [rect.x + 27.0, y],
-        LABEL,
-        Anchor::Start,
-        INK,
-        "border of what docks by exact quasi-static motion",
-    );
+    map::colour_bar(svg, &frame, AxisScale::new("docks [%]".to_owned(), 0.0, 100.0, false))
 }
 
-/// The legend of the colours.
-fn bar(svg: &mut Svg, rect: Rect) {
-    let each = rect.h / STEPS as f64;
-    for k in 0..STEPS {
-        let share = (k as f64 + 0.5) / STEPS as f64;
-        let y = rect.y + rect.h - each * (k as f64 + 1.0);
-        let fill = hex(sequential(share));
-        svg.rect(Rect { y, h: each + 0.4, ..rect }, &format!(r#"fill="{fill}" stroke="none""#));
-    }
-    for mark in MARKS {
-        let y = rect.y + rect.h * (1.0 - mark);
-        svg.line(
-            [rect.x + rect.w, y],
-            [rect.x + rect.w + 4.0, y],
-            &format!(r#"stroke="{SOFT}" stroke-width="0.8""#),
-        );
-        let words = format!("{} %", short(100.0 * mark));
-        svg.text([rect.x + rect.w + 8.0, y + 3.8], TICK, Anchor::Start, SOFT, &words);
-    }
+/// The speeds of the curve, if they are known at each point; if not, its factors.
+fn place(report: &ChanceReport, times: f64, speed: f64) -> f64 {
+    let (factor, _) = unit_of(&report.design, Circumstance::Speed);
+    if has_speed(report) { speed * factor } else { times }
 }
 
-fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
+fn has_speed(report: &ChanceReport) -> bool {
+    report.curve.iter().all(|at| at.speed > 0.0)
+}
+
+/// Place of the declared speed.
+fn declared(report: &ChanceReport) -> Option<f64> {
+    report.curve.first().map(|at| place(report, 1.0, at.speed / at.factor))
+}
+
+fn lines(report: &ChanceReport) -> Vec<ChartLine> {
     let percent = |share: f64| 100.0 * share;
-    let (factor, unit) = unit_of(&report.design, Circumstance::Speed);
-    // Plot the speed if it is known at each point; if not, the factor.
-    let has_speed = report.curve.iter().all(|at| at.speed > 0.0);
-    let place = |times: f64, speed: f64| if has_speed { speed * factor } else { times };
     let mut points: Vec<ChartPoint> = report
         .curve
         .iter()
         .map(|at| ChartPoint {
-            x: place(at.factor, at.speed),
+            x: place(report, at.factor, at.speed),
             y: percent(at.probability),
             interval: Some(at.ci95.map(percent)),
         })
         .collect();
-    let declared = report.curve.first().map(|at| place(1.0, at.speed / at.factor));
-    if let (Some(overall), Some(x)) = (&report.overall, declared)
+    if let (Some(overall), Some(x)) = (&report.overall, declared(report))
         && report.curve.iter().all(|at| (at.factor - 1.0).abs() > 1e-9)
     {
         points.push(ChartPoint {
@@ -185,19 +156,19 @@ fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
             if report.settings.held { "exact motions, the limit of no speed" } else { "exact motions" };
         lines.push(ChartLine { name: name.to_owned(), colour: EXACT, points });
     }
-    let x_label =
-        if has_speed { format!("mean approach speed [{unit}]") } else { "all speeds times".to_owned() };
-    let mark = declared.map(|x| Mark { x, y: None, words: "as declared" });
-    Chart {
-        rect,
-        x_label: &x_label,
-        spacing: Spacing::Logarithmic,
-        y_label: "docks [%]",
-        lines: &lines,
-        mark,
-    }
-    .draw(svg);
-    legend(svg, &lines, [rect.x, rect.y - 16.0]);
+    lines
+}
+
+fn curve(svg: &mut Svg, report: &ChanceReport, lines: &[ChartLine], rect: Rect) {
+    let (_, unit) = unit_of(&report.design, Circumstance::Speed);
+    let x_label = if has_speed(report) {
+        format!("mean approach speed [{unit}]")
+    } else {
+        "all speeds times".to_owned()
+    };
+    let mark = declared(report).map(|x| Mark { x, y: None, words: "as declared" });
+    Chart { rect, x_label: &x_label, spacing: Spacing::Logarithmic, y_label: "docks [%]", lines, mark }
+        .draw(svg);
 }
 
 #[cfg(test)]

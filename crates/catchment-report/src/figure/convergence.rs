@@ -2,9 +2,9 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, ChartLine, ChartPoint, Spacing, legend};
+use super::draw::chart::{self, Chart, ChartLine, ChartPoint, Spacing};
 use super::draw::colour::CURVES;
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::layout::{Layout, Panel};
 use crate::ConvergenceReport;
 use catchment_study::convergence::RefinementSequence;
 use catchment_study::refinement::Refinement;
@@ -12,16 +12,10 @@ use catchment_study::refinement::Refinement;
 /// Draws every method's sequence: above the Sums with their intervals, below the ONAA edges; left over cells per axis,
 /// right over the time that they took.
 pub fn convergence(report: &ConvergenceReport) -> Picture {
-    let (left, right, top, size) = (78.0, 530.0, 92.0, [380.0, 240.0]);
-    let below = top + size[1] + 64.0;
-    let height = below + size[1] + 56.0;
-    let mut svg = Svg::new(right + size[0] + 28.0, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let story = format!(
         "every method refined until two refinements in a row change Sum and ONAA by less than {} %",
         short(100.0 * report.settings.tolerance)
     );
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines =
         |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<ChartLine> {
             let line = |(k, s): (usize, &RefinementSequence)| ChartLine {
@@ -39,13 +33,19 @@ pub fn convergence(report: &ConvergenceReport) -> Picture {
             report.sequences.iter().enumerate().map(line).collect()
         };
     let sum_label = format!("Sum [{}]", report.unit);
-    let places = [(left, top), (right, top), (left, below), (right, below)];
-    for (k, (x, y)) in places.into_iter().enumerate() {
+    let chart = || Panel::with_axes([380.0, 240.0]);
+    let names = chart::legend(&lines(|t| t.seconds, |t| (t.sum, None)));
+    let (mut svg, frames) = Layout::of(&report.design)
+        .story(story)
+        .row([chart().over(names), chart()])
+        .row([chart(), chart()])
+        .open();
+    for (k, rect) in frames.into_iter().enumerate() {
         let across: fn(&Refinement) -> f64 = if k % 2 == 0 { |t| t.resolution as f64 } else { |t| t.seconds };
         let up: fn(&Refinement) -> (f64, Option<[f64; 2]>) =
             if k < 2 { |t| (t.sum, Some(t.bracket)) } else { |t| (t.onaa_edge, None) };
         let chart = Chart {
-            rect: Rect { x, y, w: size[0], h: size[1] },
+            rect,
             x_label: if k % 2 == 0 { "cells per axis" } else { "time [s]" },
             spacing: Spacing::Logarithmic,
             y_label: if k < 2 { &sum_label } else { "ONAA edge" },
@@ -54,8 +54,6 @@ pub fn convergence(report: &ConvergenceReport) -> Picture {
         };
         chart.draw(&mut svg);
     }
-    let names = lines(|t| t.seconds, |t| (t.sum, None));
-    legend(&mut svg, &names, [left, top - 16.0]);
     Picture::of(svg)
 }
 

@@ -1,9 +1,9 @@
 //! Curves over a logarithmic scale, in charts side by side.
 
 use super::Picture;
-use super::draw::chart::{Chart, ChartLine, ChartPoint, Spacing, legend};
+use super::draw::chart::{self, Chart, ChartLine, ChartPoint, Spacing};
 use super::draw::colour::{CURVES, Rgb};
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::layout::{Layout, Panel};
 
 /// A curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,27 +43,17 @@ const REFERENCE: Rgb = [0x1f, 0x29, 0x33];
 
 /// Draws charts side by side below a title and a line, with the names of the first chart's curves.
 pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
-    let (left, top, size, step) = (78.0, 96.0, [400.0, 300.0], 482.0);
-    let last = left + step * charts.len().saturating_sub(1) as f64;
-    let mut svg = Svg::new(last + size[0] + 28.0, top + size[1] + 56.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, title);
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, story);
-    let mut names = None;
-    for (k, chart) in charts.iter().enumerate() {
-        let rect = Rect { x: left + step * k as f64, y: top, w: size[0], h: size[1] };
-        let lines = lines(&chart.curves);
-        Chart {
-            rect,
-            x_label: chart.x_label,
-            spacing: Spacing::Logarithmic,
-            y_label: chart.y_label,
-            lines: &lines,
-            mark: None,
-        }
-        .draw(&mut svg);
-        names.get_or_insert(lines);
+    let drawn: Vec<Vec<ChartLine>> = charts.iter().map(|chart| lines(&chart.curves)).collect();
+    let panel = |(k, lines): (usize, &Vec<ChartLine>)| {
+        let panel = Panel::with_axes([400.0, 300.0]);
+        if k == 0 { panel.over(chart::legend(lines)) } else { panel }
+    };
+    let panels = drawn.iter().enumerate().map(panel);
+    let (mut svg, frames) = Layout::titled(title).story(story).row(panels).open();
+    for ((chart, lines), rect) in charts.iter().zip(&drawn).zip(frames) {
+        let CurveChart { x_label, y_label, .. } = *chart;
+        Chart { rect, x_label, spacing: Spacing::Logarithmic, y_label, lines, mark: None }.draw(&mut svg);
     }
-    legend(&mut svg, &names.unwrap_or_default(), [left, top - 16.0]);
     Picture::of(svg)
 }
 

@@ -14,7 +14,8 @@
 use super::super::zraa::NilssonReport;
 use super::draw::arrow::dimension;
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, width_of};
 use super::section::{MovingHalfPose, View, approach_axis};
 use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
@@ -31,6 +32,10 @@ const LARGEST: f64 = 150.0;
 const WIDTH: f64 = 1000.0;
 /// Between two faces: room for H.
 const GAP: f64 = 48.0;
+/// Room on either side of a face, above it for its name, and below it for a length.
+const SIDE: f64 = 12.0;
+const HEAD: f64 = 40.0;
+const BELOW: f64 = 24.0;
 /// Least width of a column: room for words.
 const COLUMN: f64 = 150.0;
 /// Bold letters are wider by this, about.
@@ -74,8 +79,6 @@ impl PicturedDesign<'_> {
 struct Column<'a> {
     face: &'a PicturedDesign<'a>,
     rows: [(View<'a>, MovingHalfPose); 2],
-    /// Left side and width.
-    x: f64,
     width: f64,
 }
 
@@ -92,16 +95,14 @@ pub fn faces(faces: &[PicturedDesign<'_>]) -> Result<Picture, FigureError> {
             View::new(face.design, face.connector, std::slice::from_ref(placement))
         };
         let rows = [(view(&mated)?, mated), (view(&shifted)?, shifted)];
-        columns.push(Column { face, rows, x: 0.0, width: 0.0 });
+        columns.push(Column { face, rows, width: 0.0 });
     }
     let widest = |column: &Column<'_>| column.rows.iter().map(|(view, _)| view.size()[0]).fold(0.0, f64::max);
     let all: f64 = columns.iter().map(widest).sum();
     let gaps = GAP * (columns.len() + 1) as f64;
     let scale = ((WIDTH - gaps) / all).clamp(LARGEST / 4.0, LARGEST);
-    let mut x = GAP / 2.0;
     for column in &mut columns {
-        (column.x, column.width) = (x, (widest(column) * scale).max(COLUMN));
-        x += column.width + GAP;
+        column.width = (widest(column) * scale).max(COLUMN);
     }
     // The face centres of a row are at the same height.
     let rows = [0, 1].map(|k| {
@@ -109,22 +110,30 @@ pub fn faces(faces: &[PicturedDesign<'_>]) -> Result<Picture, FigureError> {
         spans.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     });
     let tall = rows.map(|[lo, hi]| (hi - lo) * scale);
-    let tops = [118.0, 118.0 + tall[0] + 46.0];
-    let mut svg = Svg::new(x - GAP / 2.0, tops[1] + tall[1] + 52.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, "Offsets that slide home without rotation");
-    let story = "mated, and at the largest offset that still does; D is as long in all";
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
-    for column in &columns {
-        let middle = column.x + column.width / 2.0;
+    let row = |k: usize| {
+        let room = [SIDE, if k == 0 { HEAD } else { 0.0 }, SIDE, BELOW];
+        columns
+            .iter()
+            .map(move |column| Panel::of([column.width, tall[k]]).with_room(room))
+            .collect::<Vec<_>>()
+    };
+    let (mut svg, frames) = Layout::titled("Offsets that slide home without rotation")
+        .story("mated, and at the largest offset that still does; D is as long in all")
+        .row(row(0))
+        .row(row(1))
+        .open();
+    let (mated, shifted) = frames.split_at(columns.len());
+    for (column, frames) in columns.iter().zip(mated.iter().zip(shifted)) {
+        let middle = frames.0.x + column.width / 2.0;
         let name = fitted(&column.face.design.name, BOLD * LABEL, column.width);
-        svg.bold([middle, 82.0], LABEL, Anchor::Middle, &name);
+        svg.bold([middle, frames.0.y - 30.0], LABEL, Anchor::Middle, &name);
         let bound = column.face.nilsson.as_ref().map_or_else(
             || "not one profile".to_owned(),
             |nilsson| format!("one profile: at most {}", NilssonReport::from(nilsson).bound()),
         );
-        svg.text([middle, 99.0], LABEL - 1.0, Anchor::Middle, SOFT, &bound);
-        for (k, (view, placement)) in column.rows.iter().enumerate() {
-            let rect = Rect { x: column.x, y: tops[k], w: column.width, h: tall[k] };
+        svg.text([middle, frames.0.y - 13.0], LABEL - 1.0, Anchor::Middle, SOFT, &bound);
+        for (k, rect) in [*frames.0, *frames.1].into_iter().enumerate() {
+            let (view, placement) = &column.rows[k];
             let frame = frame_of(column.face, view, rect, scale, rows[k]);
             approach_axis(&mut svg, &frame);
             view.fixed(&mut svg, &frame);

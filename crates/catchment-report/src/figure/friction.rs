@@ -10,9 +10,10 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
+use super::draw::chart::{self, Chart, ChartLine, ChartPoint, Mark, Spacing};
 use super::draw::colour::{CURVES, Rgb, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, width_of};
 use crate::FrictionReport;
 use catchment_core::document::Share;
 use catchment_study::friction::StickingPair;
@@ -25,10 +26,6 @@ const SHOWN: usize = 5;
 /// Draws the share of frictionless successes that still docks, and the features on which the first poses
 /// stick.
 pub fn friction(report: &FrictionReport) -> Picture {
-    let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
-    let bars = Rect { x: 540.0, y: top, w: 380.0, h: size[1] };
-    let mut svg = Svg::new(bars.x + bars.w + 30.0, top + size[1] + 56.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let marked = report.kept.iter().find(|kept| kept.share == MARKED);
     let story = marked.map_or_else(String::new, |kept| {
         let [lo, hi] = kept.ci95.map(|friction| report.up_to(friction));
@@ -43,10 +40,16 @@ pub fn friction(report: &FrictionReport) -> Picture {
             format!("{share} % of what docks without friction docks up to a friction of {friction:.3} ({lo} … {hi})")
         }
     });
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let (lines, words) = (lines(report), format!("{} %", short(100.0 * MARKED)));
+    let first = &report.sticks_first;
+    let size = [400.0, 300.0];
+    let mut panels = vec![Panel::with_axes(size).over(chart::legend(&lines))];
+    if !first.features.is_empty() {
+        panels.push(Panel::of([380.0, size[1]]).over(format!("what sticks first, in {} poses", first.poses)));
+    }
+    let (mut svg, frames) = Layout::of(&report.design).story(story).row(panels).open();
     Chart {
-        rect: Rect { x: left, y: top, w: size[0], h: size[1] },
+        rect: frames[0],
         x_label: "coefficient of friction",
         spacing: Spacing::Even,
         y_label: "of what docks without friction [%]",
@@ -58,8 +61,9 @@ pub fn friction(report: &FrictionReport) -> Picture {
         }),
     }
     .draw(&mut svg);
-    legend(&mut svg, &lines, [left, top - 18.0]);
-    sticking(&mut svg, report, bars);
+    if let Some(rect) = frames.get(1) {
+        sticking(&mut svg, &first.features, *rect);
+    }
     Picture::of(svg)
 }
 
@@ -88,15 +92,9 @@ fn lines(report: &FrictionReport) -> Vec<ChartLine> {
 }
 
 /// A bar for each pair of features, and its words above.
-fn sticking(svg: &mut Svg, report: &FrictionReport, rect: Rect) {
-    let first = &report.sticks_first;
-    if first.features.is_empty() {
-        return;
-    }
-    let head = format!("what sticks first, in {} poses", first.poses);
-    svg.text([rect.x, rect.y - 18.0], LABEL, Anchor::Start, INK, &head);
+fn sticking(svg: &mut Svg, features: &[StickingPair], rect: Rect) {
     let each = rect.h / SHOWN as f64;
-    for (k, pair) in first.features.iter().take(SHOWN).enumerate() {
+    for (k, pair) in features.iter().take(SHOWN).enumerate() {
         let y = rect.y + each * k as f64;
         for (line, words) in words(pair).iter().enumerate() {
             svg.text(

@@ -2,12 +2,19 @@
 
 use super::draw::axis::{PlotFrame, ShownUnits};
 use super::draw::colour::{self, Rgb};
-use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::draw::layout::{Layout, Legend, Panel};
+use super::draw::svg::{Rect, Svg};
 use super::map::{self, Map};
 use super::{FigureError, Picture, headline};
 use crate::Report;
 use catchment_core::acceptance::Acceptance;
 use catchment_core::pose::{Dof, PoseError};
+
+/// The style of the border, dark on light.
+const BORDER: [&str; 2] = [
+    r##"fill="none" stroke="#ffffff" stroke-width="4" stroke-linecap="round" stroke-linejoin="round""##,
+    r##"fill="none" stroke="#000000" stroke-width="1.8" stroke-linecap="round" stroke-linejoin="round""##,
+];
 
 /// Draws the heights over a pair of errors, the others at the values of `at`, below the numbers of the
 /// `report`; `acceptance` has the border, over the grid of the run or a finer grid of the pair alone.
@@ -23,27 +30,21 @@ pub fn heights(
     pair: [Dof; 2],
     at: &PoseError,
 ) -> Result<Picture, FigureError> {
-    let (design, story) = (&report.design, headline(report));
-    let units = ShownUnits::of(design);
+    let units = ShownUnits::of(&report.design);
     let map = Map::of(acceptance, pair, at)?;
-    let side = 400.0;
-    let (width, total) = ((width_of(&story, LABEL) + 48.0).max(580.0), 578.0);
-    let mut svg = Svg::new(width, total);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     let fixed = map.fixed(&units);
     let place = if fixed.is_empty() { String::new() } else { format!(" at {fixed}") };
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
-    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &format!("height of first contact{place}"));
-    let rect = Rect { x: 70.0, y: 92.0, w: side, h: side };
-    panel(&mut svg, &map, rect, &units, height)?;
-    let y = total - 22.0;
-    svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="white" stroke-width="4""#);
-    svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="black" stroke-width="1.8""#);
-    svg.text([101.0, y], LABEL, Anchor::Start, super::draw::svg::INK, "border of the accepted set");
+    let (mut svg, frames) = Layout::of(&report.design)
+        .story(headline(report))
+        .story(format!("height of first contact{place}"))
+        .row([Panel::with_axes([400.0; 2]).with_bar()])
+        .legend(Legend::default().line(BORDER[1], "border of the accepted set"))
+        .open();
+    panel(&mut svg, &map, frames[0], &units, height)?;
     Ok(Picture::of(svg))
 }
 
-/// The map itself with its colour bar, which needs about 60 to the right.
+/// The map itself with its colour bar.
 pub(super) fn panel(
     svg: &mut Svg,
     map: &Map,
@@ -72,14 +73,12 @@ pub(super) fn panel(
         svg.path(&map::contour(&frame, shape, &field, level), style);
     }
     let border = map.border(&frame);
-    svg.path(&border, &format!(r##"fill="none" stroke="#ffffff" stroke-width="4" {JOIN}"##));
-    svg.path(&border, &format!(r##"fill="none" stroke="#000000" stroke-width="1.8" {JOIN}"##));
+    for style in BORDER {
+        svg.path(&border, style);
+    }
     svg.end();
     frame.draw(svg);
-    let label = scale.label.clone();
-    map::colour_bar(svg, &frame, scale)?;
-    svg.text([rect.x + rect.w + 14.0, rect.y - 8.0], LABEL, Anchor::Start, super::draw::svg::INK, &label);
-    Ok(())
+    map::colour_bar(svg, &frame, scale)
 }
 
 #[cfg(test)]

@@ -1,17 +1,19 @@
 //! Holding forces: lateral forces over their direction, torques as bars.
 
 use super::draw::colour::{CURVES, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline};
+use super::draw::layout::{Layout, Legend, Panel, stroked};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, polyline};
 use super::{FigureError, Picture};
 use crate::HoldReport;
 use catchment_core::document::significant;
 use catchment_study::hold::LoadLimits;
 
-/// The middle of the polar chart, and its radius.
-const MIDDLE: [f64; 2] = [250.0, 330.0];
+/// The radius of the polar chart, and the size of the bars, in SVG units.
 const RADIUS: f64 = 180.0;
-/// The bars.
-const BARS: Rect = Rect { x: 590.0, y: 150.0, w: 300.0, h: 360.0 };
+const BARS: [f64; 2] = [300.0, 360.0];
+/// Room of the chart for the names of its axes and the words below it, and of the bars for their names and numbers.
+const AROUND: [f64; 4] = [20.0, 22.0, 20.0, 48.0];
+const BESIDE: [f64; 4] = [50.0, 0.0, 84.0, 24.0];
 /// Rings of the polar chart, at most.
 const RINGS: f64 = 4.0;
 /// Values beyond this multiple of the finite median are drawn at the rim, so that the rest is visible.
@@ -49,32 +51,32 @@ pub fn hold(report: &HoldReport) -> Result<Picture, FigureError> {
     if report.sideways.is_empty() && report.torques.is_empty() {
         return Err(FigureError::Empty { what: "no free error can be pushed" });
     }
-    let mut svg = Svg::new(BARS.x + BARS.w + 110.0, 580.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let preload = report.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
     let friction = report.settings.friction;
     let with = if friction > 0.0 { format!(", friction {friction}") } else { String::new() };
     let story = format!("what it withstands where it rests, pressed on by {preload} along −z{with}");
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    legend(&mut svg, friction > 0.0);
-    polar(&mut svg, report);
-    bars(&mut svg, report);
+    let columns = COLUMNS.iter().take(if friction > 0.0 { 4 } else { 2 });
+    let legend = columns.fold(Legend::default(), |legend, column| legend.line(style(column), column.name));
+    let force = report.force_unit();
+    let unit = report.design.unit.map_or("D", |unit| unit.symbol());
+    let (mut svg, frames) = Layout::of(&report.design)
+        .story(story)
+        .row([
+            Panel::of([2.0 * RADIUS; 2])
+                .with_room(AROUND)
+                .over(format!("sideways forces that it withstands [{force}]")),
+            Panel::of(BARS).with_room(BESIDE).over(format!("torques that it withstands [{force} {unit}]")),
+        ])
+        .legend(legend)
+        .open();
+    polar(&mut svg, report, frames[0]);
+    bars(&mut svg, report, frames[1]);
     Ok(Picture::of(svg))
 }
 
 fn style(column: &Column) -> String {
     let dash = if column.dashed { r#" stroke-dasharray="5 4""# } else { "" };
-    let colour = hex(CURVES[column.colour % CURVES.len()]);
-    format!(r#"fill="none" stroke="{colour}" stroke-width="2"{dash} {JOIN}"#)
-}
-
-fn legend(svg: &mut Svg, rough: bool) {
-    let mut x = 24.0;
-    for column in COLUMNS.iter().take(if rough { 4 } else { 2 }) {
-        svg.line([x, 74.0], [x + 26.0, 74.0], &style(column));
-        svg.text([x + 32.0, 78.0], LABEL - 0.5, Anchor::Start, INK, column.name);
-        x += 150.0;
-    }
+    stroked(CURVES[column.colour % CURVES.len()], 2.0) + dash
 }
 
 /// The value drawn at the rim of a chart: a round number above all finite values close to the others.
@@ -89,17 +91,10 @@ fn rim(values: impl Iterator<Item = f64>) -> f64 {
     (most / step - NOTHING).ceil() * step
 }
 
-fn polar(svg: &mut Svg, report: &HoldReport) {
-    let [cx, cy] = MIDDLE;
+fn polar(svg: &mut Svg, report: &HoldReport, rect: Rect) {
+    let middle = [rect.x + RADIUS, rect.y + RADIUS];
+    let [cx, cy] = middle;
     let scale = report.preload_n.unwrap_or(1.0);
-    let unit = report.force_unit();
-    svg.text(
-        [cx, cy - RADIUS - 36.0],
-        LABEL,
-        Anchor::Middle,
-        INK,
-        &format!("sideways forces that it withstands [{unit}]"),
-    );
     let sides: Vec<(f64, LoadLimits)> =
         report.sideways.iter().map(|side| (side.direction_rad, side.withstood)).collect();
     if sides.is_empty() {
@@ -116,7 +111,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
     let rings =
         (1..).map(|k: u32| f64::from(k) * ring(rim)).take_while(|ring| *ring <= rim * (1.0 + NOTHING));
     for value in rings {
-        svg.circle(MIDDLE, RADIUS * value / rim, grid);
+        svg.circle(middle, RADIUS * value / rim, grid);
         let place = [cx + 4.0, cy - RADIUS * value / rim - 3.0];
         svg.haloed(place, TICK - 1.0, Anchor::Start, SOFT, &significant_short(value * scale));
     }
@@ -134,7 +129,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
             svg.path(&polyline(points, true), &style(column));
         } else {
             for (direction, value) in &values {
-                svg.line(MIDDLE, at(*direction, *value), &style(column));
+                svg.line(middle, at(*direction, *value), &style(column));
                 svg.circle(at(*direction, *value), 3.5, &style(column));
             }
         }
@@ -148,11 +143,11 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
             "drawn at the rim: more than that, or any",
         );
     }
-    weakest(svg, report, at);
+    weakest(svg, report, [cx, cy + RADIUS + 46.0], at);
 }
 
 /// The weakest direction of the decisive column: free, with friction if requested.
-fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]) {
+fn weakest(svg: &mut Svg, report: &HoldReport, below: [f64; 2], at: impl Fn(f64, f64) -> [f64; 2]) {
     let found = report.weakest.rough_free.or(report.weakest.smooth_free);
     let (Some(side), Some(force)) = (found, report.least_force) else { return };
     let place = at(side.direction_rad, force);
@@ -161,7 +156,7 @@ fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]
     let told =
         if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
     let words = format!("○ weakest: {told} {unit} at {:.1}°", side.direction_rad.to_degrees());
-    svg.text([MIDDLE[0], MIDDLE[1] + RADIUS + 46.0], LABEL, Anchor::Middle, INK, &words);
+    svg.text(below, LABEL, Anchor::Middle, INK, &words);
 }
 
 /// Between two rings.
@@ -184,14 +179,9 @@ fn significant_short(value: f64) -> String {
     }
 }
 
-fn bars(svg: &mut Svg, report: &HoldReport) {
-    let Rect { x, y, w, h } = BARS;
+fn bars(svg: &mut Svg, report: &HoldReport, Rect { x, y, w, h }: Rect) {
     let width = if report.design.unit.is_some() { report.design.width } else { 1.0 };
     let scale = report.preload_n.unwrap_or(1.0) * width;
-    let force = report.force_unit();
-    let unit = report.design.unit.map_or("D", |unit| unit.symbol());
-    let head = format!("torques that it withstands [{force} {unit}]");
-    svg.text([x, MIDDLE[1] - RADIUS - 36.0], LABEL, Anchor::Start, INK, &head);
     if report.torques.is_empty() {
         svg.text([x, y + 20.0], LABEL, Anchor::Start, SOFT, "rotations are locked");
         return;

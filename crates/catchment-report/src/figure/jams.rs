@@ -1,6 +1,7 @@
 //! Jams and rests: each cut through its contacts, and in space, with the features that hold it.
 
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::draw::layout::{self, Layout};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, width_of};
 use super::plane::{Patch, Plane};
 use super::section::{MovingHalfPose, View, describe};
 use super::solid::touching;
@@ -18,18 +19,18 @@ use glam::{DMat3, DVec3};
 const SHOWN: usize = 6;
 /// How many beside each other.
 const COLUMNS: usize = 2;
-/// A panel, in SVG units.
 /// Lines of words that a panel holds beside the last.
 const MOST_LINES: usize = 3;
-
-const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 384.0;
-/// Its words above, the section in it, and the view in space beside that.
-const WORDS: f64 = 114.0;
-const SECTION: [f64; 2] = [270.0, 210.0];
+/// A section and the view in space beside it, in SVG units, and between them.
+const SIZE: [f64; 2] = [470.0, 210.0];
 const SPACE: [f64; 2] = [180.0, 190.0];
-/// Above the panels.
-const TOP: f64 = 76.0;
+const BESIDE: f64 = 20.0;
+/// Room for the words above them and for those below, which begin at the label of the axis.
+const WORDS: f64 = 102.0;
+const CUT: f64 = 14.0;
+const AXIS: f64 = 48.0;
+/// How wide words may be.
+const WIDTH: f64 = SIZE[0] + AXIS;
 
 /// Content of a panel.
 struct Panel<'a> {
@@ -139,32 +140,29 @@ fn draw_all(
     story: &str,
     panels: &[Panel<'_>],
 ) -> Result<Picture, FigureError> {
-    let rows = panels.len().div_ceil(COLUMNS);
-    let columns = panels.len().min(COLUMNS);
-    let mut svg = Svg::new(24.0 + columns as f64 * WIDTH, TOP + rows as f64 * HEIGHT + 10.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    for (k, line) in broken(story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
-        svg.text([24.0, 50.0 + 15.0 * k as f64], LABEL, Anchor::Start, SOFT, line);
-    }
-    for (k, panel) in panels.iter().enumerate() {
-        let corner = [24.0 + (k % COLUMNS) as f64 * WIDTH, TOP + (k / COLUMNS) as f64 * HEIGHT];
-        draw(&mut svg, corner, design, connector, panel)?;
+    let broken = broken(story, panels.len().min(COLUMNS) as f64 * WIDTH);
+    let layout = broken.into_iter().fold(Layout::of(design), Layout::story);
+    let frame = || layout::Panel::with_axes(SIZE).with_room([0.0, WORDS, 0.0, CUT]);
+    let (mut svg, frames) = layout.grid(COLUMNS, panels.iter().map(|_| frame())).open();
+    for (panel, frame) in panels.iter().zip(frames) {
+        draw(&mut svg, frame, design, connector, panel)?;
     }
     Ok(Picture::of(svg))
 }
 
 fn draw(
     svg: &mut Svg,
-    [x, y]: [f64; 2],
+    rect: Rect,
     design: &Design,
     connector: &Connector,
     shown: &Panel<'_>,
 ) -> Result<(), FigureError> {
     let placement = shown.placement;
-    svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &shown.head);
+    let [x, y] = [rect.x - AXIS, rect.y - WORDS];
+    svg.bold([x, y + LABEL], LABEL + 1.0, Anchor::Start, &shown.head);
     let mut lines: Vec<(&str, String)> = Vec::new();
     for words in contacts_in_words(shown.contacts) {
-        lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
+        lines.extend(broken(&words, WIDTH).into_iter().map(|line| (INK, line)));
     }
     let most = MOST_LINES + 1 - shown.tail.len().clamp(1, MOST_LINES);
     if lines.len() > most {
@@ -176,23 +174,22 @@ fn draw(
     lines.push((SOFT, describe(design, &placement)));
     lines.extend(shown.tail.iter().map(|words| (SOFT, words.clone())));
     for (k, (colour, words)) in lines.iter().enumerate() {
-        svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
+        svg.text([x, y + 29.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
     }
     let placed = placement.of(design);
     let patches: Vec<Patch> = shown.contacts.iter().map(|contact| patch(contact, placed)).collect();
     let plane = Plane::showing(design, connector, &placement, &patches);
     let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
-    let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
-    let frame = view.frame(rect);
+    let frame = view.frame(Rect { w: SIZE[0] - SPACE[0] - BESIDE, ..rect });
     view.halves(svg, &frame, &placement);
     svg.begin_clip(frame.rect);
     view.contacts(svg, &frame, &patches);
     svg.end();
     frame.draw(svg);
     if let Some(words) = view.words() {
-        svg.text([x + 52.0, y + WORDS + SECTION[1] + 48.0], LABEL - 2.0, Anchor::Start, SOFT, &words);
+        svg.text([rect.x, rect.y + rect.h + 48.0], LABEL - 2.0, Anchor::Start, SOFT, &words);
     }
-    let space = Rect { x: x + SECTION[0] + 70.0, y: y + WORDS, w: SPACE[0], h: SPACE[1] };
+    let space = Rect { x: rect.x + rect.w - SPACE[0], w: SPACE[0], h: SPACE[1], ..rect };
     let points: Vec<DVec3> = patches.into_iter().flat_map(|patch| patch.points).collect();
     touching(svg, space, design, connector, &placement, &points)
 }

@@ -4,7 +4,8 @@
 use super::draw::arrow::arrow;
 use super::draw::axis::PlotFrame;
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, polyline};
 use super::section::{MovingHalfPose, View, describe};
 use super::{FigureError, Picture};
 use catchment_core::connector::Connector;
@@ -16,6 +17,8 @@ use glam::DVec2;
 const NORMAL: f64 = 62.0;
 /// Smaller angles, in radians, are listed beside the drawing only.
 const LEAST: f64 = 0.02;
+/// How wide the numbers are, in SVG units.
+const NUMBERS: f64 = 284.0;
 /// Segments of an arc per radian.
 const ARC: f64 = 24.0;
 
@@ -32,16 +35,17 @@ pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Resul
     let view = View::new(design, connector, std::slice::from_ref(&placement))?.with(&pivots);
     let (width, height) = view.fit(520.0, 560.0);
     let (width, height) = (width.max(260.0), height.max(200.0));
-    let mut svg = Svg::new(width + 400.0, (height + 126.0).max(470.0));
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     let halt = start.halt.map_or_else(String::new, |halt| format!(" ({})", halt.name()));
     let story = format!(
         "first contact at {} → {}{halt} by the kinematic method",
         describe(design, &placement),
         start.outcome.word()
     );
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
-    let frame = view.frame(Rect { x: 72.0, y: 68.0, w: width, h: height });
+    let (mut svg, frames) = Layout::of(design)
+        .story(story)
+        .row([Panel::with_axes([width, height]), Panel::of([NUMBERS, 300.0])])
+        .open();
+    let frame = view.frame(frames[0]);
     svg.begin_clip(frame.rect);
     view.fixed(&mut svg, &frame);
     svg.begin_opacity(0.8);
@@ -50,7 +54,7 @@ pub fn lever(design: &Design, connector: &Connector, start: &LeverPose) -> Resul
     svg.end();
     frame.draw(&mut svg);
     marks(&mut svg, &view, &frame, &lever);
-    numbers(&mut svg, &lever, width + 100.0);
+    numbers(&mut svg, &lever, frames[1]);
     Ok(Picture::of(svg))
 }
 
@@ -123,7 +127,7 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &PlotFrame, lever: &Lever) {
 }
 
 /// The numbers beside the drawing.
-fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
+fn numbers(svg: &mut Svg, lever: &Lever, Rect { x, y: top, .. }: Rect) {
     let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees() + 0.0);
     let length = |value: f64| format!("{:.4} D", value + 0.0);
     let rows = [
@@ -140,12 +144,12 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
         LeverBody::Moving => "a corner of the moving half on an edge",
         LeverBody::Base => "a corner of the base on an edge",
     };
-    svg.bold([x, 86.0], LABEL, Anchor::Start, whose);
+    svg.bold([x, top + 12.0], LABEL, Anchor::Start, whose);
     for (k, (name, meaning, value)) in rows.iter().enumerate() {
-        let y = 112.0 + 24.0 * k as f64;
+        let y = top + 38.0 + 24.0 * k as f64;
         svg.text([x, y], LABEL, Anchor::Start, INK, name);
         svg.text([x + 64.0, y], LABEL - 1.0, Anchor::Start, SOFT, meaning);
-        svg.text([x + 284.0, y], LABEL, Anchor::End, INK, value);
+        svg.text([x + NUMBERS, y], LABEL, Anchor::End, INK, value);
     }
     let verdict = if lever.theta_2 < 0.0 {
         "θ₂ < 0: it turns away, a failed mate"
@@ -156,5 +160,5 @@ fn numbers(svg: &mut Svg, lever: &Lever, x: f64) {
     } else {
         "θ₂ = βₚ + αₑ: docked"
     };
-    svg.text([x, 112.0 + 24.0 * rows.len() as f64 + 8.0], LABEL, Anchor::Start, INK, verdict);
+    svg.text([x, top + 46.0 + 24.0 * rows.len() as f64], LABEL, Anchor::Start, INK, verdict);
 }

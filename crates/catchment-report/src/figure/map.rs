@@ -1,8 +1,9 @@
 //! Maps over two errors: the common part of slices, height maps and the overview.
 
-use super::draw::axis::{PlotFrame, ShownUnits, short};
-use super::draw::colour::{self, Rgb, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
+use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, TICK_LINE, short, tick_label};
+use super::draw::colour::{self, Rgb};
+use super::draw::layout::{Legend, filled};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 use super::{FigureError, raster};
 use crate::schema::Interval;
 use catchment_core::acceptance::{Acceptance, Outcome};
@@ -134,10 +135,14 @@ pub(super) fn inside(
     let colours: Vec<Rgb> = map.outcomes.iter().map(|o| colour::outcome(*o)).collect();
     map.paint(svg, frame, &colours)?;
     zero_lines(svg, frame);
-    svg.path(&map.border(frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
+    svg.path(&map.border(frame), BORDER);
     cube(svg, map, frame, units, onaa);
     Ok(())
 }
+
+/// The style of the border of the accepted set.
+pub(super) const BORDER: &str =
+    r##"fill="none" stroke="#123a5c" stroke-width="1.6" stroke-linecap="round" stroke-linejoin="round""##;
 
 /// Thin lines through zero.
 pub(super) fn zero_lines(svg: &mut Svg, frame: &PlotFrame) {
@@ -168,98 +173,56 @@ fn cube(svg: &mut Svg, map: &Map, frame: &PlotFrame, units: &ShownUnits, onaa: &
     svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7"{dash}"#));
 }
 
-/// The outcomes and the cube that maps show, in words from left to right.
-pub(super) struct Legend {
-    /// The total to which the shares refer; empty without shares.
-    of: &'static str,
-    /// A fill (none for the cube) and the words.
-    entries: Vec<(Option<Rgb>, String)>,
+/// The outcomes in a map with their shares of it, and its cube.
+pub(super) fn legend(map: &Map, onaa: bool) -> Legend {
+    let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
+    let words = |outcome| format!("{} {} %", Outcome::word(outcome), short(100.0 * map.share(outcome)));
+    outcome_squares(
+        Legend::titled(of),
+        |outcome| map.outcomes.contains(&outcome),
+        words,
+        onaa.then_some(CUBE),
+    )
 }
 
-impl Legend {
-    /// Legend of a single map, with the share of each outcome in it.
-    pub(super) fn of(map: &Map, onaa: bool) -> Self {
-        let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
-        Self::new(of, std::slice::from_ref(map), onaa, |outcome| {
-            format!("{} {} %", outcome.word(), short(100.0 * map.share(outcome)))
-        })
-    }
+/// Words for the largest cube.
+pub(super) const CUBE: &str = "largest cube (ONAA)";
 
-    /// Of several maps, each of which has its own shares.
-    pub(super) fn of_all(maps: &[Map], onaa: bool) -> Self {
-        Self::new("", maps, onaa, |outcome| outcome.word().to_owned())
-    }
-
-    fn new(of: &'static str, maps: &[Map], onaa: bool, words: impl Fn(Outcome) -> String) -> Self {
-        let occurs = |outcome: &Outcome| maps.iter().any(|map| map.outcomes.contains(outcome));
-        let mut entries: Vec<(Option<Rgb>, String)> = Outcome::ALL
-            .into_iter()
-            .filter(occurs)
-            .map(|outcome| (Some(colour::outcome(outcome)), words(outcome)))
-            .collect();
-        if onaa {
-            entries.push((None, "largest cube (ONAA)".to_owned()));
-        }
-        Self { of, entries }
-    }
-
-    fn indent(&self) -> f64 {
-        if self.of.is_empty() { 0.0 } else { width_of(self.of, LABEL) + 0.5 * BETWEEN }
-    }
-
-    /// Its width.
-    pub(super) fn width(&self) -> f64 {
-        let entry = |(_, words): &(Option<Rgb>, String)| SWATCH + width_of(words, LABEL) + BETWEEN;
-        self.indent() + self.entries.iter().map(entry).sum::<f64>() - BETWEEN
-    }
-
-    /// Draws it.
-    pub(super) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2]) {
-        svg.text([x, y + 0.5], LABEL, Anchor::Start, SOFT, self.of);
-        let mut place = x + self.indent();
-        for (fill, words) in &self.entries {
-            let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
-            let style = fill.map_or_else(
-                || format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#),
-                |fill| {
-                    let fill = hex(fill);
-                    format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#)
-                },
-            );
-            svg.rect(swatch, &style);
-            svg.text([place + SWATCH, y + 0.5], LABEL, Anchor::Start, INK, words);
-            place += SWATCH + width_of(words, LABEL) + BETWEEN;
-        }
+/// A square for each outcome that occurs, and one for the largest cube with its words.
+pub(super) fn outcome_squares(
+    legend: Legend,
+    occurs: impl Fn(Outcome) -> bool,
+    words: impl Fn(Outcome) -> String,
+    cube: Option<&str>,
+) -> Legend {
+    let legend = Outcome::ALL
+        .into_iter()
+        .filter(|outcome| occurs(*outcome))
+        .fold(legend, |legend, outcome| legend.square(filled(colour::outcome(outcome)), words(outcome)));
+    match cube {
+        Some(words) => legend.square(format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#), words),
+        None => legend,
     }
 }
 
-/// From a swatch to its words, and from words to the next swatch.
-const SWATCH: f64 = 19.0;
-const BETWEEN: f64 = 22.0;
-
-/// A colour bar with ticks, to the right of a map.
-pub(super) fn colour_bar(
-    svg: &mut Svg,
-    map: &PlotFrame,
-    scale: super::draw::axis::AxisScale,
-) -> Result<(), FigureError> {
+/// A colour bar with ticks and its label, to the right of a map: in the room of [`Panel::with_bar`].
+///
+/// [`Panel::with_bar`]: super::draw::layout::Panel::with_bar
+pub(super) fn colour_bar(svg: &mut Svg, map: &PlotFrame, scale: AxisScale) -> Result<(), FigureError> {
     const STEPS: usize = 128;
     let rect = Rect { x: map.rect.x + map.rect.w + 14.0, y: map.rect.y, w: 12.0, h: map.rect.h };
     let colours: Vec<Rgb> = (0..STEPS).map(|k| colour::sequential(k as f64 / (STEPS - 1) as f64)).collect();
     svg.image(rect, &raster::cells(1, STEPS, &colours)?, false);
     svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-opacity="0.5" stroke-width="0.8""#));
     let frame = PlotFrame { rect, x: scale.clone(), y: scale };
+    let (right, mut widest) = (rect.x + rect.w, 0.0f64);
     for z in frame.y.ticks((rect.h / 42.0) as usize) {
-        let y = frame.py(z);
-        svg.line([rect.x + rect.w, y], [rect.x + rect.w + 4.0, y], r#"stroke="black" stroke-width="0.7""#);
-        svg.text(
-            [rect.x + rect.w + 7.0, y + 3.8],
-            TICK,
-            Anchor::Start,
-            SOFT,
-            &super::draw::axis::tick_label(z),
-        );
+        let (y, number) = (frame.py(z), tick_label(z));
+        svg.line([right, y], [right + 4.0, y], TICK_LINE);
+        svg.text([right + 7.0, y + 3.8], TICK, Anchor::Start, SOFT, &number);
+        widest = widest.max(width_of(&number, TICK));
     }
+    svg.text_up([right + widest + 22.0, rect.y + 0.5 * rect.h], LABEL, &frame.y.label);
     Ok(())
 }
 

@@ -1,34 +1,21 @@
-//! All slices of a design in a single picture: a triangle of maps with common axes.
-//!
-//! ```text
-//!      y │▒▒▒│              ╱╲   the halves, in the corner that is free
-//!   roll │▒▒▒│▒▒▒│          ╲╱
-//!  pitch │▒▒▒│▒▒▒│▒▒▒│
-//!    yaw │▒▒▒│▒▒▒│▒▒▒│▒▒▒│
-//!          x   y  roll pitch
-//! ```
+//! All slices of a design in a single picture, in a triangle of maps with the halves in the free corner.
 
 use super::draw::axis::{ShownUnits, short};
-use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
+use super::draw::layout::{Layout, Legend};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, Svg, TICK, width_of};
 use super::map::{self, Map};
 use super::section::MovingHalfPose;
+use super::triangle::Triangle;
 use super::{FigureError, Picture, solid};
 use crate::schema::OnaaReport;
-use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
 use catchment_core::document::{percent, significant};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_study::slices::{Slice, Slices};
 
-/// Room left of the maps, above them, below them, and between them to the right and downwards.
-pub(super) const LEFT: f64 = 72.0;
-pub(super) const TOP: f64 = 84.0;
-pub(super) const BELOW: f64 = 84.0;
-pub(super) const GAP: [f64; 2] = [26.0, 30.0];
-/// A picture is at least this wide, so that its title and legend fit.
-const LEAST_WIDTH: f64 = 560.0;
+/// Room for the numbers of a slice over its map.
+const CAPTION: f64 = 10.0;
 
 /// Draws every slice with its Sum, its share of the plane and its ONAA square; in a triangle of three rows or more,
 /// the halves.
@@ -36,66 +23,39 @@ const LEAST_WIDTH: f64 = 560.0;
 /// # Errors
 /// If there is no slice.
 pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> Result<Picture, FigureError> {
-    let axes = |k: usize| -> Vec<Dof> {
-        Dof::ALL.into_iter().filter(|dof| found.slices.iter().any(|s| s.axes[k] == *dof)).collect()
-    };
-    let (columns, rows) = (axes(0), axes(1));
-    if columns.is_empty() {
+    if found.slices.is_empty() {
         return Err(FigureError::Empty { what: "no slice was computed" });
     }
-    let side = match columns.len().max(rows.len()) {
-        1 => 400.0,
-        2 => 280.0,
-        3 => 230.0,
-        _ => 196.0,
-    };
-    let extent = |n: usize, gap: f64| n as f64 * (side + gap) - gap;
-    let maps = [extent(columns.len(), GAP[0]), extent(rows.len(), GAP[1])];
-    let story = subtitle(design, found);
-    let least = LEAST_WIDTH.max(48.0 + width_of(&story, LABEL));
-    let (width, height) = ((LEFT + maps[0] + 28.0).max(least), TOP + maps[1] + BELOW);
-    let mut svg = Svg::new(width, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-
+    let triangle = Triangle::of(found.slices.iter().map(|slice| slice.axes));
+    let has_cube = found.slices.iter().any(|slice| !slice.onaa.bounds.is_empty());
+    let legend = map::outcome_squares(
+        Legend::default(),
+        |outcome| found.slices.iter().any(|slice| slice.sum.counts[outcome as usize - 1] > 0),
+        |outcome| outcome.word().to_owned(),
+        has_cube.then_some("largest square (ONAA)"),
+    );
+    let layout = Layout::of(design).story(subtitle(design, found)).legend(legend);
+    let (mut svg, frames) = triangle.open(layout, CAPTION);
     let units = ShownUnits::of(design);
-    let at = |axes: &[Dof], dof: Dof| axes.iter().position(|a| *a == dof).unwrap_or(0);
-    for slice in &found.slices {
-        let (column, row) = (at(&columns, slice.axes[0]), at(&rows, slice.axes[1]));
-        let place = [column, row].map(|k| k as f64);
-        let rect = Rect {
-            x: LEFT + place[0] * (side + GAP[0]),
-            y: TOP + place[1] * (side + GAP[1]),
-            w: side,
-            h: side,
-        };
+    for (slice, rect) in found.slices.iter().zip(&frames) {
         let map = Map::of(&slice.acceptance, slice.axes, &PoseError::default())?;
-        let frame = map.frame(rect, &units);
+        let frame = map.frame(*rect, &units);
         map::inside(&mut svg, &map, &frame, &units, &OnaaReport::from(slice.onaa.clone()).bounds)?;
-        frame.outline(&mut svg);
-        let shares = |other: &&Slice, k: usize| other.axes[k] == slice.axes[k];
-        let is_lowest = !found.slices.iter().any(|s| shares(&s, 0) && s.axes[1] > slice.axes[1]);
-        let is_first = !found.slices.iter().any(|s| shares(&s, 1) && s.axes[0] < slice.axes[0]);
-        if is_lowest {
-            frame.below(&mut svg);
-        }
-        if is_first {
-            frame.beside(&mut svg);
-        }
-        caption(&mut svg, slice, rect);
+        triangle.draw(&mut svg, slice.axes, &frame);
+        caption(&mut svg, slice, *rect);
     }
-    if rows.len() >= 3 && columns.len() == rows.len() {
-        let size = extent(rows.len() / 2, GAP[0]) + 0.5 * side;
-        let corner = Rect { x: width - 20.0 - size, y: 66.0, w: size, h: size * 0.92 };
-        let apart = MovingHalfPose { error: SHOWN, height: 0.9 - design.alignment.center_of_rotation };
+    let [columns, rows] = triangle.size();
+    if rows >= 3 && columns == rows {
+        let right = frames.iter().map(|frame| frame.x + frame.w).fold(0.0, f64::max);
+        let top = frames.iter().map(|frame| frame.y).fold(f64::INFINITY, f64::min);
+        // Half of the columns, and half a map more: the lowest corner lies above the diagonal.
+        let size = (0.5 + (rows / 2) as f64) * triangle.side;
+        let corner = Rect { x: right - size, y: top - CAPTION, w: size, h: 0.92 * size };
+        let apart = MovingHalfPose::mated(design, 0.9);
         solid::panel(&mut svg, corner, design, connector, &apart)?;
     }
-    legend(&mut svg, found, height - 20.0);
     Ok(Picture::of(svg))
 }
-
-/// Pose of the moving half: straight above, as at the centre of the slices.
-const SHOWN: PoseError = PoseError { x: 0.0, y: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
 
 fn subtitle(design: &Design, found: &Slices) -> String {
     let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
@@ -121,26 +81,6 @@ fn caption(svg: &mut Svg, slice: &Slice, rect: Rect) {
     let y = rect.y - 6.0;
     svg.text([rect.x + 1.0, y], TICK, Anchor::Start, INK, if has_room { &share } else { &sum });
     svg.text([rect.x + rect.w - 1.0, y], TICK, Anchor::End, INK, &onaa);
-}
-
-/// The outcomes that occur in any slice, from left to right.
-fn legend(svg: &mut Svg, found: &Slices, y: f64) {
-    let occurs = |o: &Outcome| found.slices.iter().any(|s| s.sum.counts[*o as usize - 1] > 0);
-    let swatch = |x: f64| Rect { x, y: y - 10.0, w: 13.0, h: 13.0 };
-    let mut x = 24.0;
-    let mut word = |svg: &mut Svg, words: &str, style: &str| {
-        svg.rect(swatch(x), style);
-        svg.text([x + 19.0, y + 0.5], LABEL, Anchor::Start, INK, words);
-        x += 41.0 + width_of(words, LABEL);
-    };
-    for outcome in Outcome::ALL.into_iter().filter(occurs) {
-        let fill = hex(colour::outcome(outcome));
-        let style = format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#);
-        word(svg, outcome.word(), &style);
-    }
-    if found.slices.iter().any(|s| !s.onaa.bounds.is_empty()) {
-        word(svg, "largest square (ONAA)", &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#));
-    }
 }
 
 #[cfg(test)]

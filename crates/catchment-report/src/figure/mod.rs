@@ -74,6 +74,7 @@ mod success;
 mod sweep;
 mod trajectory;
 mod trials;
+mod triangle;
 mod watersheds;
 
 pub use agreement::agreement;
@@ -94,7 +95,7 @@ pub use jams::{jams, rests};
 pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};
-pub use number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
+pub use number_map::{Colouring, Digits, NumberMap, number_maps};
 pub use overview::overview;
 pub use pair::pair;
 pub use partition::partition;

@@ -11,7 +11,8 @@
 use super::Picture;
 use super::draw::axis::short;
 use super::draw::colour::{Rgb, hex, mix, sequential};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, width_of};
 
 /// How a number becomes a colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,58 +56,35 @@ pub struct NumberMap<'a> {
     pub marks: Vec<([usize; 2], &'a str)>,
 }
 
-/// The text above the maps, and their sizes, in units of the drawing.
-#[derive(Debug, Clone)]
-pub struct NumberSheet<'a> {
-    /// The title of the picture.
-    pub title: &'a str,
-    /// Lines below the title.
-    pub story: &'a [String],
-    /// Width and height of a cell.
-    pub cell: [f64; 2],
-    /// The picture is at least so wide: room for the title.
-    pub least_width: f64,
-}
+/// Between the names of rows and their cells, and above the cells for the names of columns, in SVG units.
+const BESIDE: f64 = 8.0;
+const NAMES: f64 = 14.0;
 
-/// Room for the names of rows, above a map, and between maps.
-const NAMES: f64 = 82.0;
-const HEAD: f64 = 46.0;
-const GAP: f64 = 30.0;
-/// Room around everything.
-const MARGIN: f64 = 24.0;
-/// From the title to the first line of the story, and from line to line.
-const FIRST_LINE: f64 = 50.0;
-const LINE: f64 = 18.0;
-
-/// Draws maps side by side. All have as many rows and columns as the first.
-pub fn number_maps(sheet: &NumberSheet, maps: &[NumberMap]) -> Picture {
-    let [w, h] = sheet.cell;
-    let (columns, rows) = maps.first().map_or((0, 0), |map| (map.columns.len(), map.rows.len()));
-    let side = [columns as f64 * w, rows as f64 * h];
-    let (left, top) = (MARGIN + NAMES, 48.0 + 22.0 * sheet.story.len() as f64 + HEAD);
-    let step = side[0] + GAP + NAMES;
-    let width = left + maps.len() as f64 * step - GAP - NAMES + MARGIN;
-    let mut svg = Svg::new(width.max(sheet.least_width), top + side[1] + 28.0);
-    svg.bold([MARGIN, 30.0], TITLE, Anchor::Start, sheet.title);
-    for (k, line) in sheet.story.iter().enumerate() {
-        svg.text([MARGIN, FIRST_LINE + LINE * k as f64], LABEL, Anchor::Start, SOFT, line);
-    }
-    for (k, map) in maps.iter().enumerate() {
-        map.draw(&mut svg, [left + k as f64 * step, top], sheet.cell);
+/// Draws maps side by side below a head, with cells of this width and height in units of the drawing.
+pub fn number_maps(head: Layout, cell: [f64; 2], maps: &[NumberMap]) -> Picture {
+    let [w, h] = cell;
+    let panel = |map: &NumberMap<'_>| {
+        let names = map.rows.iter().map(|name| width_of(name, TICK)).fold(0.0, f64::max);
+        Panel::of([map.columns.len() as f64 * w, map.rows.len() as f64 * h])
+            .with_room([names + BESIDE, NAMES, 0.0, 0.0])
+            .over(map.title)
+    };
+    let (mut svg, frames) = head.row(maps.iter().map(panel)).open();
+    for (map, rect) in maps.iter().zip(frames) {
+        map.draw(&mut svg, rect, cell);
     }
     Picture::of(svg)
 }
 
 impl NumberMap<'_> {
-    /// Draws it with its cells beginning at a place; `cell` is their size.
-    fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], [w, h]: [f64; 2]) {
-        svg.text([x, y - 26.0], LABEL, Anchor::Start, INK, self.title);
+    /// Draws it with its cells in a rectangle; `cell` is their size.
+    fn draw(&self, svg: &mut Svg, Rect { x, y, .. }: Rect, [w, h]: [f64; 2]) {
         for (k, name) in self.columns.iter().enumerate() {
             svg.text([x + (k as f64 + 0.5) * w, y - 7.0], TICK, Anchor::Middle, SOFT, name);
         }
         for (j, (name, row)) in self.rows.iter().zip(&self.values).enumerate() {
             let top = y + j as f64 * h;
-            svg.text([x - 8.0, top + 0.5 * h + 3.8], TICK, Anchor::End, SOFT, name);
+            svg.text([x - BESIDE, top + 0.5 * h + 3.8], TICK, Anchor::End, SOFT, name);
             for (k, value) in row.iter().enumerate().filter(|(_, value)| value.is_finite()) {
                 let fill = self.colouring.of(*value);
                 let rect = Rect { x: x + k as f64 * w, y: top, w, h };
@@ -175,9 +153,8 @@ mod tests {
             map(Colouring::Deficit([0.5, 1.0])),
             map(Colouring::Ratio { full: 2.0 }),
         ];
-        let story = ["two lines".to_owned(), "of words".to_owned()];
-        let sheet = NumberSheet { title: "Maps", story: &story, cell: [56.0, 26.0], least_width: 640.0 };
-        let picture = number_maps(&sheet, &maps);
+        let head = Layout::titled("Maps").story("two lines").story("of words");
+        let picture = number_maps(head, [56.0, 26.0], &maps);
         look("number-maps", &picture);
         assert_eq!(picture.svg().matches(r##"stroke="#ffffff""##).count(), 9);
         assert!(!picture.svg().contains("NaN"));

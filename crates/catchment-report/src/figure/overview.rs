@@ -1,8 +1,8 @@
 //! The overview of a design: its halves, its area of acceptance, its heights, side by side.
 
 use super::draw::axis::ShownUnits;
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
-use super::map::{self, Legend, Map};
+use super::draw::layout::{Layout, Panel};
+use super::map::{self, Map};
 use super::section::MovingHalfPose;
 use super::{FigureError, Picture, cube, headline, heights, solid};
 use crate::Report;
@@ -10,8 +10,9 @@ use catchment_core::acceptance::Acceptance;
 use catchment_core::connector::Connector;
 use catchment_core::pose::{Dof, PoseError};
 
-/// Distance between maps, in SVG units.
-const BETWEEN: f64 = 370.0;
+/// Side of a map, and size of the halves in space, in SVG units.
+const SIDE: f64 = 300.0;
+const HALVES: [f64; 2] = [SIDE + 10.0, SIDE + 30.0];
 
 /// Draws an overview over a pair of errors, the others zero. The numbers are those of the `report`; the shares of the
 /// outcomes those of the map. The maps show `slice`, which may be the same, or a finer grid over the pair
@@ -31,31 +32,21 @@ pub fn overview(
     let units = ShownUnits::of(design);
     let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
     let cube = cube(report);
-    let (side, top) = (300.0, 96.0);
-    let (total_width, total_height) = (1130.0, top + side + 84.0);
-    let mut svg = Svg::new(total_width, total_height);
-    svg.bold([24.0, 32.0], TITLE + 2.0, Anchor::Start, &design.name);
-    svg.text([24.0, 53.0], LABEL, Anchor::Start, SOFT, &headline(report));
-
-    let heading =
-        |svg: &mut Svg, x: f64, words: &str| svg.text([x, top - 12.0], LABEL, Anchor::Start, INK, words);
-    let error = PoseError { x: 0.2, pitch: 0.2, ..PoseError::default() };
-    let only_free = |dof: Dof, value: f64| if design.alignment.free.contains(dof) { value } else { 0.0 };
-    let error =
-        PoseError { x: only_free(Dof::X, error.x), pitch: only_free(Dof::Pitch, error.pitch), ..error };
+    let shift = |dof: Dof| if design.alignment.free.contains(dof) { 0.2 } else { 0.0 };
+    let error = PoseError { x: shift(Dof::X), pitch: shift(Dof::Pitch), ..PoseError::default() };
     let apart = MovingHalfPose { error, height: 0.9 - design.alignment.center_of_rotation };
-    heading(&mut svg, 24.0, "the two halves");
-    let picture = Rect { x: 14.0, y: top, w: side + 10.0, h: side + 30.0 };
-    solid::panel(&mut svg, picture, design, connector, &apart)?;
-
-    let middle = Rect { x: 392.0, y: top, w: side, h: side };
-    heading(&mut svg, middle.x, &map.heading("area of acceptance", &units, BETWEEN));
-    map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, cube)?;
-    Legend::of(&map, !cube.is_empty()).draw(&mut svg, [middle.x, total_height - 22.0]);
-
-    let right = Rect { x: middle.x + BETWEEN, y: top, w: side, h: side };
-    heading(&mut svg, right.x, "height of first contact");
-    heights::panel(&mut svg, &map, right, &units, height)?;
+    let (mut svg, frames) = Layout::of(design)
+        .story(headline(report))
+        .legend(map::legend(&map, !cube.is_empty()))
+        .row([
+            Panel::of(HALVES).over("the two halves"),
+            Panel::with_axes([SIDE; 2]).over(map.heading("area of acceptance", &units, SIDE)),
+            Panel::with_axes([SIDE; 2]).with_bar().over("height of first contact"),
+        ])
+        .open();
+    solid::panel(&mut svg, frames[0], design, connector, &apart)?;
+    map::outcomes(&mut svg, &map, &map.frame(frames[1], &units), &units, cube)?;
+    heights::panel(&mut svg, &map, frames[2], &units, height)?;
     Ok(Picture::of(svg))
 }
 

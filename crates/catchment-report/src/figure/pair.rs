@@ -1,7 +1,7 @@
 //! The pair as the program reads it: both halves in space, drawn apart, and in section in the mated pose, or
 //! at first contact if there is no valid mated pose.
 
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::layout::{Layout, Panel};
 use super::section::{MovingHalfPose, View};
 use super::solid::panel;
 use super::{FigureError, Picture};
@@ -17,7 +17,6 @@ const LIFT: f64 = 0.6;
 /// # Errors
 /// If there is nothing to draw.
 pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
-    const TOP: f64 = 86.0;
     const HEIGHT: f64 = 400.0;
     let (design, connector) = (problem.design(), problem.connector());
     let mated = MovingHalfPose::mated(design, 0.0);
@@ -32,15 +31,11 @@ pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
     };
     let view = View::new(design, connector, std::slice::from_ref(&mated))?;
     let (width, height) = view.fit(460.0, HEIGHT);
-    let space = Rect { x: 24.0, y: TOP, w: 400.0, h: HEIGHT };
-    let cut = Rect { x: space.x + space.w + 84.0, y: TOP, w: width, h: height };
-    let mut svg = Svg::new(cut.x + width.max(280.0) + 40.0, TOP + HEIGHT + 60.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    for (rect, words) in [(space, "drawn apart"), (cut, words)] {
-        svg.text([rect.x, TOP - 18.0], LABEL, Anchor::Start, SOFT, words);
-    }
-    panel(&mut svg, space, design, connector, &MovingHalfPose::mated(design, LIFT))?;
-    let frame = view.frame(cut);
+    let (mut svg, frames) = Layout::of(design)
+        .row([Panel::of([400.0, HEIGHT]).over("drawn apart"), Panel::with_axes([width, height]).over(words)])
+        .open();
+    panel(&mut svg, frames[0], design, connector, &MovingHalfPose::mated(design, LIFT))?;
+    let frame = view.frame(frames[1]);
     view.halves(&mut svg, &frame, &mated);
     frame.draw(&mut svg);
     Ok(Picture::of(svg))

@@ -4,7 +4,8 @@
 use super::Picture;
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{INK, JOIN, Rect, SOFT, polyline};
 use catchment_core::design::Design;
 use catchment_core::document::significant;
 use catchment_core::method::zraa::{AcceptedSquare, Zraa};
@@ -18,26 +19,20 @@ const MARGIN: f64 = 1.15;
 /// Draws a zero-rotation area of acceptance over x and y, or over its single axis.
 pub fn region(design: &Design, zraa: &Zraa, square: &AcceptedSquare) -> Picture {
     let units = ShownUnits::of(design);
-    let left = 78.0;
-    let (rect, measure) = match zraa {
+    let ([w, h], measure) = match zraa {
         Zraa::Region { area, .. } => {
-            let told = format!("{area:.6} D² accepted, ONAA {} D", significant(square.edge));
-            (Rect { x: left, y: 74.0, w: 420.0, h: 420.0 }, told)
+            ([420.0, 420.0], format!("{area:.6} D² accepted, ONAA {} D", significant(square.edge)))
         }
-        Zraa::Interval { from, to, .. } => {
-            (Rect { x: left, y: 74.0, w: 420.0, h: 60.0 }, format!("{:.6} D accepted", to - from))
-        }
+        Zraa::Interval { from, to, .. } => ([420.0, 60.0], format!("{:.6} D accepted", to - from)),
     };
-    let mut svg = Svg::new(540.0, rect.y + rect.h + 56.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    let story = format!("corrected without rotation: {measure}");
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    let (mut svg, frames) = Layout::of(design)
+        .story(format!("corrected without rotation: {measure}"))
+        .row([Panel::with_axes([w, h])])
+        .open();
+    let rect = frames[0];
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
     let half = MARGIN * reach(zraa).max(LEAST);
-    let scale = |dof: Dof| {
-        let half = half * units.factor(dof);
-        AxisScale::new(units.label(dof), -half, half, false)
-    };
+    let scale = |dof: Dof| units.symmetric(dof, half);
     // Neighbouring polygons share borders; a line of their own colour leaves no seam between them.
     let colour = hex(colour::outcome(catchment_core::acceptance::Outcome::Aligned));
     let style = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.6" {JOIN}"#);

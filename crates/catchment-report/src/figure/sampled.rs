@@ -10,10 +10,11 @@
 //! A plot shows all poses, whatever their other errors: dots of different outcomes may lie next to each
 //! other.
 
-use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
+use super::draw::axis::{PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
-use super::matrix::{BELOW, GAP, LEFT, TOP};
+use super::draw::layout::{Layout, Legend};
+use super::draw::svg::{Rect, Svg};
+use super::triangle::Triangle;
 use super::{FigureError, Picture, headline};
 use crate::Report;
 use catchment_core::acceptance::{Acceptance, Outcome};
@@ -21,6 +22,8 @@ use catchment_core::pose::Dof;
 
 /// Radius of a dot.
 const DOT: f64 = 1.6;
+/// The outline of the window.
+const WINDOW: &str = r##"fill="none" stroke="#1b2430" stroke-width="1.4""##;
 
 /// Draws listed poses over every two free errors.
 ///
@@ -29,65 +32,39 @@ const DOT: f64 = 1.6;
 pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, FigureError> {
     let alignment = &report.design.alignment;
     let free: Vec<Dof> = alignment.free.iter().collect();
-    let plots = free.len().saturating_sub(1);
-    if plots == 0 || acceptance.outcomes.is_empty() {
+    let before = |(row, y): (usize, &Dof)| free[..row].iter().map(|x| [*x, *y]).collect::<Vec<_>>();
+    let pairs: Vec<[Dof; 2]> = free.iter().enumerate().flat_map(before).collect();
+    if pairs.is_empty() || acceptance.outcomes.is_empty() {
         return Err(FigureError::Empty { what: "two free errors and sampled poses are needed" });
     }
-    let side = [400.0, 280.0, 230.0, 196.0][plots.min(4) - 1];
-    let extent = |gap: f64| plots as f64 * (side + gap) - gap;
-    let story = headline(report);
-    let width = (LEFT + extent(GAP[0]) + 28.0).max(48.0 + width_of(&story, LABEL));
-    let height = TOP + extent(GAP[1]) + BELOW;
-    let mut svg = Svg::new(width, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    let units = ShownUnits::of(&report.design);
-    let scale = |dof: Dof| {
-        let half = alignment.half_range(dof) * units.factor(dof);
-        AxisScale::new(units.label(dof), -half, half, dof.is_rotation())
-    };
     // Docking poses are drawn last.
     let order = [Outcome::Missed, Outcome::Undecided, Outcome::Jammed, Outcome::Aligned];
-    for row in 1..free.len() {
-        for column in 0..row {
-            let (x, y) = (free[column], free[row]);
-            let at = [column as f64 * (side + GAP[0]), (row - 1) as f64 * (side + GAP[1])];
-            let rect = Rect { x: LEFT + at[0], y: TOP + at[1], w: side, h: side };
-            let frame = PlotFrame { rect, x: scale(x), y: scale(y) };
-            for outcome in order {
-                for (k, _) in acceptance.outcomes.iter().enumerate().filter(|(_, found)| **found == outcome) {
-                    let error = acceptance.domain.pose(k).to_array();
-                    let place = [x, y].map(|dof| error[dof.index()] * units.factor(dof));
-                    svg.circle(frame.at(place), DOT, &style(outcome));
-                }
-            }
-            window(&mut svg, report, &frame, &units, [x, y]);
-            frame.outline(&mut svg);
-            if row + 1 == free.len() {
-                frame.below(&mut svg);
-            }
-            if column == 0 {
-                frame.beside(&mut svg);
+    let occurring = order.into_iter().rev().filter(|outcome| acceptance.outcomes.contains(outcome));
+    let mut legend =
+        occurring.fold(Legend::default(), |legend, outcome| legend.dot(style(outcome), outcome.word()));
+    if report.centered.is_some() {
+        legend = legend.square(WINDOW, "tolerance window");
+    }
+    let triangle = Triangle::of(pairs.iter().copied());
+    let layout = Layout::of(&report.design).story(headline(report)).legend(legend);
+    let (mut svg, frames) = triangle.open(layout, 0.0);
+    let units = ShownUnits::of(&report.design);
+    let scale = |dof: Dof| units.symmetric(dof, alignment.half_range(dof));
+    for (pair, rect) in pairs.into_iter().zip(frames) {
+        let [x, y] = pair;
+        let frame = PlotFrame { rect, x: scale(x), y: scale(y) };
+        for outcome in order {
+            for (k, _) in acceptance.outcomes.iter().enumerate().filter(|(_, found)| **found == outcome) {
+                let error = acceptance.domain.pose(k).to_array();
+                let place = pair.map(|dof| error[dof.index()] * units.factor(dof));
+                svg.circle(frame.at(place), DOT, &style(outcome));
             }
         }
-    }
-    let mut x = LEFT;
-    for outcome in order.into_iter().rev().filter(|outcome| acceptance.outcomes.contains(outcome)) {
-        let y = height - 24.0;
-        svg.circle([x + 5.0, y - 4.0], 4.5, &style(outcome));
-        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, outcome.word());
-        x += 38.0 + width_of(outcome.word(), LABEL);
-    }
-    if report.centered.is_some() {
-        let y = height - 24.0;
-        svg.rect(Rect { x, y: y - 9.0, w: 10.0, h: 10.0 }, WINDOW);
-        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, "tolerance window");
+        window(&mut svg, report, &frame, &units, pair);
+        triangle.draw(&mut svg, pair, &frame);
     }
     Ok(Picture::of(svg))
 }
-
-/// The outline of the window.
-const WINDOW: &str = r##"fill="none" stroke="#1b2430" stroke-width="1.4""##;
 
 fn window(svg: &mut Svg, report: &Report, frame: &PlotFrame, units: &ShownUnits, [x, y]: [Dof; 2]) {
     let Some(found) = &report.centered else { return };

@@ -6,7 +6,8 @@
 
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits, short};
 use super::draw::colour::{self, Rgb, hex, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, polyline};
 use super::plane::{Patch, Plane, Stroke};
 use super::{FigureError, Picture};
 use catchment_core::connector::{Connector, Half, Surface};
@@ -72,10 +73,9 @@ pub fn section(
 ) -> Result<Picture, FigureError> {
     let view = View::new(design, connector, std::slice::from_ref(placement))?;
     let (width, height) = view.fit(460.0, 420.0);
-    let mut svg = Svg::new(width + 110.0, height + 126.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &describe(design, placement));
-    panel(&mut svg, Rect { x: 72.0, y: 68.0, w: width, h: height }, design, connector, placement)?;
+    let (mut svg, frames) =
+        Layout::of(design).story(describe(design, placement)).row([Panel::with_axes([width, height])]).open();
+    panel(&mut svg, frames[0], design, connector, placement)?;
     Ok(Picture::of(svg))
 }
 

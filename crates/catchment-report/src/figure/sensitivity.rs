@@ -4,14 +4,12 @@ use super::Picture;
 use super::draw::axis::short;
 use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing};
 use super::draw::colour::CURVES;
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::layout::{Layout, Panel};
 use crate::SensitivityReport;
 
 /// Draws the Sum over ρ. The points use the same random poses: their band moves as a whole, and their
 /// differences are more accurate than its width.
 pub fn sensitivity(report: &SensitivityReport) -> Picture {
-    let mut svg = Svg::new(620.0, 440.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let story = format!(
         "Sum {} … {} {} over ρ, with its 95 % interval, by the same {} random poses",
         short(report.least.sum),
@@ -19,7 +17,6 @@ pub fn sensitivity(report: &SensitivityReport) -> Picture {
         report.unit,
         report.settings.poses.unwrap_or_default()
     );
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let point = |p: &catchment_study::sensitivity::AtRho| ChartPoint {
         x: p.rotation_length,
         y: p.sum,
@@ -30,8 +27,10 @@ pub fn sensitivity(report: &SensitivityReport) -> Picture {
         colour: CURVES[0],
         points: report.over_rho.iter().map(point).collect(),
     };
+    let panel = Panel::with_axes([510.0, 300.0]);
+    let (mut svg, frames) = Layout::of(&report.design).story(story).row([panel]).open();
     let chart = Chart {
-        rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
+        rect: frames[0],
         x_label: "ρ, characteristic length [D]",
         spacing: Spacing::Logarithmic,
         y_label: &format!("Sum [{}]", report.unit),

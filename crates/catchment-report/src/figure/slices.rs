@@ -1,8 +1,8 @@
 //! Outcomes over pairs of errors, with all others fixed.
 
 use super::draw::axis::{ShownUnits, short};
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, width_of};
-use super::map::{self, Legend, Map, pairs_or_all};
+use super::draw::layout::{Layout, Legend, Panel};
+use super::map::{self, CUBE, Map, pairs_or_all};
 use super::{FigureError, Picture, cube, headline};
 use crate::Report;
 use catchment_core::acceptance::{Acceptance, Outcome};
@@ -34,63 +34,46 @@ pub fn slices(
         None => Map::of(acceptance, *pair, at),
     };
     let maps = pairs.iter().map(drawn).collect::<Result<Vec<Map>, FigureError>>()?;
-    let (design, cube, story) = (&report.design, cube(report), headline(report));
-    let units = ShownUnits::of(design);
-    let columns = match maps.len() {
-        1 => 1,
-        2 | 4 => 2,
-        n if n > 6 => 5,
-        _ => 3,
+    let cube = cube(report);
+    let units = ShownUnits::of(&report.design);
+    let (columns, side) = match maps.len() {
+        1 => (1, 400.0),
+        2 | 4 => (2, 280.0),
+        3 => (3, 280.0),
+        n if n > 6 => (5, 230.0),
+        _ => (3, 230.0),
     };
-    let side = match maps.len() {
-        1 => 400.0,
-        2..=4 => 280.0,
-        _ => 230.0,
-    };
-    let legend = match &maps[..] {
-        [map] => Legend::of(map, !cube.is_empty()),
-        _ => Legend::of_all(&maps, !cube.is_empty()),
-    };
-    let (left, top, cell) = (62.0, 100.0, [side + 76.0, side + 76.0]);
-    let rows = maps.len().div_ceil(columns);
-    let width = (left + columns as f64 * cell[0] - 50.0)
-        .max(legend.width() + 48.0)
-        .max(width_of(&story, LABEL) + 48.0);
-    let height = top + rows as f64 * cell[1] + 20.0;
-    let indent = left + 0.5 * (width - left - 26.0 - (columns as f64 * cell[0] - 76.0)).max(0.0);
-    let mut svg = Svg::new(width, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
     let (is_sliced, is_central) = (grid.axes.len() > 2, maps.iter().all(Map::is_central));
     let subtitle = match (is_sliced, is_central) {
         (false, _) => "area of acceptance",
         (true, true) => "area of acceptance, slices through zero",
         (true, false) => "area of acceptance, slices",
     };
-    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, subtitle);
-    for (k, map) in maps.iter().enumerate() {
-        let (column, row) = (k % columns, k / columns);
-        let rect = Rect {
-            x: if columns == 1 { indent } else { left } + column as f64 * cell[0],
-            y: top + row as f64 * cell[1],
-            w: side,
-            h: side,
-        };
-        map::outcomes(&mut svg, map, &map.frame(rect, &units), &units, cube)?;
-        let mut above = Vec::new();
+    let legend = match &maps[..] {
+        [map] => map::legend(map, !cube.is_empty()),
+        _ => map::outcome_squares(
+            Legend::default(),
+            |outcome| maps.iter().any(|map| map.outcomes.contains(&outcome)),
+            |outcome| outcome.word().to_owned(),
+            (!cube.is_empty()).then_some(CUBE),
+        ),
+    };
+    let panel = |map: &Map| {
+        let mut panel = Panel::with_axes([side; 2]);
+        if !is_central {
+            panel = panel.over(map.fixed(&units));
+        }
         if maps.len() > 1 {
             let share = short(100.0 * map.share(Outcome::Aligned));
-            above.push(format!("{} {share} % of this slice", Outcome::Aligned.word()));
+            panel = panel.over(format!("{} {share} % of this slice", Outcome::Aligned.word()));
         }
-        if !is_central {
-            above.push(map.fixed(&units));
-        }
-        for (line, words) in above.iter().enumerate() {
-            let place = [rect.x + rect.w, rect.y - 6.0 - 13.0 * line as f64];
-            svg.text(place, LABEL - 1.5, Anchor::End, SOFT, words);
-        }
+        panel
+    };
+    let layout = Layout::of(&report.design).story(headline(report)).story(subtitle).legend(legend);
+    let (mut svg, frames) = layout.grid(columns, maps.iter().map(panel)).open();
+    for (map, rect) in maps.iter().zip(frames) {
+        map::outcomes(&mut svg, map, &map.frame(rect, &units), &units, cube)?;
     }
-    legend.draw(&mut svg, [24.0, height - 20.0]);
     Ok(Picture::of(svg))
 }
 

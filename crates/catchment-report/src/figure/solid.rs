@@ -6,7 +6,8 @@
 //! edges that lie in a facet of another body, and the ends of receding edges.
 
 use super::draw::colour::{self, Rgb, mix};
-use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Rect, Svg};
 use super::section::{MovingHalfPose, contact_mark, describe, seen_apart};
 use super::{FigureError, Picture, raster};
 use catchment_core::connector::{Connector, Surface};
@@ -23,17 +24,9 @@ pub fn solids(
     connector: &Connector,
     placement: &MovingHalfPose,
 ) -> Result<Picture, FigureError> {
-    let (width, height) = (560.0, 520.0);
-    let mut svg = Svg::new(width, height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &describe(design, placement));
-    panel(
-        &mut svg,
-        Rect { x: 20.0, y: 62.0, w: width - 40.0, h: height - 82.0 },
-        design,
-        connector,
-        placement,
-    )?;
+    let (mut svg, frames) =
+        Layout::of(design).story(describe(design, placement)).row([Panel::of([520.0, 440.0])]).open();
+    panel(&mut svg, frames[0], design, connector, placement)?;
     Ok(Picture::of(svg))
 }
 

@@ -3,9 +3,10 @@
 
 use super::Picture;
 use super::draw::axis::{ShownUnits, short};
-use super::draw::chart::{Chart, ChartLine, ChartPoint, Mark, Spacing, legend};
+use super::draw::chart::{self, Chart, ChartLine, ChartPoint, Mark, Spacing};
 use super::draw::colour::{CURVES, Rgb, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+use super::draw::layout::{Layout, Panel};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK};
 use crate::SuccessesReport;
 use catchment_study::success::{RobotDocking, in_percent};
 
@@ -13,16 +14,15 @@ use catchment_study::success::{RobotDocking, in_percent};
 const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
 /// Factors below this are of little interest: nearly all errors dock.
 const LEAST: f64 = 0.25;
+/// Left of the bars, and right of them for their numbers, in SVG units.
+const GAP: f64 = 40.0;
+const POINTS: f64 = 52.0;
 /// Curves that are drawn: as many as there are colours.
 const MOST: usize = CURVES.len();
 
 /// Draws the success over the factor for each robot (the first five), and the gains of the robot with the
 /// lowest success.
 pub fn success(report: &SuccessesReport) -> Picture {
-    let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
-    let bars = Rect { x: 590.0, y: top, w: 300.0, h: size[1] };
-    let mut svg = Svg::new(bars.x + bars.w + 70.0, top + size[1] + 56.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let head = &report.success;
     let [lo, hi] = head.ci95.map(in_percent);
     let of = if report.robots.len() > 1 {
@@ -32,11 +32,22 @@ pub fn success(report: &SuccessesReport) -> Picture {
     };
     let story =
         format!("success{of} {}, from {lo} to {hi} with 95 % confidence", in_percent(head.probability));
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines = lines(report);
-    let rect = Rect { x: left, y: top, w: size[0], h: size[1] };
+    let worst = report.worst();
+    let halved = worst.map_or_else(String::new, |robot| match report.robots.len() {
+        1 => "halved, one by one".to_owned(),
+        _ => format!("halved, one by one: {}", robot.robot),
+    });
+    let size = [400.0, 300.0];
+    let (mut svg, frames) = Layout::of(&report.design)
+        .story(story)
+        .row([
+            Panel::with_axes(size).over(chart::legend(&lines)),
+            Panel::of([300.0, size[1]]).with_room([GAP, 0.0, POINTS, 0.0]).over(halved),
+        ])
+        .open();
     Chart {
-        rect,
+        rect: frames[0],
         x_label: "all standard deviations times",
         spacing: Spacing::Logarithmic,
         y_label: "success [%]",
@@ -44,9 +55,8 @@ pub fn success(report: &SuccessesReport) -> Picture {
         mark: Some(Mark { x: 1.0, y: None, words: "as they are" }),
     }
     .draw(&mut svg);
-    legend(&mut svg, &lines, [left, top - 34.0]);
-    if let Some(robot) = report.worst() {
-        gains(&mut svg, report, robot, bars);
+    if let Some(robot) = worst {
+        gains(&mut svg, report, robot, frames[1]);
     }
     Picture::of(svg)
 }
@@ -82,12 +92,6 @@ fn lines(report: &SuccessesReport) -> Vec<ChartLine> {
 /// A bar for each error, with the interval of its gain; if all gains are zero, a line.
 fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &RobotDocking, rect: Rect) {
     let units = ShownUnits::of(&report.design);
-    let head = if report.robots.len() > 1 {
-        format!("halved, one by one: {}", robot.robot)
-    } else {
-        "halved, one by one".to_owned()
-    };
-    svg.text([rect.x, rect.y - 16.0], LABEL, Anchor::Start, INK, &head);
     let (low, high) = robot.improve.iter().fold((0.0f64, 0.0f64), |(low, high), improve| {
         let [lo, hi] = improve.gain_ci95;
         (low.min(lo.min(improve.gain)), high.max(hi.max(improve.gain)))

@@ -12,9 +12,10 @@
 //! Rows are the first axis, columns the second; further axes are maps side by side, or further rows.
 
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
+use super::draw::layout::{Layout, Legend, Panel};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, width_of};
 use super::map::{self, Map};
-use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
+use super::number_map::{Colouring, Digits, NumberMap, number_maps};
 use super::{FigureError, Picture};
 use crate::SweepReport;
 use catchment_core::acceptance::Outcome;
@@ -27,6 +28,9 @@ use catchment_study::sweep::{Outline, SweepAxis};
 const CELL: [f64; 2] = [62.0, 40.0];
 /// Maps that stand side by side at most; a sweep with more is for programs.
 const MOST_MAPS: usize = 12;
+/// Room for the numbers beside outlines, and below them.
+const TICKS: f64 = 44.0;
+const BELOW: f64 = 18.0;
 /// Outlines that are drawn at most.
 const MOST_OUTLINES: usize = 400;
 
@@ -101,14 +105,9 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
         let trial = &report.designs[number?];
         Some(format!("{what}: {} at {}", significant(trial.found.figures()?.sum), report.named(trial)))
     };
-    let story: Vec<String> =
-        [extreme("▲ largest Sum", report.largest), extreme("▼ smallest Sum", report.smallest)]
-            .into_iter()
-            .flatten()
-            .collect();
-    let widest = story.iter().map(|line| width_of(line, LABEL) + 48.0).fold(420.0, f64::max);
-    let sheet = NumberSheet { title: &report.design.name, story: &story, cell: CELL, least_width: widest };
-    Some(number_maps(&sheet, &maps))
+    let story = [extreme("▲ largest Sum", report.largest), extreme("▼ smallest Sum", report.smallest)];
+    let head = story.into_iter().flatten().fold(Layout::of(&report.design), Layout::story);
+    Some(number_maps(head, CELL, &maps))
 }
 
 /// Draws the slice through zero of every design, at a common scale; `None` if there is none, or too many.
@@ -124,34 +123,32 @@ pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureErr
         return Ok(None);
     }
     let units = ShownUnits::of(&report.design);
-    let (side, gap, top) = (if columns.len() > 6 { 92.0 } else { 118.0 }, 14.0, 104.0);
-    let widest_row = rows.iter().map(|row| width_of(row, TICK)).fold(0.0, f64::max);
-    let left = 24.0 + widest_row + 52.0;
-    let width =
-        (left + columns.len() as f64 * (side + gap) + 24.0).max(width_of(&report.design.name, TITLE) + 48.0);
-    let height = top + rows.len() as f64 * (side + gap) + 44.0;
-    let mut svg = Svg::new(width.max(460.0), height);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
+    let side = if columns.len() > 6 { 92.0 } else { 118.0 };
+    let names = rows.iter().map(|row| width_of(row, TICK)).fold(0.0, f64::max) + TICKS;
     let others: Vec<String> = first.at.iter().map(|(dof, value)| units.value(*dof, *value)).collect();
     let others = if others.is_empty() { String::new() } else { format!(" at {}", others.join(", ")) };
-    let names = first.axes.map(|dof| units.label(dof));
-    let story = format!("area of acceptance over {} and {}{others}", names[0], names[1]);
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    svg.text([24.0, 68.0], LABEL, Anchor::Start, SOFT, "all to one scale; ▲ largest Sum, ▼ smallest");
-    for (k, name) in columns.iter().enumerate() {
-        let middle = left + k as f64 * (side + gap) + 0.5 * side;
-        svg.text([middle, top - 10.0], TICK, Anchor::Middle, SOFT, name);
-    }
+    let [across, up] = first.axes.map(|dof| units.label(dof));
+    let panel = |number: usize| {
+        let (row, column) = (number / columns.len(), number % columns.len());
+        let left = if column == 0 { names } else { 0.0 };
+        let below = if row + 1 == rows.len() { BELOW } else { 0.0 };
+        let panel = Panel::of([side; 2]).with_room([left, 0.0, 0.0, below]);
+        if row == 0 { panel.over(Legend::titled(&columns[column])) } else { panel }
+    };
+    let (mut svg, frames) = Layout::of(&report.design)
+        .story(format!("area of acceptance over {across} and {up}{others}"))
+        .story("all to one scale; ▲ largest Sum, ▼ smallest")
+        .grid(columns.len(), (0..outlines.len()).map(panel))
+        .open();
     let reach = |axis: usize| {
         outlines.iter().flatten().fold(0.0, |most: f64, o| most.max(o.hi[axis]).max(-o.lo[axis]))
     };
     let reach = [reach(0), reach(1)];
-    for (number, outline) in outlines.iter().enumerate() {
-        let (j, k) = (number / columns.len().max(1), number % columns.len().max(1));
-        let rect =
-            Rect { x: left + k as f64 * (side + gap), y: top + j as f64 * (side + gap), w: side, h: side };
-        if k == 0 {
-            svg.text([24.0, rect.y + 0.5 * side + 4.0], TICK, Anchor::Start, SOFT, &rows[j]);
+    for (number, (outline, rect)) in outlines.iter().zip(frames).enumerate() {
+        let (row, column) = (number / columns.len(), number % columns.len());
+        if column == 0 {
+            let place = [rect.x - names, rect.y + 0.5 * side + 4.0];
+            svg.text(place, TICK, Anchor::Start, SOFT, &rows[row]);
         }
         let Some(outline) = outline else {
             svg.text([rect.x + 0.5 * side, rect.y + 0.5 * side], TICK, Anchor::Middle, SOFT, "not computed");
@@ -159,10 +156,10 @@ pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureErr
         };
         draw(&mut svg, outline, rect, reach, &units)?;
         let axes = shared_frame(rect, outline, reach, &units);
-        if k == 0 {
+        if column == 0 {
             ticks_beside(&mut svg, &axes);
         }
-        if j + 1 == rows.len() {
+        if row + 1 == rows.len() {
             ticks_below(&mut svg, &axes);
         }
         let mark = report.mark(number);

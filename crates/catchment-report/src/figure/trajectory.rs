@@ -2,7 +2,8 @@
 
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::draw::layout::{Layout, Legend, Panel, stacked, stroked};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, polyline};
 use super::plane::{Patch, Plane};
 use super::section::{MovingHalfPose, View, approach_axis, describe};
 use super::solid::touching;
@@ -38,14 +39,20 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     let patches = patches(design, shown);
     let plane = Plane::showing(design, connector, &placed(shown), &patches);
     let view = View::along(design, connector, &placements, plane)?;
-    let in_space = if is_planar(design) { 0.0 } else { SPACE + 50.0 };
-    let (left, height) = (430.0, 400.0);
-    let mut svg = Svg::new(960.0 + in_space, height + 130.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    let is_planar = is_planar(design);
+    let height = 400.0;
+    let mut section = Panel::with_axes([430.0, height]);
+    if !patches.is_empty() {
+        let when = if jams { "contacts where it jams" } else { "where it first touches" };
+        let words = view.words().map_or_else(|| when.to_owned(), |cut| format!("{when}; {cut}"));
+        section = section.under(Legend::titled(&format!("● {words}")));
+    }
+    let space = Panel::of([if is_planar { 0.0 } else { SPACE }, height]);
+    // Over each chart of errors stand their names.
+    let errors_left = Panel::with_axes([340.0, height]).with_room([0.0, NAMES, 0.0, 0.0]);
     let story = format!("from {} → {}", describe(design, &placed(first)), path.outcome.word());
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
-
-    let frame = view.frame(Rect { x: 72.0, y: 74.0, w: left, h: height });
+    let (mut svg, frames) = Layout::of(design).story(story).row([section, space, errors_left]).open();
+    let frame = view.frame(frames[0]);
     svg.begin_clip(frame.rect);
     approach_axis(&mut svg, &frame);
     view.fixed(&mut svg, &frame);
@@ -67,26 +74,20 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     view.contacts(&mut svg, &frame, &patches);
     svg.end();
     frame.draw(&mut svg);
-    if !patches.is_empty() {
-        let when = if jams { "contacts where it jams" } else { "where it first touches" };
-        let words = view.words().map_or_else(|| when.to_owned(), |cut| format!("{when}; {cut}"));
-        svg.text([72.0, height + 120.0], LABEL - 1.0, Anchor::Start, SOFT, &format!("● {words}"));
-    }
-    if !is_planar(design) {
-        let each = 0.5 * height - 24.0;
-        for (k, (when, waypoint)) in
-            [("where it first touches", meeting), ("at its end", last)].iter().enumerate()
-        {
-            let top = 74.0 + k as f64 * (each + 48.0);
-            svg.text([540.0, top + 10.0], LABEL, Anchor::Start, INK, when);
-            let rect = Rect { x: 540.0, y: top + 18.0, w: SPACE, h: each - 18.0 };
+    if !is_planar {
+        let views = [("where it first touches", meeting), ("at its end", last)];
+        for ((when, waypoint), rect) in views.into_iter().zip(stacked(frames[1], 2, 2.0 * NAMES)) {
+            svg.text([rect.x, rect.y - 8.0], LABEL, Anchor::Start, INK, when);
             let points: Vec<DVec3> = waypoint.touches.iter().map(|touch| touch.point).collect();
             touching(&mut svg, rect, design, connector, &placed(waypoint), &points)?;
         }
     }
-    errors(&mut svg, design, &path.waypoints, Rect { x: 590.0 + in_space, y: 74.0, w: 340.0, h: height });
+    errors(&mut svg, design, &path.waypoints, frames[2]);
     Ok(Picture::of(svg))
 }
+
+/// Room for the names over a chart or a view.
+const NAMES: f64 = 20.0;
 
 /// How wide the halves are drawn in space, in SVG units.
 const SPACE: f64 = 280.0;
@@ -140,10 +141,9 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
     let (angles, lengths): (Vec<Dof>, Vec<Dof>) =
         Dof::ALL.into_iter().filter(moves).partition(|dof| dof.is_rotation());
     let groups: Vec<Vec<Dof>> = [lengths, angles].into_iter().filter(|g| !g.is_empty()).collect();
-    let gap = 66.0;
-    let each = (rect.h - gap * (groups.len().max(1) - 1) as f64) / groups.len().max(1) as f64;
     let travelled = waypoints.last().map_or(0.0, |w| w.travelled).max(SHORT);
-    for (k, group) in groups.iter().enumerate() {
+    // Between two charts: an axis, and names.
+    for (group, rect) in groups.iter().zip(stacked(rect, groups.len(), 46.0 + NAMES)) {
         let angle = group[0].is_rotation();
         let factor = units.factor(group[0]);
         let values = |dof: Dof| waypoints.iter().map(move |w| w.error.to_array()[dof.index()] * factor);
@@ -154,7 +154,7 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
         let margin = 0.08 * (hi - lo).max(1e-6 * factor);
         let label = if angle { "angle [deg]".to_owned() } else { units.length("offset", 0.0, 0.0).label };
         let frame = PlotFrame {
-            rect: Rect { y: rect.y + k as f64 * (each + gap), h: each, ..rect },
+            rect,
             x: AxisScale::new("path length [D]".to_owned(), 0.0, travelled, false),
             y: AxisScale::new(label, lo - margin, hi + margin, angle),
         };
@@ -175,22 +175,17 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
         }
         svg.end();
         frame.draw(svg);
-        legend(svg, group, waypoints, &units, frame.rect);
+        legend(group, waypoints, &units).draw(svg, [rect.x, rect.y - 8.0]);
     }
 }
 
 /// Names of the curves with the error that is left, above their frame.
-fn legend(svg: &mut Svg, group: &[Dof], waypoints: &[Waypoint], units: &ShownUnits, rect: Rect) {
-    let mut x = rect.x;
-    let y = rect.y - 8.0;
-    for dof in group {
-        let stroke = hex(colour::CURVES[dof.index()]);
-        svg.line([x, y - 4.0], [x + 16.0, y - 4.0], &format!(r#"stroke="{stroke}" stroke-width="2.4""#));
+fn legend(group: &[Dof], waypoints: &[Waypoint], units: &ShownUnits) -> Legend {
+    group.iter().fold(Legend::default(), |legend, dof| {
         let left = waypoints.last().map_or(0.0, |w| w.error.to_array()[dof.index()]);
         let words = format!("{} left", units.value(*dof, left));
-        svg.text([x + 21.0, y], LABEL - 1.0, Anchor::Start, INK, &words);
-        x += 21.0 + width_of(&words, LABEL - 1.0) + 10.0;
-    }
+        legend.line(stroked(colour::CURVES[dof.index()], 2.4), words)
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use super::super::TrialsReport;
 use super::Picture;
 use super::draw::axis::{AxisScale, PlotFrame, ShownUnits};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::draw::layout::{Layout, Legend, Panel};
+use super::draw::svg::{JOIN, Rect, SOFT, Svg, polyline};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::document::{percent, significant};
@@ -19,9 +20,8 @@ const WRONG: &str = "#c62f2f";
 /// Draws the exact region and the trials of the last round.
 pub fn trials(report: &TrialsReport) -> Picture {
     let (design, found) = (&report.design, &report.result);
-    let (side, top) = (360.0, 98.0);
-    let planar = found.grid.axes.len() == 2;
-    let rect = |x: f64| Rect { x, y: top, w: side, h: if planar { side } else { 60.0 } };
+    const SIDE: f64 = 360.0;
+    let height = if found.grid.axes.len() == 2 { SIDE } else { 60.0 };
     let unit = found.unit;
     let round = found.rounds.last();
     let told = round.map_or_else(String::new, |round| {
@@ -34,23 +34,20 @@ pub fn trials(report: &TrialsReport) -> Picture {
             percent(round.disagreeing),
         )
     });
-    let width = (78.0 + 2.0 * side + 84.0 + 24.0).max(width_of(&told, LABEL) + 48.0);
-    let mut svg = Svg::new(width, top + rect(0.0).h + 84.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, "corrected without rotation, in theory and by trials");
-    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &told);
-    let heading = |svg: &mut Svg, x: f64, words: &str| {
-        svg.text([x, top - 10.0], LABEL, Anchor::Start, INK, words);
-    };
-    let (left, right) = (rect(78.0), rect(78.0 + side + 84.0));
-    heading(&mut svg, left.x, &format!("exact: {} {unit}", significant(found.exact)));
     let accepted = round.map_or(0.0, |round| round.accepted);
-    heading(&mut svg, right.x, &format!("trials: {} {unit}", significant(accepted)));
-    region(&mut svg, &frame(design, found, left), design, &found.zraa, true);
-    let of_trials = frame(design, found, right);
+    let panel = |words: &str, measure: f64| {
+        Panel::with_axes([SIDE, height]).over(format!("{words}: {} {unit}", significant(measure)))
+    };
+    let (mut svg, frames) = Layout::of(design)
+        .story("corrected without rotation, in theory and by trials")
+        .story(told)
+        .row([panel("exact", found.exact), panel("trials", accepted)])
+        .legend(legend(found))
+        .open();
+    region(&mut svg, &frame(design, found, frames[0]), design, &found.zraa, true);
+    let of_trials = frame(design, found, frames[1]);
     region(&mut svg, &of_trials, design, &found.zraa, false);
     dots(&mut svg, &of_trials, design, found);
-    legend(&mut svg, found, [left.x, top + left.h + 62.0]);
     Picture::of(svg)
 }
 
@@ -124,19 +121,13 @@ fn style(outcome: Outcome, wrong: bool) -> String {
     format!(r#"fill="{fill}" stroke="{edge}" stroke-width="{width}""#)
 }
 
-fn legend(svg: &mut Svg, found: &Trials, [mut x, y]: [f64; 2]) {
-    let met = |outcome: Outcome| found.trials.iter().any(|trial| trial.outcome == outcome);
-    let mut entries: Vec<(String, &str)> = Outcome::ALL
+fn legend(found: &Trials) -> Legend {
+    let met = |outcome: &Outcome| found.trials.iter().any(|trial| trial.outcome == *outcome);
+    Outcome::ALL
         .into_iter()
-        .filter(|outcome| met(*outcome))
-        .map(|outcome| (style(outcome, false), outcome.word()))
-        .collect();
-    entries.push((style(Outcome::Missed, true), "on the wrong side of the exact border"));
-    for (style, words) in entries {
-        svg.circle([x + 5.0, y - 4.0], 4.5, &style);
-        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
-        x += 38.0 + width_of(words, LABEL);
-    }
+        .filter(met)
+        .fold(Legend::default(), |legend, outcome| legend.dot(style(outcome, false), outcome.word()))
+        .dot(style(Outcome::Missed, true), "on the wrong side of the exact border")
 }
 
 #[cfg(test)]

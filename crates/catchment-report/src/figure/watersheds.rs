@@ -6,8 +6,8 @@
 
 use super::draw::axis::ShownUnits;
 use super::draw::colour::{self, Rgb, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE};
-use super::map::{Legend, Map};
+use super::draw::layout::{Layout, Panel};
+use super::map::{self, Map};
 use super::section::MovingHalfPose;
 use super::{FigureError, Picture, headline, heights, solid};
 use crate::Report;
@@ -20,6 +20,9 @@ use catchment_core::pose::{Dof, PoseError};
 
 /// Cells between two watersheds.
 const BETWEEN: Rgb = [0x22, 0x2b, 0x3a];
+/// Side of a map, and size of the halves in space, in SVG units.
+const SIDE: f64 = 270.0;
+const HALVES: [f64; 2] = [SIDE - 10.0, SIDE + 30.0];
 
 /// Draws the stages of flooding over a pair of errors, the others zero. `height` as in [`super::heights()`].
 ///
@@ -36,47 +39,40 @@ pub fn watersheds(
     let design = &report.design;
     let units = ShownUnits::of(design);
     let map = Map::of(acceptance, pair, &PoseError::default())?;
-    let (side, top) = (270.0, 96.0);
-    let mut svg = Svg::new(1330.0, top + side + 108.0);
-    svg.bold([24.0, 32.0], TITLE + 2.0, Anchor::Start, &design.name);
-    svg.text([24.0, 53.0], LABEL, Anchor::Start, SOFT, &headline(report));
-    let heading =
-        |svg: &mut Svg, x: f64, words: &str| svg.text([x, top - 12.0], LABEL, Anchor::Start, INK, words);
-
-    heading(&mut svg, 24.0, "the two halves");
-    let apart = MovingHalfPose::mated(design, LIFT);
-    solid::panel(&mut svg, Rect { x: 14.0, y: top, w: 260.0, h: side + 30.0 }, design, connector, &apart)?;
-
     let whole = if map.slice.at.is_empty() { "" } else { " in the whole grid" };
-    let rect = |x: f64| Rect { x, y: top, w: side, h: side };
-    heading(&mut svg, 340.0, &map.heading("height of first contact", &units, 370.0));
-    heights::panel(&mut svg, &map, rect(340.0), &units, height)?;
-
     let WatershedsReport { counts, moved_share } = WatershedsReport::new(watersheds);
-    heading(&mut svg, 720.0, "first labels, before merging");
-    let first = map.slice.pick(&watersheds.first);
-    let frame = map.frame(rect(720.0), &units);
-    map.paint(&mut svg, &frame, &first.iter().map(|label| shade(*label, watersheds)).collect::<Vec<_>>())?;
-    frame.draw(&mut svg);
     let dams =
         if counts.dams > 0 { format!(", {} dam cells (dark)", grouped(counts.dams)) } else { String::new() };
-    let below = top + side + 58.0;
-    let told = format!("{} watersheds{dams}{whole}", grouped(counts.first));
-    svg.text([720.0, below], LABEL, Anchor::Start, INK, &told);
-
-    heading(&mut svg, 1040.0, "after merging");
-    let frame = map.frame(rect(1040.0), &units);
-    let merged: Vec<Rgb> = map.outcomes.iter().map(|outcome| colour::outcome(*outcome)).collect();
-    map.paint(&mut svg, &frame, &merged)?;
-    svg.path(&map.border(&frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
-    frame.draw(&mut svg);
-    let told = format!(
+    let first = format!("{} watersheds{dams}{whole}", grouped(counts.first));
+    let merged = format!(
         "{} left; {} of all cells changed basin by merging",
         grouped(counts.merged),
         percent(moved_share)
     );
-    svg.text([1040.0, below], LABEL, Anchor::Start, INK, &told);
-    Legend::of(&map, false).draw(&mut svg, [720.0, below + 26.0]);
+    let panel = || Panel::with_axes([SIDE; 2]);
+    let (mut svg, frames) = Layout::of(design)
+        .story(headline(report))
+        .row([
+            Panel::of(HALVES).over("the two halves"),
+            panel().with_bar().over(map.heading("height of first contact", &units, SIDE)),
+            panel().over("first labels, before merging").under(first),
+            panel().over("after merging").under(merged).under(map::legend(&map, false)),
+        ])
+        .open();
+    let apart = MovingHalfPose::mated(design, LIFT);
+    solid::panel(&mut svg, frames[0], design, connector, &apart)?;
+    heights::panel(&mut svg, &map, frames[1], &units, height)?;
+
+    let labels = map.slice.pick(&watersheds.first);
+    let frame = map.frame(frames[2], &units);
+    map.paint(&mut svg, &frame, &labels.iter().map(|label| shade(*label, watersheds)).collect::<Vec<_>>())?;
+    frame.draw(&mut svg);
+
+    let frame = map.frame(frames[3], &units);
+    let merged: Vec<Rgb> = map.outcomes.iter().map(|outcome| colour::outcome(*outcome)).collect();
+    map.paint(&mut svg, &frame, &merged)?;
+    svg.path(&map.border(&frame), map::BORDER);
+    frame.draw(&mut svg);
     Ok(Picture::of(svg))
 }
 

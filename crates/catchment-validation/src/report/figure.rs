@@ -3,9 +3,9 @@
 use crate::study::reproduce::{ReproducedEntry, TableComparison};
 use crate::study::resolution::{self, ResolutionFigure};
 use crate::study::{FIGURE, Reproduction};
+use catchment::report::figure::draw::layout::Layout;
 use catchment::report::figure::{
-    Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, NumberSheet, Picture, curves,
-    number_maps,
+    Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, Picture, curves, number_maps,
 };
 
 /// Every picture with the name of its file, without ending.
@@ -68,13 +68,11 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
             maps.push(map(name_of_ratio, ratio(of), beside));
         }
     }
-    let story = [
-        format!("rows: {}  ·  columns: {}", table.row_name, table.column_name),
-        format!("values in {}", table.unit),
-    ];
-    let title = format!("Table {}: {}", table.table, table.title);
+    let head = Layout::titled(format!("Table {}: {}", table.table, table.title))
+        .story(format!("rows: {}  ·  columns: {}", table.row_name, table.column_name))
+        .story(format!("values in {}", table.unit));
     let cell = [if columns.len() > 8 { 40.0 } else { 56.0 }, 26.0];
-    Ok(number_maps(&NumberSheet { title: &title, story: &story, cell, least_width: 640.0 }, &maps))
+    Ok(number_maps(head, cell, &maps))
 }
 
 /// Draws the Sums of every method over N with the exact one and its interval, and beside them the time that each took.

@@ -1,6 +1,6 @@
 //! Axes for people: the design's unit or D, degrees, ticks at round numbers.
 
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK};
+use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, width_of};
 use catchment_core::design::Design;
 use catchment_core::landscape::GridAxis;
 use catchment_core::pose::Dof;
@@ -46,6 +46,12 @@ impl ShownUnits {
     pub fn axis(&self, axis: &GridAxis) -> AxisScale {
         let factor = self.factor(axis.dof);
         AxisScale::new(self.label(axis.dof), axis.lo * factor, axis.hi * factor, axis.dof.is_rotation())
+    }
+
+    /// The scale of an error from −`half` to `half`, in library units.
+    pub fn symmetric(&self, dof: Dof, half: f64) -> AxisScale {
+        let half = half * self.factor(dof);
+        AxisScale::new(self.label(dof), -half, half, dof.is_rotation())
     }
 
     /// The scale of a length that is no error.
@@ -153,7 +159,7 @@ impl PlotFrame {
         [self.px(x), self.py(y)]
     }
 
-    /// Outline, ticks and labels; needs about 46 to the left and 38 below.
+    /// Outline, ticks and labels, in the room of [`super::layout::Panel::with_axes`].
     pub fn draw(&self, svg: &mut Svg) {
         self.below(svg);
         self.beside(svg);
@@ -174,12 +180,14 @@ impl PlotFrame {
     /// Ticks and label of the left side.
     pub fn beside(&self, svg: &mut Svg) {
         let r = self.rect;
+        let mut widest: f64 = 0.0;
         for y in self.y.ticks((r.h / 40.0) as usize) {
-            let py = self.py(y);
+            let (py, number) = (self.py(y), tick_label(y));
             svg.line([r.x - 4.0, py], [r.x, py], TICK_LINE);
-            svg.text([r.x - 7.0, py + 3.8], TICK, Anchor::End, SOFT, &tick_label(y));
+            svg.text([r.x - 7.0, py + 3.8], TICK, Anchor::End, SOFT, &number);
+            widest = widest.max(width_of(&number, TICK));
         }
-        svg.text_up([r.x - 38.0, r.y + 0.5 * r.h], LABEL, &self.y.label);
+        svg.text_up([r.x - (widest + 13.0).max(38.0), r.y + 0.5 * r.h], LABEL, &self.y.label);
     }
 
     /// Its outline alone.
@@ -188,8 +196,8 @@ impl PlotFrame {
     }
 }
 
-/// Of the colour [`SOFT`].
-const TICK_LINE: &str = r##"stroke="#5f6b7a" stroke-width="0.8""##;
+/// The style of the line of a tick, of the colour [`SOFT`].
+pub const TICK_LINE: &str = r##"stroke="#5f6b7a" stroke-width="0.8""##;
 
 /// A tick's number: multiples of a round step need few digits.
 pub fn tick_label(value: f64) -> String {

@@ -1,7 +1,8 @@
 //! Lines over a logarithmic or a linear scale, each with its interval as a band.
 
-use super::axis::{AxisScale, PlotFrame, tick_label};
+use super::axis::{AxisScale, PlotFrame, TICK_LINE, tick_label};
 use super::colour::{Rgb, hex};
+use super::layout::{Legend, stroked};
 use super::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 
 /// A line.
@@ -81,7 +82,7 @@ pub struct Mark<'a> {
 }
 
 impl Chart<'_> {
-    /// Draws the chart; needs about 56 to the left and 38 below.
+    /// Draws the chart, in the room of [`super::layout::Panel::with_axes`].
     pub fn draw(&self, svg: &mut Svg) {
         let Some(frame) = self.frame() else { return };
         let r = self.rect;
@@ -92,11 +93,7 @@ impl Chart<'_> {
         for x in self.spacing.ticks(&frame.x, r.w) {
             let px = frame.px(self.spacing.at(x));
             svg.line([px, r.y], [px, r.y + r.h], &grid);
-            svg.line(
-                [px, r.y + r.h],
-                [px, r.y + r.h + 4.0],
-                &format!(r#"stroke="{SOFT}" stroke-width="0.8""#),
-            );
+            svg.line([px, r.y + r.h], [px, r.y + r.h + 4.0], TICK_LINE);
             svg.text([px, r.y + r.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(x));
         }
         svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, self.x_label);
@@ -197,13 +194,8 @@ impl ChartLine {
 }
 
 /// The names of lines, from left to right.
-pub fn legend(svg: &mut Svg, lines: &[ChartLine], [mut x, y]: [f64; 2]) {
-    for line in lines {
-        let style = format!(r#"stroke="{}" stroke-width="2.4""#, hex(line.colour));
-        svg.line([x, y - 4.0], [x + 18.0, y - 4.0], &style);
-        svg.text([x + 23.0, y], LABEL, Anchor::Start, INK, &line.name);
-        x += 45.0 + width_of(&line.name, LABEL);
-    }
+pub fn legend(lines: &[ChartLine]) -> Legend {
+    lines.iter().fold(Legend::default(), |legend, line| legend.line(stroked(line.colour, 2.4), &line.name))
 }
 
 /// Round numbers between 10^`lo` and 10^`hi`: 1, 2 and 5 of each decade if they fit, else powers of ten.

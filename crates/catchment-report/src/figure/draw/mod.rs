@@ -20,4 +20,5 @@ pub mod arrow;
 pub mod axis;
 pub mod chart;
 pub mod colour;
+pub mod layout;
 pub mod svg;
