@@ -147,8 +147,8 @@ def entry(stem: str, design: Path, found: dict) -> str:
     worst = window["worst"]
     ends = "" if worst is None else (
         f" The nearest pose beyond it {ENDS[worst]}; the tightest error is {window['tightest']}.")
-    doubts = "".join(f"\n\n    {' '.join(warning.split())}" for warning in run["warnings"])
-    said = f"\n\n!!! note \"What the program adds\"{doubts}" if doubts else ""
+    warnings = "".join(f"\n\n    {' '.join(warning.split())}" for warning in run["warnings"])
+    said = f"\n\n!!! note \"What the program adds\"{warnings}" if warnings else ""
     files = "".join(f", [{name}](../designs/gallery/{name})" for name in named(text))
     return f"""## {run["name"][0].upper() + run["name"][1:]}
 

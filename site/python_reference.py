@@ -14,7 +14,7 @@ CHAPTERS = {
     "Answers": ["Result", "Report", "Picture", "End", "Ends", "Touching", "OUTCOMES"],
     "Studies": ["sweep", "compare", "methods"],
     "Errors": [
-        "Error", "DesignError", "GeometryError", "ArgumentError", "MemoryLimitError", "ComputeError", "Finding",
+        "Error", "DesignError", "GeometryError", "ArgumentError", "MemoryLimitError", "ComputeError", "Diagnostic",
     ],
 }
 HEAD = """# Python reference

@@ -1,16 +1,16 @@
 //! What the library advises, in the words of the command line.
 
-use catchment::advice::{Advice, Advised};
+use catchment::diagnostic::{Advice, Advised};
 use catchment::landscape::Resolution;
 use std::error::Error;
 
 /// The options that do what is advised; none where no option does.
-pub(crate) fn flags(advice: Advice) -> Option<String> {
+pub(crate) fn flags(advice: &Advice) -> Option<String> {
     Some(match advice {
-        Advice::AtMostResolution(cells) if cells >= Resolution::LEAST => {
+        Advice::AtMostResolution(cells) if *cells >= Resolution::LEAST => {
             format!("use at most --resolution {cells}")
         }
-        Advice::AtMostSamples(poses) if poses > 0 => format!("use at most --samples {poses}"),
+        Advice::AtMostSamples(poses) if *poses > 0 => format!("use at most --samples {poses}"),
         Advice::CoarserGrid => "lower --resolution".to_owned(),
         Advice::FewerPoses => "try fewer poses at a time".to_owned(),
         Advice::FewerSlices => "use fewer --slices or --strips".to_owned(),
@@ -24,6 +24,8 @@ pub(crate) fn flags(advice: Advice) -> Option<String> {
                 .to_owned()
         },
         Advice::Samples => "--samples 4000, --budget 10s or --tolerance 1%".to_owned(),
+        Advice::StateLayout => "--figure pair.png draws the pair; --facing-fixed, --facing-moving and --approach state how the parts lie".to_owned(),
+        Advice::Words(words) => words.clone(),
         Advice::AtMostResolution(_) | Advice::AtMostSamples(_) | Advice::EnlargeErrors => return None,
     })
 }
@@ -38,7 +40,7 @@ pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<String> {
             None => next = error.source(),
         }
     };
-    let said: Vec<String> = advised.0.iter().filter_map(|advice| flags(*advice)).collect();
+    let said: Vec<String> = advised.0.iter().filter_map(flags).collect();
     (!said.is_empty()).then(|| said.join(", or "))
 }
 

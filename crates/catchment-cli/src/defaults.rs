@@ -13,7 +13,8 @@ use crate::exec_args::{bytes, threads};
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::source::read_table;
-use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
+use catchment::design::{LengthUnit, SourceText};
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use catchment::suggest::nearest;
 use catchment::terminal::{escaped, shown};
 use clap::ValueEnum;
@@ -124,7 +125,10 @@ fn place(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<PathBu
 fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
     let refused = |list: Vec<Diagnostic>| Diagnostics { source: Some(source.clone()), list, omitted: 0 };
     let table = DeTable::parse(&source.text).map_err(|error| {
-        refused(vec![Diagnostic { message: error.message().to_owned(), help: None, span: error.span() }])
+        refused(vec![Diagnostic {
+            span: error.span(),
+            ..Diagnostic::error("defaults", error.message(), None)
+        }])
     })?;
     let (mut defaults, mut list) = (Defaults::default(), Vec::new());
     let name = shown(&source.path).to_string();
@@ -137,7 +141,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
                 None => format!("the keys are {}", names.join(", ")),
             };
             let message = format!("unknown key `{}`", escaped(written));
-            list.push(Diagnostic { message, help: Some(help), span: Some(key.span()) });
+            list.push(Diagnostic::error("defaults", message, Some(help)).at(Some(key.span())));
             continue;
         };
         let text = match value.get_ref() {
@@ -147,11 +151,11 @@ fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
         };
         if let Err(reason) = (known.set)(&mut defaults, text.trim(), &name) {
             let message = format!("`{}`: {reason}", known.name);
-            list.push(Diagnostic { message, help: None, span: Some(value.span()) });
+            list.push(Diagnostic::error("defaults", message, None).at(Some(value.span())));
         }
     }
     // The table has its keys by their names.
-    list.sort_by_key(|finding| finding.span.as_ref().map(|span| span.start));
+    list.sort_by_key(|wrong| wrong.span.as_ref().map(|span| span.start));
     if list.is_empty() { Ok(defaults) } else { Err(refused(list)) }
 }
 
@@ -179,10 +183,10 @@ mod tests {
     fn everything_wrong_is_refused_at_its_place() {
         let wrong =
             read("thread = 4\nmemory = \"much\"\nunit = 1\nsamples = 10\ncolor = true\n").unwrap_err();
-        let said: Vec<&str> = wrong.list.iter().map(|finding| finding.message.as_str()).collect();
+        let said: Vec<&str> = wrong.list.iter().map(|one| one.message.as_str()).collect();
         assert_eq!(said.len(), 5, "{said:?}");
-        assert!(wrong.list.iter().all(|finding| finding.span.is_some()));
-        let help = wrong.list.iter().find_map(|finding| finding.help.clone());
+        assert!(wrong.list.iter().all(|one| one.span.is_some()));
+        let help = wrong.list.iter().find_map(Diagnostic::help);
         assert_eq!(help.as_deref(), Some("did you mean `threads`?"));
         assert!(
             read("threads = ").is_err() && read("threads = -1").is_err() && read("threads = 2000").is_err()

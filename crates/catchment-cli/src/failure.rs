@@ -3,7 +3,7 @@
 use crate::advice;
 use crate::exit::ExitStatus;
 use crate::{output, signals};
-use catchment::design::Diagnostics;
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use catchment::problem::ProblemError;
 use catchment::terminal::escaped;
 use miette::{MietteDiagnostic, Report};
@@ -26,9 +26,12 @@ impl Failure {
     }
 
     /// A message with advice, about the command line unless [`Self::ends`] says so.
-    #[expect(clippy::needless_pass_by_value, reason = "every caller makes it on the spot")]
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        Self::many(vec![Report::new(miette_diagnostic(&message, help))], None, ExitStatus::Usage)
+        Self::many(
+            vec![Report::new(report(&Diagnostic::error("usage", message, help)))],
+            None,
+            ExitStatus::Usage,
+        )
     }
 
     /// An error of the library with advice of the command line.
@@ -44,9 +47,8 @@ impl Failure {
     /// Everything that is wrong with the text of an option.
     pub(crate) fn of_option(option: &str, text: &str, refusal: Diagnostics) -> Self {
         let count = refusal.list.len() + refusal.omitted;
-        let reports = refusal.list.into_iter().map(|diagnostic| {
-            Report::new(miette_diagnostic(&format!("{option}: {}", diagnostic.message), diagnostic.help))
-        });
+        let reports =
+            refusal.list.into_iter().map(|diagnostic| Report::new(report(&diagnostic.prefixed(option))));
         let shown: String = escaped(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
         Self::many(reports.collect(), closing, ExitStatus::Usage)
@@ -99,12 +101,13 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// A message and its advice, which may repeat what a file or its name says: neither steers the terminal, nor begins a line that
+/// A diagnostic for the terminal. It may repeat what a file or its name says: neither steers the terminal, nor begins a line that
 /// looks like one of the program's own.
-pub(crate) fn miette_diagnostic(message: &str, help: Option<String>) -> MietteDiagnostic {
-    let mut diagnostic = MietteDiagnostic::new(escaped(message.trim_end()));
-    diagnostic.help = help.map(|help| escaped(help.trim_end()));
-    diagnostic
+pub(crate) fn report(diagnostic: &Diagnostic) -> MietteDiagnostic {
+    let mut report = MietteDiagnostic::new(escaped(diagnostic.message.trim_end()));
+    let help = diagnostic.advice.as_ref().and_then(advice::flags);
+    report.help = help.map(|help| escaped(help.trim_end()));
+    report
 }
 
 /// The message of an error, and those of its causes that it does not repeat itself.

@@ -4,7 +4,8 @@ use crate::color::is_coloured;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::source::is_stream;
-use catchment::report::document::{self, Described, Style};
+use catchment::diagnostic::Diagnostic;
+use catchment::report::document::{self, Style};
 use catchment::report::figure::Picture;
 use catchment::report::write::{self, WriteError};
 use catchment::terminal::{escaped, shown};
@@ -204,11 +205,17 @@ pub(crate) fn style(details: bool) -> Style {
     Style { colour: is_coloured(&io::stdout()), ..layout(details) }
 }
 
+/// Diagnostics as lines of stderr, for what no report holds.
+pub(crate) fn lines(list: &[Diagnostic]) -> Vec<String> {
+    let unwrapped = Style { columns: usize::MAX, ..Style::default() };
+    document::diagnostics(list, unwrapped).iter().flat_map(|text| text.lines().map(str::to_owned)).collect()
+}
+
 /// The warnings of a report, on stderr.
-pub(crate) fn warn(document: &Described<'_>) {
+pub(crate) fn warn(warnings: &[Diagnostic]) {
     let style = Style { colour: is_coloured(&io::stderr()), ..layout(true) };
     let mut stderr = io::stderr().lock();
-    for warning in document::warnings(document, style) {
+    for warning in document::diagnostics(warnings, style) {
         // Nobody is left to tell when stderr itself is gone.
         let _ = stderr.write_all(warning.as_bytes());
     }

@@ -22,7 +22,7 @@ use catchment::report::document::{Described, Printed, Style, body, html, markdow
 use catchment::report::figure::Picture;
 use catchment::report::folder::{Files, SaveError, StudyFolder, encode};
 use catchment::report::json_schema;
-use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::schema::Timing;
 use catchment::report::{ReportEnvelope, ReportOf, csv};
 use catchment::run::{Requirement, RequirementError};
 use catchment::terminal::{escaped, shown};
@@ -421,7 +421,7 @@ impl PrintArgs {
             to_stdout(&String::from_utf8_lossy(&table(report)?))?;
         } else {
             to_stdout(&body(document, style(self.verbose)))?;
-            warn(document);
+            warn(&document.warnings);
         }
         let verdicts = report.verdicts(&self.require)?;
         let unmet: Vec<String> =
@@ -475,21 +475,11 @@ pub(crate) fn study<T: Subject>(
     let found = compute(&problem, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = ReportOf::new(problem.design(), found, warnings(&problem), Some(timing));
+    let report = ReportOf::new(problem.design(), found, problem.warnings(), Some(timing));
     output.finish(&report, || match draw {
         Some(draw) => draw(&report, &problem),
         None => Err(no_picture()),
     })
-}
-
-/// Warnings about a problem, before anything is computed.
-pub(crate) fn warnings(problem: &Problem) -> Vec<WarningReport> {
-    problem.seat_warnings().iter().map(WarningReport::note).collect()
-}
-
-/// The same as lines of stderr, for reports that do not hold it.
-pub(crate) fn seat_warnings(problem: &Problem) -> Vec<String> {
-    problem.seat_warnings().iter().map(|warning| format!("warning: {warning}")).collect()
 }
 
 const NOTHING_TO_REPLACE: &str = "--force replaces files, and none is to be written";

@@ -1,8 +1,9 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
 use crate::exit::ExitStatus;
-use crate::failure::{Failure, miette_diagnostic};
-use catchment::design::{Diagnostic, Diagnostics, LARGEST_FILE, LoadError, SourceText, load};
+use crate::failure::{self, Failure};
+use catchment::design::{LARGEST_FILE, LoadError, SourceText, load};
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::{Draft, Problem, ProblemError};
 use catchment::terminal::{shown, steers};
@@ -91,7 +92,7 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
 /// The diagnostic as a report with the lines it is about. Where those are too long to show (a mesh written
 /// on one line), it says their numbers instead.
 fn report(source: Option<&SourceText>, diagnostic: Diagnostic) -> Report {
-    let mut labelled = miette_diagnostic(&diagnostic.message, diagnostic.help);
+    let mut labelled = failure::report(&diagnostic);
     let Some(source) = source else { return Report::new(labelled) };
     let name = shown(&source.path).to_string();
     let Some(span) = diagnostic.span else {
@@ -209,7 +210,7 @@ mod tests {
     use super::*;
 
     fn shown(text: &str, span: Range<usize>) -> String {
-        let diagnostic = Diagnostic { message: "wrong".to_owned(), help: None, span: Some(span) };
+        let diagnostic = Diagnostic { span: Some(span), ..Diagnostic::error("design", "wrong", None) };
         format!("{:?}", report(Some(&SourceText::new("d.toml", text)), diagnostic))
     }
 
@@ -237,9 +238,8 @@ mod tests {
     }
 
     #[test]
-    fn the_first_findings_are_shown_and_all_are_counted() {
-        let diagnostic =
-            |k: usize| Diagnostic { message: format!("wrong {k}"), help: None, span: Some(0..1) };
+    fn the_first_diagnostics_are_shown_and_all_are_counted() {
+        let diagnostic = |k: usize| Diagnostic::error("design", format!("wrong {k}"), None).at(Some(0..1));
         let list = (0..50).map(diagnostic).collect();
         let source = Some(SourceText::new("d.toml", "a = 1\n"));
         let failure = Failure::of_diagnostics(Diagnostics { source, list, omitted: 7 });

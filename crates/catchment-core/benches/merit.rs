@@ -11,7 +11,7 @@ use catchment_core::merit::onaa::Onaa;
 use catchment_core::merit::success::{Distribution, success};
 use catchment_core::merit::sum::{Sum, bracket};
 use catchment_core::merit::tolerance::tolerances;
-use catchment_core::merit::{brute, doubts};
+use catchment_core::merit::{brute, warnings};
 use catchment_core::pose::{DofSet, Mount, PoseError};
 use peak_alloc::PeakAlloc;
 use rates::Rates;
@@ -87,7 +87,7 @@ fn all_figures(rates: &mut Rates, set: &Acceptance, exec: &Exec) {
         assert!((scale - 4.0 / 15.0).abs() < 1e-12, "{scale}");
     });
     figure("tolerances", &mut || assert_eq!(tolerances(set).expect("tolerances").len(), 5));
-    figure("doubts", &mut || assert_eq!(doubts(set, exec).expect("doubts").len(), 1));
+    figure("warnings", &mut || assert_eq!(warnings(set, exec).expect("warnings").len(), 1));
     let sigma = PoseError::from_array([0.3, 0.3, 0.5, 0.5, 0.5]);
     let normal = Distribution::Normal { mean: PoseError::default(), sigma };
     figure("success", &mut || {

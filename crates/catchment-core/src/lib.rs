@@ -9,11 +9,11 @@
 //! use time, threads, memory, files or a process of the system, with the reasons.
 
 pub mod acceptance;
-pub mod advice;
 pub mod budget;
 pub mod connector;
 pub mod contact;
 pub mod design;
+pub mod diagnostic;
 pub mod disjoint;
 pub mod document;
 pub mod exec;

@@ -27,7 +27,7 @@ const ROOMS: [&str; 13] = [
 const AFTER: [&str; 2] = ["study", "report"];
 /// What serves every room and knows none.
 const SERVANTS: [&str; 8] =
-    ["pose", "disjoint", "exec", "budget", "suggest", "terminal", "tolerance", "advice"];
+    ["pose", "disjoint", "exec", "budget", "suggest", "terminal", "tolerance", "diagnostic"];
 
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! A problem built from the text of a design, with its files on disk or in memory.
 
-use crate::refusal::Refusal;
+use crate::refusal::{Fields, Refusal, fields};
 use crate::work::{How, work};
 use catchment::design::{ConnectorSpec, FileSpec, HalfSpec, Quantity, SourceText, load, parse_dofs};
 use catchment::problem::{Draft, ProblemError};
@@ -105,9 +105,9 @@ impl Problem {
         serde_json::to_string(self.inner.design()).map_err(|error| Refusal::from(error).raise(py))
     }
 
-    /// Warnings about the mated pose, as sentences.
-    fn doubts(&self) -> Vec<String> {
-        self.inner.seat_warnings()
+    /// Warnings about the mated pose.
+    fn diagnostics(&self) -> Vec<Fields> {
+        self.inner.warnings().iter().map(|warning| fields(warning, None)).collect()
     }
 
     /// Names of the free errors, with the half-widths of the error box, in D and radians.

@@ -1,7 +1,6 @@
 //! Errors, as exceptions of the package: diagnostics with their places and advice.
 
-use catchment::advice::{Advice, Advised};
-use catchment::design::{Diagnostic, Diagnostics};
+use catchment::diagnostic::{Advice, Advised, Diagnostic, Diagnostics, SourceText};
 use catchment::exec::Cancelled;
 use catchment::landscape::ResolutionError;
 use catchment::method::{MethodError, NotApplicable};
@@ -32,16 +31,13 @@ pub(crate) enum Refusal {
 impl Refusal {
     /// An argument is invalid.
     pub(crate) fn argument(name: &str, message: impl ToString) -> Self {
-        let list = vec![Diagnostic::new(format!("{name}: {}", message.to_string()), None)];
-        Self::Argument(Diagnostics { source: None, list, omitted: 0 })
+        Self::Argument(Diagnostic::error("argument", message.to_string(), None).prefixed(name).into())
     }
 
     /// All errors in the text of an argument.
-    pub(crate) fn of_argument(name: &str, mut diagnostics: Diagnostics) -> Self {
-        for diagnostic in &mut diagnostics.list {
-            diagnostic.message = format!("{name}: {}", diagnostic.message);
-        }
-        Self::Argument(diagnostics)
+    pub(crate) fn of_argument(name: &str, diagnostics: Diagnostics) -> Self {
+        let list = diagnostics.list.into_iter().map(|diagnostic| diagnostic.prefixed(name)).collect();
+        Self::Argument(Diagnostics { list, ..diagnostics })
     }
 
     /// The problem was read, but cannot be built.
@@ -69,7 +65,18 @@ impl Refusal {
     }
 }
 
-/// `class(message, diagnostics, omitted, path)` of `catchment._errors`; a diagnostic is `(message, advice, (line, column))`.
+/// A diagnostic of `catchment._errors`: message, advice, line, column, severity and code.
+pub(crate) type Fields = (String, Option<String>, Option<usize>, Option<usize>, &'static str, String);
+
+/// The fields of a diagnostic, whose place is in `source`.
+pub(crate) fn fields(diagnostic: &Diagnostic, source: Option<&SourceText>) -> Fields {
+    let span = diagnostic.span.as_ref();
+    let (line, column) = span.zip(source).map(|(span, source)| source.line_column(span.start)).unzip();
+    let Diagnostic { severity, code, message, .. } = diagnostic;
+    (message.clone(), diagnostic.help(), line, column, severity.name(), code.to_string())
+}
+
+/// `class(message, diagnostics, omitted, path)` of `catchment._errors`.
 fn exception<'py>(
     py: Python<'py>,
     class: &str,
@@ -80,15 +87,8 @@ fn exception<'py>(
     let Some(diagnostics) = diagnostics else { return class.call1((message,)) };
     let message = diagnostics.to_string();
     let path = diagnostics.path().map(|path| path.display().to_string());
-    let place = |diagnostic: &Diagnostic| {
-        let span = diagnostic.span.as_ref()?;
-        Some(diagnostics.source.as_ref()?.line_column(span.start))
-    };
-    let list: Vec<_> = diagnostics
-        .list
-        .iter()
-        .map(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone(), place(diagnostic)))
-        .collect();
+    let source = diagnostics.source.as_ref();
+    let list: Vec<Fields> = diagnostics.list.iter().map(|diagnostic| fields(diagnostic, source)).collect();
     class.call1((message, list, diagnostics.omitted, path))
 }
 
@@ -98,11 +98,9 @@ impl<E: Error + 'static> From<E> for Refusal {
         if let Some(problem) = taken::<_, ProblemError>(&mut error) {
             return match problem {
                 ProblemError::Diagnostics(diagnostics) => Self::Design(diagnostics),
-                ProblemError::Load(error) => Self::Design(Diagnostics {
-                    source: None,
-                    list: vec![Diagnostic::new(error.to_string(), None)],
-                    omitted: 0,
-                }),
+                ProblemError::Load(error) => {
+                    Self::Design(Diagnostic::error("design", error.to_string(), None).into())
+                }
             };
         }
         if let Some(diagnostics) = taken::<_, Diagnostics>(&mut error) {

@@ -10,7 +10,7 @@ use catchment::method::zraa::{self, AcceptedSquare, Nilsson};
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::report::compare::{ComparisonSource, compare as compared};
-use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::schema::Timing;
 use catchment::report::{AcceptedOffsets, JamsReport, WindowReport, ZraaReport, figure};
 use catchment::run::window;
 use catchment::run::{Run, jams};
@@ -20,10 +20,6 @@ use std::path::PathBuf;
 /// Wall-clock time, and number of threads.
 fn timing(started: &Stopwatch, exec: &catchment::exec::Exec) -> Timing {
     Timing { total_s: started.seconds(), threads: exec.threads() }
-}
-
-fn doubts(problem: &catchment::problem::Problem) -> Vec<WarningReport> {
-    problem.seat_warnings().iter().map(WarningReport::note).collect()
 }
 
 #[pymethods]
@@ -61,7 +57,7 @@ impl Problem {
             let settings = window::WindowSettings { fixed, proportions, motions, seed, friction };
             let found = window::run(problem, &settings, exec)?;
             let report =
-                WindowReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
+                WindowReport::new(problem.design(), found, problem.warnings(), Some(timing(&started, exec)));
             Rendered::of(&report)
         })
     }
@@ -96,7 +92,7 @@ impl Problem {
             };
             let found = jams::run(problem, &settings, exec)?;
             let report =
-                JamsReport::new(problem.design(), found, doubts(problem), Some(timing(&started, exec)));
+                JamsReport::new(problem.design(), found, problem.warnings(), Some(timing(&started, exec)));
             let rendered = Rendered::of(&report)?;
             rendered.with(figure::jams(&report.design, &report.result, problem.connector()))
         })

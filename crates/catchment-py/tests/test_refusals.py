@@ -18,10 +18,10 @@ def test_everything_wrong_with_a_design_has_its_place() -> None:
     error = caught.value
     assert (error.line, error.column, error.path) == (2, 10, "mine.toml")
     assert error.advice is not None and "v-face" in str(error)
-    assert [(found.line, found.column) for found in error.findings] == [(2, 10), (4, 14)]
+    assert [(found.line, found.column) for found in error.diagnostics] == [(2, 10), (4, 14)]
     assert str(error).startswith("mine.toml:2:10: ")
     again = pickle.loads(pickle.dumps(error))
-    assert type(again) is catchment.DesignError and again.findings == error.findings and str(again) == str(error)
+    assert type(again) is catchment.DesignError and again.diagnostics == error.diagnostics and str(again) == str(error)
 
 
 def test_geometry_that_is_none_is_a_refusal_of_its_own() -> None:
@@ -84,7 +84,7 @@ def test_poses_that_cannot_be_tried_are_refused_by_their_rows() -> None:
     poses[1, 4], poses[2, 0], poses[3, 3] = 0.1, 200.0, np.nan
     with pytest.raises(catchment.ArgumentError) as caught:
         problem.follow_many(poses)
-    said = [found.message for found in caught.value.findings]
+    said = [found.message for found in caught.value.diagnostics]
     assert [text.split(":")[0].split(" holds")[0] for text in said] == ["row 1", "row 2", "row 3"]
     for wrong in (np.zeros(5), np.zeros((3, 4))):
         with pytest.raises(catchment.ArgumentError, match="shape"):
@@ -159,7 +159,7 @@ def test_no_exception_steers_a_terminal() -> None:
             problem.run(**arguments)  # type: ignore[arg-type]
         caught.append(error.value)
     for one in caught:
-        said = [str(one), repr(one), *(part or "" for found in one.findings for part in found[:2])]
+        said = [str(one), repr(one), *(part or "" for found in one.diagnostics for part in found[:2])]
         assert not any(c in "".join(said) for c in "\x1b\x9b\u202e"), said
 
 

@@ -4,8 +4,7 @@ use super::Report;
 use super::envelope::{ReportBody, ReportEnvelope};
 use super::json_schema;
 use super::schema::{
-    PartitionReport, RunBody, SuccessReport, Timing, UprightReport, WarningReport, WatershedsReport,
-    WindowSection,
+    PartitionReport, RunBody, SuccessReport, Timing, UprightReport, WatershedsReport, WindowSection,
 };
 use catchment_core::acceptance::Domain;
 use catchment_core::pose::DofSet;
@@ -43,7 +42,7 @@ impl Report {
         report.jams.clone_from(&answer.jams);
         report.window = answer.window.as_ref().and_then(|found| found.as_ref().ok()).map(WindowSection::from);
         report.seat = Some(answer.seating.clone());
-        report.warnings = answer.warnings().into_iter().map(WarningReport::from).collect();
+        report.warnings = answer.warnings();
         report
     }
 }

@@ -2,7 +2,7 @@
 
 use super::vtk::ViewError;
 use catchment_core::acceptance::Acceptance;
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::document::number;
 use catchment_core::exec::Exec;
 use catchment_core::pose::Dof;

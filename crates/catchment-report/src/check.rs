@@ -3,10 +3,9 @@
 use super::document::{Printed, characteristic_length, error_box};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
-use catchment_core::design::{
-    ConnectorSpec, Design, Diagnostic, Diagnostics, DrawnFrames, FileSpec, HalfSpec, OutlineSpec, OwnSpec,
-};
+use catchment_core::design::{ConnectorSpec, Design, DrawnFrames, FileSpec, HalfSpec, OutlineSpec, OwnSpec};
 use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
+use catchment_core::diagnostic::{Diagnostic, Diagnostics};
 use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::problem::Problem;
@@ -36,7 +35,7 @@ pub struct CheckBody {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ungendered: Option<bool>,
     /// The errors, in the order of their places.
-    pub problems: Vec<ProblemReport>,
+    pub problems: Vec<LocatedDiagnostic>,
     /// Number of further errors that are not listed.
     pub omitted: usize,
 }
@@ -98,13 +97,12 @@ impl DrawingReport {
 }
 
 /// An error in a design file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ProblemReport {
-    /// Description of the error.
-    pub message: String,
-    /// Advice for its correction.
-    pub help: Option<String>,
+pub struct LocatedDiagnostic {
+    /// The error.
+    #[serde(flatten)]
+    pub diagnostic: Diagnostic,
     /// Its place, if it has a place in the file.
     pub place: Option<FileLocation>,
 }
@@ -145,9 +143,8 @@ impl CheckReport {
     /// Of everything that is wrong with a file.
     pub fn bad(diagnostics: &Diagnostics) -> Self {
         let source = diagnostics.source.as_ref();
-        let problem = |diagnostic: &Diagnostic| ProblemReport {
-            message: diagnostic.message.clone(),
-            help: diagnostic.help.clone(),
+        let problem = |diagnostic: &Diagnostic| LocatedDiagnostic {
+            diagnostic: diagnostic.clone(),
             place: diagnostic.span.as_ref().zip(source).map(|(span, source)| {
                 let (line, column) = source.line_column(span.start);
                 FileLocation { line, column, bytes: [span.start, span.end] }
@@ -202,8 +199,8 @@ impl CheckBody {
             table.push([
                 problem.place.map(|place| place.line).into(),
                 problem.place.map(|place| place.column).into(),
-                problem.message.clone().into(),
-                problem.help.clone().into(),
+                problem.diagnostic.message.clone().into(),
+                problem.diagnostic.help().into(),
             ]);
         }
         table
@@ -439,8 +436,10 @@ mod tests {
     #[test]
     fn problems_have_their_places() {
         let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\nkey = 4\n"));
-        let list =
-            vec![Diagnostic::new("no such key", None).at(Some(18..19)), Diagnostic::new("empty", None)];
+        let list = vec![
+            Diagnostic::error("design", "no such key", None).at(Some(18..19)),
+            Diagnostic::error("design", "empty", None),
+        ];
         let report = CheckReport::bad(&Diagnostics { source, list, omitted: 2 });
         let text = report.table();
         assert!(text.contains("     3       7  no such key\n") && text.ends_with("  and 2 more\n"), "{text}");

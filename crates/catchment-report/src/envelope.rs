@@ -10,8 +10,9 @@
 //! new kinds of warnings may appear under the same number: a reader ignores unknown fields. This program
 //! reads the layouts from [`OLDEST`] on; a newer layout is rejected.
 
-use super::schema::{Timing, WarningReport};
+use super::schema::Timing;
 use super::version::Version;
+use catchment_core::diagnostic::Diagnostic;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{Deref, DerefMut};
@@ -36,14 +37,14 @@ pub struct ReportEnvelope<T> {
     /// The fields of its kind.
     pub body: T,
     /// Warnings.
-    pub warnings: Vec<WarningReport>,
+    pub warnings: Vec<Diagnostic>,
     /// Time of the computation; null if it was not measured.
     pub timing: Option<Timing>,
 }
 
 impl<T: ReportBody> ReportEnvelope<T> {
     /// A report of this program.
-    pub fn of(body: T, warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
+    pub fn of(body: T, warnings: Vec<Diagnostic>, timing: Option<Timing>) -> Self {
         Self { catchment: Version::own(), body, warnings, timing }
     }
 }
@@ -112,7 +113,7 @@ struct Written<'a, T> {
     #[serde(flatten)]
     body: &'a T,
     /// Warnings about the numbers: a code and a sentence each.
-    warnings: &'a [WarningReport],
+    warnings: &'a [Diagnostic],
     /// Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: &'a Option<Timing>,
 }
@@ -147,7 +148,7 @@ impl<'de, T: ReportBody + Deserialize<'de>> Deserialize<'de> for ReportEnvelope<
             #[serde(flatten)]
             body: T,
             #[serde(default)]
-            warnings: Vec<WarningReport>,
+            warnings: Vec<Diagnostic>,
             timing: Option<Timing>,
         }
         let Read { catchment, kind, body, warnings, timing, .. } = Read::<T>::deserialize(deserializer)?;

@@ -2,8 +2,8 @@
 
 use super::document::Printed;
 use super::envelope::{ReportBody, ReportEnvelope};
-use super::schema::WarningReport;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::Document;
 use catchment_core::pose::PoseError;
 use serde::Serialize;
@@ -36,7 +36,7 @@ impl ReportBody for ExportBody {
 
 impl ExportReport {
     /// From files that were written, with the warnings about their design.
-    pub fn new(body: ExportBody, warnings: Vec<WarningReport>) -> Self {
+    pub fn new(body: ExportBody, warnings: Vec<Diagnostic>) -> Self {
         Self::of(body, warnings, None)
     }
 }

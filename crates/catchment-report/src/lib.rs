@@ -60,7 +60,7 @@ mod zraa;
 
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
-pub use check::{CheckBody, CheckReport, FileLocation, ProblemReport};
+pub use check::{CheckBody, CheckReport, FileLocation, LocatedDiagnostic};
 pub use comparison::{Compared, ComparisonBody, ComparisonReport};
 pub use document::{OfDesign, ReportOf};
 pub use envelope::{OLDEST, ReportBody, ReportEnvelope, SCHEMA};

@@ -1,9 +1,9 @@
 //! Outcomes of listed pose errors: the input table with result columns, or JSON.
 
 use super::envelope::{ReportBody, ReportEnvelope};
-use super::schema::WarningReport;
 use catchment_core::acceptance::{Acceptance, FailureReason, Outcome};
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::number as number_in_table;
 use catchment_core::method::Method;
 use catchment_core::method::descent::End;
@@ -33,9 +33,9 @@ pub struct OutcomesReport<'a> {
     /// Reason for each failure to dock, if it can be determined; `None` if this design has no such reasons.
     pub reasons: Option<Vec<Option<FailureReason>>>,
     /// Which of them could as well have stuck on their way, with friction.
-    doubts: Option<&'a MayStick<'a>>,
+    sticking: Option<&'a MayStick<'a>>,
     /// Warnings about the result.
-    pub warnings: Vec<WarningReport>,
+    pub warnings: Vec<Diagnostic>,
     /// The numbers of the finished rows, if the computation was stopped early.
     pub finished: Option<&'a [usize]>,
 }
@@ -46,7 +46,7 @@ pub struct OutcomeRows<'a> {
     table: &'a PoseTable<'a>,
     rows: Box<dyn Iterator<Item = (usize, Vec<String>)> + Send + 'a>,
     endings: EndContacts<'a>,
-    doubts: Option<&'a MayStick<'a>>,
+    sticking: Option<&'a MayStick<'a>>,
     /// The first row that has not come.
     next: usize,
     /// Decided, but some before them are not.
@@ -60,11 +60,11 @@ impl<'a> OutcomeRows<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &Method,
-        doubts: Option<&'a MayStick<'a>>,
+        sticking: Option<&'a MayStick<'a>>,
     ) -> Self {
         let rows = Box::new(table.rows().enumerate());
         let (endings, waiting) = (EndContacts::new(problem, method), BTreeMap::new());
-        Self { problem, table, rows, endings, doubts, next: 0, waiting }
+        Self { problem, table, rows, endings, sticking, next: 0, waiting }
     }
 
     /// The column names: those of the table, `outcome`, the final errors, z of the COR in the final state in
@@ -77,7 +77,7 @@ impl<'a> OutcomeRows<'a> {
         header.push("outcome".to_owned());
         header.extend(self.table.names().map(|name| format!("final_{name}")));
         header.extend(["final_height".to_owned(), "contacts".to_owned()]);
-        if self.doubts.is_some() {
+        if self.sticking.is_some() {
             header.push("may_stick".to_owned());
         }
         if self.problem.may_cross() {
@@ -116,8 +116,8 @@ impl<'a> OutcomeRows<'a> {
         row.extend(self.table.in_units(&end.error).map(number_in_table));
         row.push(end.height.map_or_else(String::new, number_in_table));
         row.push(words(&self.endings.of(end)));
-        if let Some(doubts) = self.doubts {
-            row.push(if doubts.may_stick(number) { "yes" } else { "no" }.to_owned());
+        if let Some(sticking) = self.sticking {
+            row.push(if sticking.may_stick(number) { "yes" } else { "no" }.to_owned());
         }
         if self.problem.may_cross() {
             let reason = FailureReason::of(self.problem, end.outcome, &end.error);
@@ -197,12 +197,11 @@ impl<'a> OutcomesReport<'a> {
         table: &'a PoseTable<'a>,
         method: &'a Method,
         followed: &'a FollowedPoses,
-        doubts: Option<&'a MayStick<'a>>,
+        sticking: Option<&'a MayStick<'a>>,
     ) -> Self {
         let FollowedPoses { acceptance, ends, finished } = followed;
-        let warnings = problem.seat_warnings();
-        let notes = warnings.iter().map(WarningReport::note);
-        let warnings = notes.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
+        let mut warnings = problem.warnings();
+        warnings.extend(acceptance.warnings.iter().cloned());
         let reason = |end: &End| FailureReason::of(problem, end.outcome, &end.error);
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
@@ -216,11 +215,11 @@ impl<'a> OutcomesReport<'a> {
             acceptance,
             ends,
             reasons,
-            doubts,
+            sticking,
             warnings,
             finished,
         };
-        let partial = report.partial().map(|partial| WarningReport::note(&partial));
+        let partial = report.partial().map(|partial| Diagnostic::warning("partial", partial));
         report.warnings.extend(partial);
         report
     }
@@ -273,7 +272,7 @@ impl<'a> OutcomesReport<'a> {
     /// # Errors
     /// If a row cannot be written, which does not occur for text in memory.
     pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut rows = OutcomeRows::new(self.problem, self.table, self.method, self.doubts);
+        let mut rows = OutcomeRows::new(self.problem, self.table, self.method, self.sticking);
         let mut text = rows.header()?;
         for (number, end) in self.reported().zip(self.ends) {
             text.push_str(&rows.push(number, *end)?);
@@ -304,7 +303,7 @@ impl<'a> OutcomesReport<'a> {
                 last: measured(&end.error),
                 final_height_d: end.height,
                 contacts,
-                may_stick: self.doubts.map(|doubts| doubts.may_stick(number)),
+                may_stick: self.sticking.map(|sticking| sticking.may_stick(number)),
                 carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
             }
         });
@@ -334,8 +333,8 @@ impl<'a> OutcomesReport<'a> {
             let jammed = format!("{crossed} of the jammed {}", if crossed == 1 { "is" } else { "are" });
             lines.push(format!("{jammed} crossed: a layer rests on one that is not its partner"));
         }
-        if let Some(doubts) = self.doubts {
-            let may_stick = self.reported().filter(|number| doubts.may_stick(*number)).count();
+        if let Some(sticking) = self.sticking {
+            let may_stick = self.reported().filter(|number| sticking.may_stick(*number)).count();
             lines.push(format!(
                 "{may_stick} came by a place where Coulomb's law would let them stick as well"
             ));

@@ -1,8 +1,8 @@
 //! Slices as versioned JSON, text and tables.
 
-use super::schema::{AcceptanceReport, AxisReport, OnaaReport, WarningReport, axes};
-use catchment_core::acceptance::Warning;
+use super::schema::{AcceptanceReport, AxisReport, OnaaReport, axes};
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{
     Cell, Column, ColumnFormat, Document, Subject, Table, grouped, percent, significant,
 };
@@ -36,7 +36,7 @@ pub struct SliceReport {
     /// The largest axis-oriented square.
     pub onaa: OnaaReport,
     /// Warnings.
-    pub warnings: Vec<WarningReport>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl SlicesResult {
@@ -127,7 +127,7 @@ impl From<&Slice> for SliceReport {
                 ..AcceptanceReport::from(slice.sum.clone())
             },
             onaa: slice.onaa.clone().into(),
-            warnings: slice.warnings.iter().cloned().map(WarningReport::from).collect(),
+            warnings: slice.warnings.clone(),
         }
     }
 }
@@ -140,7 +140,7 @@ impl SliceReport {
     }
 
     fn reaches_border(&self) -> bool {
-        self.warnings.iter().any(|w| matches!(w.warning, Warning::TouchesBorder { .. }))
+        self.warnings.iter().any(|w| w.code == "touches-border")
     }
 }
 
@@ -149,6 +149,7 @@ mod tests {
     use super::super::schema::testing::{blob, design};
     use super::*;
     use crate::SlicesReport;
+    use catchment_core::diagnostic::Warning;
     use catchment_core::exec::Exec;
     use catchment_core::merit::onaa::Onaa;
     use catchment_core::merit::sum::Sum;
@@ -162,7 +163,7 @@ mod tests {
         let acceptance = blob(&plane, 201);
         let sum = Sum::of(&acceptance, &plane.alignment);
         let onaa = Onaa::of(&acceptance, &Exec::new()).unwrap();
-        let warnings = vec![Warning::TouchesBorder { axes: vec!["yaw".to_owned()] }];
+        let warnings = vec![Warning::TouchesBorder { axes: vec!["yaw".to_owned()] }.into()];
         let bracket = [0.9 * sum.sum, 1.1 * sum.sum];
         let slice = Slice { axes: [Dof::Pitch, Dof::Yaw], acceptance, sum, bracket, onaa, warnings };
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });

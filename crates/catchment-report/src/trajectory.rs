@@ -2,9 +2,9 @@
 
 use super::document::Printed;
 use super::envelope::{ReportBody, ReportEnvelope};
-use super::schema::WarningReport;
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals, grouped, rounded};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
@@ -102,7 +102,7 @@ impl TraceReport {
             end: waypoints.last().map(|w| w.error),
             waypoints,
         };
-        let warnings = problem.seat_warnings().iter().map(WarningReport::note).collect();
+        let warnings = problem.warnings();
         Self::of(body, warnings, None)
     }
 
@@ -113,7 +113,7 @@ impl TraceReport {
         settings: &drop::DropSettings,
         start: PoseError,
         path: &drop::Path,
-        warnings: Vec<WarningReport>,
+        warnings: Vec<Diagnostic>,
     ) -> Self {
         let waypoint = |moment: &drop::DropMoment| WaypointReport {
             time_s: Some(moment.time),
@@ -272,7 +272,7 @@ mod tests {
         let problem = Problem::of(design).unwrap();
         let (start, settings) = (PoseError::default(), DescentSettings::default());
         let mut report = TraceReport::new(&problem, &settings, start, &path, None);
-        report.warnings.push(WarningReport::note("shallow"));
+        report.warnings.push(Diagnostic::warning("shallow", "shallow"));
         report
     }
 

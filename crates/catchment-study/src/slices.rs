@@ -16,14 +16,14 @@
 //! Not promised: results for errors off these planes. Lengths in D, angles in radians.
 
 use super::pose_bytes;
-use catchment_core::acceptance::{Acceptance, Domain, Warning};
-use catchment_core::advice::Advice;
+use catchment_core::acceptance::{Acceptance, Domain};
+use catchment_core::diagnostic::{Advice, Diagnostic};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::landscape::{Grid, Resolution, ResolutionError};
 use catchment_core::merit::estimate::Estimate;
 use catchment_core::merit::onaa::Onaa;
 use catchment_core::merit::sum::{Sum, bracket};
-use catchment_core::merit::{MeritError, doubts, slice};
+use catchment_core::merit::{MeritError, slice, warnings};
 use catchment_core::method::{DecideError, Method, PoseMethod, descent};
 use catchment_core::pose::Dof;
 use catchment_core::problem::Problem;
@@ -78,7 +78,7 @@ pub struct Slice {
     /// Its largest axis-oriented square.
     pub onaa: Onaa,
     /// Its warnings.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Slices of a design.
@@ -170,7 +170,7 @@ pub fn run(problem: &Problem, settings: &SlicesSettings, exec: &Exec) -> Result<
             let sum = Sum::of(&acceptance, problem.alignment());
             let onaa = Onaa::of(&acceptance, &part)?;
             let bracket = bracket(&acceptance, &part)?;
-            let warnings = doubts(&acceptance, &part)?;
+            let warnings = warnings(&acceptance, &part)?;
             Ok(Slice { axes, acceptance, sum, bracket, onaa, warnings })
         })
         .collect::<Result<Vec<Slice>, SlicesError>>()?;

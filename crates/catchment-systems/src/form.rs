@@ -29,9 +29,8 @@
 //! has its default; a key without a default is required. A getter also returns its default, or the end of its
 //! range, if the value is wrong: the error is then on the list, and [`Form::read`] returns the list.
 
-use catchment::design::{
-    DesignDefect, Diagnostic, Diagnostics, LengthUnit, Quantity, QuantityUnit, SourceText, nearest,
-};
+use catchment::design::{DesignDefect, LengthUnit, Quantity, QuantityUnit, SourceText, nearest};
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use catchment::suggest::{odd, value_help};
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -114,7 +113,7 @@ impl Form<'_> {
         let broken = syntax.iter().map(|e| e.span().unwrap_or_default()).collect();
         let refused = |error: toml::de::Error| {
             let help = value_help(&source.text, error.span().unwrap_or_default().start);
-            Diagnostic::new(error.message(), help).at(error.span())
+            Diagnostic::error("file", error.message(), help).at(error.span())
         };
         let found = syntax.into_iter().map(refused).collect();
         let mut form = Form { found, broken, text: &source.text };
@@ -141,7 +140,7 @@ impl<'t> Form<'t> {
     /// Notes a problem at a place of the text.
     pub fn refuse(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(Diagnostic::new(message, help.map(str::to_owned)).at(Some(span)));
+            self.found.push(Diagnostic::error("file", message, help.map(str::to_owned)).at(Some(span)));
         }
     }
 

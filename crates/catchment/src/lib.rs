@@ -45,7 +45,7 @@
 //!
 //! // 2. Two solids that hold in the mated pose, and a digest of all that an answer depends on.
 //! let problem = draft.build()?;
-//! assert!(problem.doubts().is_empty() && problem.digest().len() == 64);
+//! assert!(problem.mated_warnings().is_empty() && problem.digest().len() == 64);
 //!
 //! // 3. A run is data: the method with its settings, the grid, the random poses. The default method, confluence, follows
 //! //    the cells of the error box until they join others; random poses, followed exactly, then make the Sum unbiased.
@@ -97,7 +97,7 @@
 //!
 //! [`pose`] owns frames, signs, the order of angles and the metric; [`exec`] owns threads, the clock, cancelling, progress and the
 //! memory budget, none of which changes a bit of a result; [`budget`] limits what a reader may spend on one input; [`suggest`] knows what a
-//! misspelt word meant, [`advice`] what helps where something is refused, [`terminal`] what may be shown of foreign names, [`tolerance`] the scales
+//! misspelt word meant, [`diagnostic`] every error, warning and note with its code, place and advice, [`terminal`] what may be shown of foreign names, [`tolerance`] the scales
 //! below which two lengths count as one, [`disjoint`] sets that are joined. [`polytope`] is the
 //! geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
 //! all that a program needs.
@@ -107,13 +107,13 @@
 //! # What is not promised
 //!
 //! The model is frictionless, quasi-static and overdamped: friction, speed, mass and bounce are left out (drop tests have them). A grid
-//! sees the centres of its cells and nothing between. Doubts about a result travel inside it, as
-//! [`acceptance::Warning`]s. The file `docs/limits.md` of the source tree has the whole list.
+//! sees the centres of its cells and nothing between. What speaks against a result travels inside it, as
+//! [`diagnostic::Diagnostic`]s. The file `docs/limits.md` of the source tree has the whole list.
 
 pub mod prelude;
 
 pub use catchment_core::{
-    acceptance, advice, budget, connector, contact, design, disjoint, document, exec, landscape, merit,
+    acceptance, budget, connector, contact, design, diagnostic, disjoint, document, exec, landscape, merit,
     method, polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
 };
 pub use catchment_report as report;

@@ -4,9 +4,10 @@
 //! use catchment::prelude::*;
 //! ```
 
-pub use crate::acceptance::{Acceptance, Outcome, Warning};
+pub use crate::acceptance::{Acceptance, Outcome};
 pub use crate::connector::HalfSource;
 pub use crate::design::{Alignment, Design, Family, FamilySpec};
+pub use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Warning};
 pub use crate::exec::Exec;
 pub use crate::landscape::{Grid, Resolution};
 pub use crate::method::Method;

@@ -19,7 +19,7 @@ fn every_committed_design_is_mated() {
         assert!(files.len() >= least, "{files:?}");
         for file in files {
             let problem = Problem::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-            assert_eq!(problem.doubts(), [], "{}", file.display());
+            assert_eq!(problem.mated_warnings(), [], "{}", file.display());
         }
     }
 }
@@ -31,7 +31,7 @@ fn the_whole_design_of_the_guide_is_mated() {
     let (_, rest) = guide.split_once("```toml\n").unwrap();
     let (text, _) = rest.split_once("```").unwrap();
     let draft = Draft::read(SourceText::new(root.join("designs/meshes/guide.toml"), text));
-    assert_eq!(draft.and_then(Draft::build).unwrap().doubts(), []);
+    assert_eq!(draft.and_then(Draft::build).unwrap().mated_warnings(), []);
 }
 
 /// Drawn docked in one frame, as OBJ and PLY, the pyramid is the one that is drawn half by half.

@@ -125,7 +125,7 @@ proptest! {
 fn roll_is_corrected_as_well() {
     let free = [Dof::X, Dof::Y, Dof::Roll, Dof::Pitch];
     let solid = problem(&free, Some([THICK, GAP]), GAP);
-    assert_eq!(solid.doubts(), []);
+    assert_eq!(solid.mated_warnings(), []);
     let error = PoseError { x: 0.2, y: 0.05, roll: 0.05, pitch: 0.1, yaw: 0.0 };
     let end = descent::Follower::new(solid.pair(), &DescentSettings::default()).rest(&error);
     assert_eq!(end.outcome, Outcome::Aligned, "{end:?}");
@@ -138,7 +138,11 @@ fn roll_is_corrected_as_well() {
 #[test]
 fn free_yaw_turns_until_walls_meet() {
     let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
-    assert!(matches!(all.doubts(), [MatedProblem::NotMinimum { .. }, ..]), "{:?}", all.doubts());
+    assert!(
+        matches!(all.mated_warnings(), [MatedProblem::NotMinimum { .. }, ..]),
+        "{:?}",
+        all.mated_warnings()
+    );
     let end = descent::Follower::new(all.pair(), &DescentSettings::default()).rest(&PoseError::default());
     // At rest within the steps of the motion, some 1e-5.
     assert!((end.error.yaw - 2.0 * GAP.atan()).abs() < 1e-4, "{end:?}");

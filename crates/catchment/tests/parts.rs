@@ -306,7 +306,7 @@ fn every_number_of_a_part_counts() {
 fn balls_in_grooves_are_a_kinematic_coupling() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml");
     let problem = Problem::open(path).unwrap();
-    assert_eq!(problem.doubts(), []);
+    assert_eq!(problem.mated_warnings(), []);
     let drawing = CheckReport::good(&problem).drawing.unwrap();
     let apart = drawing.fixed.face_center[2] + drawing.moving.face_center[2];
     // The bottoms of the grooves are at −5 mm, the centres of the balls at 8 mm; facets lie inside of the balls by up to 0.06 mm.

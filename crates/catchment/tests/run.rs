@@ -1,9 +1,10 @@
-//! The run from outside: equal bits however it is entered or divided, doubts where they belong.
+//! The run from outside: equal bits however it is entered or divided, warnings where they belong.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::acceptance::{Domain, Outcome, Warning};
+use catchment::acceptance::{Domain, Outcome};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::diagnostic::Warning;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::method::correction::Stop;
@@ -208,7 +209,7 @@ fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
 }
 
 #[test]
-fn a_grid_outside_its_own_sample_is_a_doubt_and_so_is_no_sample() {
+fn a_grid_outside_its_own_sample_has_a_warning_and_so_has_no_sample() {
     let kinds = |run: Run| {
         let answer = run.on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
         assert_eq!(answer.sum(), Report::of_answer(&answer).acceptance.sum);
@@ -216,9 +217,9 @@ fn a_grid_outside_its_own_sample_is_a_doubt_and_so_is_no_sample() {
     };
     // Five cells per axis of flooding are far off, and a thousand exact poses show it.
     let biased = kinds(run("flood", 5, 1000));
-    assert!(biased.iter().any(|w| matches!(w, Warning::OutsideSample { .. })), "{biased:?}");
-    assert!(kinds(run("flood", 5, 0)).contains(&Warning::NoInterval));
-    assert!(!kinds(run("descent", 3, 0)).contains(&Warning::NoInterval));
+    assert!(biased.iter().any(|w| w.code == "outside-sample"), "{biased:?}");
+    assert!(kinds(run("flood", 5, 0)).iter().any(|w| *w == Warning::NoInterval));
+    assert!(!kinds(run("descent", 3, 0)).iter().any(|w| *w == Warning::NoInterval));
 }
 
 #[test]
@@ -252,8 +253,8 @@ fn undecided_random_motions_are_said() {
         ..Run::by(Method::new(short))
     };
     let answer = run.on(&problem, &Exec::new()).unwrap();
-    let said = answer.warnings().into_iter().find_map(|warning| match warning {
-        Warning::UndecidedSample { motions, of } => Some((motions, of)),
+    let said = answer.warnings().into_iter().find_map(|warning| match warning.facts.as_deref() {
+        Some(Warning::UndecidedSample { motions, of }) => Some((*motions, *of)),
         _ => None,
     });
     let Some((motions, of)) = said else { panic!("{:?}", answer.warnings()) };

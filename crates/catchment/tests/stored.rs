@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::acceptance::Warning;
+use catchment::diagnostic::Warning;
 use catchment::report::{Report, SCHEMA};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -111,11 +111,11 @@ fn a_version_that_is_none_is_refused() {
 }
 
 #[test]
-fn a_doubt_of_a_kind_that_is_not_known_stays_a_sentence() {
+fn a_warning_of_a_kind_that_is_not_known_stays_a_sentence() {
     let mut report = old_json();
     report["warnings"] = json!([{ "warning": { "kind": "moon-phase" }, "message": "the moon is full" }]);
     let report = Report::from_json(&report.to_string()).unwrap();
-    assert_eq!(report.warnings[0].warning, Warning::Note { text: "the moon is full".to_owned() });
+    assert_eq!(report.warnings, [Warning::Note { text: "the moon is full".to_owned() }]);
 }
 
 #[cfg(feature = "zarr")]

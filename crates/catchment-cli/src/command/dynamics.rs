@@ -10,7 +10,7 @@ use crate::output::to_stderr;
 use crate::result_args::{Draw, ResultArgs, study};
 use crate::setting::number;
 use crate::source::read_table;
-use catchment::design::{Design, Diagnostics, SourceText, load, parse_dofs};
+use catchment::design::{Design, SourceText, load, parse_dofs};
 use catchment::document::Subject;
 use catchment::pose::Dof;
 use catchment::poses::{Circumstance, Dynamics, OffsetsAt, PoseTable, parse_draw, parse_pose, read_dynamics};
@@ -178,7 +178,7 @@ impl DynamicsArgs {
         if let Some(path) = &self.poses {
             let source = read_table(path)?;
             let table = PoseTable::parse(&source.text, design, OffsetsAt::Face)
-                .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
+                .map_err(|diagnostics| diagnostics.of(source.clone()))?;
             asked.poses.extend_from_slice(table.errors());
         }
         asked.errors = self.errors.spread(design)?;

@@ -5,16 +5,14 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::output::{OutputArgs, to_stderr, to_stdout};
+use crate::output::{OutputArgs, lines, to_stderr, to_stdout};
 use crate::signals;
 use crate::source::read_table;
-use catchment::advice::Advice;
-use catchment::design::Diagnostics;
+use catchment::diagnostic::Advice;
 use catchment::method::Method;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
-use catchment::report::schema::WarningReport;
 use catchment::report::{OutcomeRows, OutcomesReport};
 use catchment::study::friction::MayStick;
 use catchment::terminal::shown;
@@ -93,26 +91,26 @@ impl Batch<'_> {
         let problem = self.design.problem()?;
         let source = read_table(self.poses)?;
         let table = PoseTable::parse(&source.text, problem.design(), self.offsets_at.into())
-            .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
+            .map_err(|diagnostics| diagnostics.of(source.clone()))?;
         let running = self.exec.start()?;
         let needed = OutcomesReport::bytes(&table, self.json);
         running.exec.ensure_fits("the answer for every pose", needed, |_| {
             vec![Advice::FewerPoses, Advice::MoreMemory]
         })?;
-        let doubts = MayStick::of(&problem, &self.method, table.errors());
-        let printed = Printed::new(&problem, &table, &self.method, doubts.as_ref());
+        let sticking = MayStick::of(&problem, &self.method, table.errors());
+        let printed = Printed::new(&problem, &table, &self.method, sticking.as_ref());
         let streams = self.output.is_printed() && !self.json;
         let stop = running.exec.cancel_flag();
         let tell = |number, end| {
             // Here, where each is decided: on all threads.
-            let _may_stick = doubts.as_ref().map(|doubts| doubts.may_stick(number));
+            let _may_stick = sticking.as_ref().map(|sticking| sticking.may_stick(number));
             if streams && !running.beside_bar(|| printed.push(number, end)) {
                 stop.store(true, Ordering::Relaxed);
             }
         };
         let followed = problem.follow_telling(&self.method, table.errors(), &running.exec, &tell)?;
         drop(running);
-        let report = OutcomesReport::new(&problem, &table, &self.method, &followed, doubts.as_ref());
+        let report = OutcomesReport::new(&problem, &table, &self.method, &followed, sticking.as_ref());
         let text = match (streams, self.json) {
             (true, _) => printed.rest()?,
             (false, true) => report.to_json()?,
@@ -123,7 +121,7 @@ impl Batch<'_> {
 
     /// Writes the table, or those rows that were finished before an interruption.
     fn write(&self, report: &OutcomesReport<'_>, text: &str) -> Result<ExitStatus, Failure> {
-        let notes = report.warnings.iter().map(WarningReport::line).chain(report.summary());
+        let notes = lines(&report.warnings).into_iter().chain(report.summary());
         if report.partial().is_none() {
             let notes: Vec<String> = notes.collect();
             self.output.write(text)?;
@@ -153,9 +151,9 @@ impl<'a> Printed<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &Method,
-        doubts: Option<&'a MayStick<'a>>,
+        sticking: Option<&'a MayStick<'a>>,
     ) -> Self {
-        let rows = OutcomeRows::new(problem, table, method, doubts);
+        let rows = OutcomeRows::new(problem, table, method, sticking);
         Self(Mutex::new(Printing { rows, has_begun: false, failed: None }))
     }
 

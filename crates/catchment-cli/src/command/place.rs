@@ -5,8 +5,9 @@ use crate::defaults;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_apart, check_place, file, image, to_stderr, to_stdout, write_file};
+use crate::output::{check_apart, check_place, file, image, lines, to_stderr, to_stdout, write_file};
 use catchment::design::{DesignDefect, LengthScale, LengthUnit, Quantity, QuantityUnit, parse_dofs};
+use catchment::diagnostic::Diagnostic;
 use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
@@ -131,8 +132,6 @@ impl PlaceArgs {
 
 /// Candidates that are told.
 const TOLD: usize = 3;
-/// What to do about a doubtful seat.
-const HELP: &str = "help: --figure pair.png draws the pair; --facing-fixed, --facing-moving and --approach state how the parts lie";
 /// A score that is worth telling.
 const WORTH: f64 = 0.01;
 
@@ -288,9 +287,8 @@ fn summary(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let told = rows.iter().enumerate().map(|(k, one)| {
         format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.in_words(&rows, unit))
     });
-    let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
-    let help = found.doubts.iter().any(|doubt| doubt.contains("picture")).then(|| HELP.to_owned());
-    [head, halves].into_iter().chain(told).chain(doubts).chain(help).collect()
+    let notes: Vec<Diagnostic> = found.notes.iter().map(|note| note.worded(flags)).collect();
+    [head, halves].into_iter().chain(told).chain(lines(&notes)).collect()
 }
 
 /// A refusal in the words of the command line.
@@ -298,7 +296,7 @@ fn refused(error: ProposalError) -> Failure {
     let help = match &error {
         ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
         ProposalError::NoSeat { remedy, advice, .. } => {
-            let remedy = remedy.iter().cloned().chain(advice.iter().copied().filter_map(flags));
+            let remedy = remedy.iter().cloned().chain(advice.iter().filter_map(flags));
             remedy.map(|one| one + "; or ").collect::<String>()
                 + "name the directions (WAY: +x … -z): --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; free only what the seat holds: \
              --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"

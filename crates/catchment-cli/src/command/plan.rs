@@ -5,9 +5,9 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::result_args::{ResultArgs, warnings};
+use crate::result_args::ResultArgs;
 use crate::setting::number;
-use catchment::design::Diagnostics;
+use catchment::diagnostic::Diagnostics;
 use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
@@ -155,7 +155,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     };
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = PlanReport::new(problem.design(), plan, warnings(&problem), Some(timing));
+    let report = PlanReport::new(problem.design(), plan, problem.warnings(), Some(timing));
     output.finish(&report, || Ok(figure::plan(&report, &slices)))
 }
 

@@ -4,7 +4,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{file, to_stderr, to_stdout, written};
+use crate::output::{file, lines, to_stderr, to_stdout, written};
 use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
@@ -144,7 +144,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     } else {
         to_stdout(&found.to_string())?;
     }
-    notes.extend(found.warnings().iter().map(|warning| format!("warning: {warning}")));
+    notes.extend(lines(&found.warnings()));
     to_stderr(&notes);
     Ok(ExitStatus::Done)
 }

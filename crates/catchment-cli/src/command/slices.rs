@@ -6,7 +6,8 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::result_args::{ResultArgs, seat_warnings};
+use crate::output::lines;
+use crate::result_args::ResultArgs;
 use catchment::document::Subject;
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
@@ -84,7 +85,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         save_slices(&found, folder, &problem, &report, exec)?;
         Ok(format!(", {} Zarr groups", found.slices.len()))
     };
-    let mut notes = seat_warnings(&problem);
+    let mut notes = lines(&problem.warnings());
     notes.extend(output.write(&report, picture, groups, exec)?);
     drop(running);
     output.print(&report, &notes)

@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::result_args::{ResultArgs, warnings};
+use crate::result_args::ResultArgs;
 use catchment::method::partition::{PartitionSettings, SolidShape, shapes};
 use catchment::report::{ReportBody, SolidsBody, SolidsReport, figure, solids};
 use clap::Args;
@@ -83,6 +83,6 @@ pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
         Some(_) => output.write_own(solids::obj(&shape).as_bytes())?,
         None => {}
     }
-    let report = SolidsReport::new(problem.design(), &shape, warnings(&problem));
+    let report = SolidsReport::new(problem.design(), &shape, problem.warnings());
     output.finish(&report, || Ok(figure::bodies(problem.design(), &shape)?))
 }

@@ -6,7 +6,7 @@ use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::result_args::{Output, ResultArgs, warnings};
+use crate::result_args::{Output, ResultArgs};
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::method::descent::{DescentSettings, Trajectory};
@@ -141,7 +141,7 @@ fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
         By::Drop => {
             let settings = args.drop.settings()?;
             let path = Bench::new(problem.pair())?.trace(&error, &settings, &Exec::new())?;
-            let report = TraceReport::of_drop(design, &settings, error, &path, warnings(&problem));
+            let report = TraceReport::of_drop(design, &settings, error, &path, problem.warnings());
             finish(output, &report, &problem, &path.trajectory())
         }
         By::Descent => {

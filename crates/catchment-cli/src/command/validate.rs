@@ -6,10 +6,9 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::result_args::{ResultArgs, warnings};
+use crate::result_args::ResultArgs;
 use crate::setting::number;
 use crate::source::read_table;
-use catchment::design::Diagnostics;
 use catchment::document::Subject;
 use catchment::method::descent;
 use catchment::pose::PoseError;
@@ -98,7 +97,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     };
     let source = read_table(&args.plan)?;
     let table = RobotTrialTable::parse(&source.text, problem.design(), args.offsets_at.into())
-        .map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
+        .map_err(|diagnostics| diagnostics.of(source.clone()))?;
     let validation = judge(&problem, &table.rows, &settings, &running.exec)?;
     let validation = Validation { offsets_at: table.offsets_at, ..validation };
     let slices = if output.wants_picture() {
@@ -110,6 +109,6 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     };
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = ValidationReport::new(problem.design(), validation, warnings(&problem), Some(timing));
+    let report = ValidationReport::new(problem.design(), validation, problem.warnings(), Some(timing));
     output.finish(&report, || Ok(figure::validation(&report, &slices)))
 }

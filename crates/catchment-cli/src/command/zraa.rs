@@ -6,7 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::pose_method_parser;
-use crate::result_args::{ResultArgs, warnings};
+use crate::result_args::ResultArgs;
 use crate::setting::{Change, with_changes};
 use crate::source::read_design;
 use catchment::design::Design;
@@ -177,6 +177,6 @@ fn beside(args: &ZraaArgs, method: Method) -> Result<ExitStatus, Failure> {
     let found = trials::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = TrialsReport::new(problem.design(), found, warnings(&problem), Some(timing));
+    let report = TrialsReport::new(problem.design(), found, problem.warnings(), Some(timing));
     output.finish(&report, || Ok(figure::trials(&report)))
 }

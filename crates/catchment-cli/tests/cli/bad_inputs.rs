@@ -13,6 +13,7 @@
 
 use crate::{V_FACE, catchment, run};
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -90,6 +91,7 @@ fn faults(case: &Case, stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path) -> Vec<
     let stderr = String::from_utf8_lossy(&output.stderr);
     let words = stderr.split(|c: char| c.is_whitespace() || c == '│').filter(|word| !word.is_empty());
     let said = words.collect::<Vec<_>>().join(" ");
+    let coded = case.args[0] != "check" || has_codes(home.path(), &case.args);
     let mut faults = Vec::new();
     let mut hold = |holds: bool, fault: &str| {
         if !holds {
@@ -102,8 +104,22 @@ fn faults(case: &Case, stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path) -> Vec<
     hold(!stderr.chars().any(|c| c.is_control() && c != '\n'), "a control character came through");
     hold(output.stdout.is_empty(), "something is on stdout");
     hold(contents(home.path()) == before, "something was written");
+    hold(coded, "a diagnostic of --json lacks its severity or code");
     hold(time < EACH, &format!("it took {time:?}"));
     faults
+}
+
+/// Whether `check --json` prints every error with severity and code; nothing where there is no design to check.
+fn has_codes(home: &Path, args: &[String]) -> bool {
+    let output = catchment(home).args(args).arg("--json").output().unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    let is_code = |c: char| c.is_ascii_lowercase() || c == '-';
+    let has_code = |one: &Value| {
+        one["severity"] == "error"
+            && one["code"].as_str().is_some_and(|code| !code.is_empty() && code.chars().all(is_code))
+    };
+    output.stdout.is_empty()
+        || report["problems"].as_array().is_some_and(|all| !all.is_empty() && all.iter().all(has_code))
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Errors with their places in the file.
 
 use super::defect::DesignDefect;
-use super::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, line_column};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
@@ -31,16 +31,6 @@ impl fmt::Display for LocatedDefect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: {}", self.line, self.column, self.defect)
     }
-}
-
-/// Line and column (in characters) of a byte, both from 1. A byte behind the end counts as the end.
-pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
-    let before = &text.as_bytes()[..byte.min(text.len())];
-    let line_start = before.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
-    let line = before.split(|b| *b == b'\n').count();
-    // Count characters by their first bytes, so that a position inside a multi-byte character is valid, too.
-    let column = 1 + before[line_start..].iter().filter(|b| **b & 0xC0 != 0x80).count();
-    (line, column)
 }
 
 /// All problems of a file in the order of their places; never empty.
@@ -112,16 +102,6 @@ impl Sources {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_and_columns_count_from_one_in_characters() {
-        let text = "a\n µ=1\n";
-        assert_eq!(line_column(text, 0), (1, 1));
-        assert_eq!(line_column(text, 2), (2, 1));
-        assert_eq!(line_column(text, text.find('=').unwrap()), (2, 3));
-        assert_eq!(line_column(text, 1000), (3, 1));
-        assert_eq!(line_column("", 0), (1, 1));
-    }
 
     #[test]
     fn places_fall_back_to_what_surrounds_them() {

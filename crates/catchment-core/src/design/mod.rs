@@ -15,7 +15,6 @@
 mod alignment;
 mod content;
 mod defect;
-mod diagnostic;
 mod digest;
 mod docked;
 mod edit;
@@ -39,17 +38,17 @@ mod template;
 #[cfg(test)]
 mod tests;
 
+pub use crate::diagnostic::{FilesInMemory, SourceText};
 pub use crate::suggest::nearest;
 pub use alignment::Alignment;
 pub use content::hex;
 pub use content::{Contents, MeshContent, Meshed};
 pub use defect::{DesignDefect, Dimension};
-pub use diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics, FilesInMemory, SourceText};
 pub use docked::Docked;
 pub use edit::{key_path, with_key};
 pub use family::{Family, FamilySpec};
 pub use load::{LoadError, load};
-pub use located_defect::{LocatedDefect, LocatedDefects, Sources, line_column};
+pub use located_defect::{LocatedDefect, LocatedDefects, Sources};
 pub use mesh_preparation::{MeshPreparation, Repairs};
 pub use model::{ConnectorSpec, Design, HalfSpec, LengthUnit, OwnSpec, WidthFrom};
 pub use name::DesignParameter;

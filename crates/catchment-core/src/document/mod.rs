@@ -23,8 +23,8 @@ pub use number::{
 pub use table::{Cell, Column, ColumnFormat, Table};
 pub use units::DesignUnits;
 
-use crate::acceptance::Warning;
 use crate::design::Design;
+use crate::diagnostic::Diagnostic;
 use crate::merit::sum::wilson95;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +37,7 @@ pub trait Subject: Serialize {
     const SAMPLES_ERRORS: bool = true;
 
     /// Warnings that its own numbers give rise to.
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         Vec::new()
     }
 

@@ -18,7 +18,7 @@ pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
 pub use threads::ThreadsError;
 
-use crate::advice::{Advice, Advised};
+use crate::diagnostic::{Advice, Advised};
 use clock::Deadline;
 use progress::Reporter;
 use std::fmt;

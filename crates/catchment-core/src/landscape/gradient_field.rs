@@ -15,8 +15,8 @@
 use super::backend::{lateral, lateral_lattices};
 use super::heights::{usable, within};
 use super::{Fold, GradientFieldPart, Grid, LandscapeError, Resolution};
-use crate::advice::Advice;
 use crate::contact::{HeightEnvelope, Pair};
+use crate::diagnostic::Advice;
 use crate::exec::Exec;
 use crate::pose::{self, CorPose};
 use glam::DVec2;

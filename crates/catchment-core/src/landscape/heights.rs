@@ -2,8 +2,8 @@
 
 use super::backend::{Backend, Fast, slab};
 use super::{Grid, LandscapePart, Resolution};
-use crate::advice::Advice;
 use crate::contact::Pair;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::pose::Dof;
 use rayon::prelude::*;

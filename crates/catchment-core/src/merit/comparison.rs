@@ -363,7 +363,6 @@ impl Quantiles {
 mod tests {
     use super::super::testing::{accept, ball, grid};
     use super::*;
-    use crate::acceptance::Warning;
     use crate::pose::{DofSet, Mount, PoseError};
     use proptest::prelude::*;
     use std::f64::consts::PI;
@@ -461,7 +460,7 @@ mod tests {
             method: "descent",
             domain: Domain::Poses(vec![PoseError::default(); n]),
             outcomes: vec![Outcome::Aligned; n],
-            warnings: Vec::<Warning>::new(),
+            warnings: Vec::new(),
         };
         assert!(refused(&listed(3)).starts_with("one result is over a grid"));
         let lists = Paired::of(&listed(3), &listed(4)).unwrap_err();

@@ -10,7 +10,7 @@
 //! is the definition.
 
 use super::MeritError;
-use crate::advice::Advice;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 

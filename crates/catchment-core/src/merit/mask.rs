@@ -12,7 +12,7 @@
 
 use super::MeritError;
 use crate::acceptance::Outcome;
-use crate::advice::Advice;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 

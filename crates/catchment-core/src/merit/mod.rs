@@ -27,13 +27,13 @@ pub mod success;
 pub mod sum;
 pub mod tolerance;
 
-use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::acceptance::{Acceptance, Outcome};
 use crate::design::Alignment;
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use rayon::prelude::*;
-use std::mem::discriminant;
 
 /// Why a figure of merit cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -103,7 +103,7 @@ pub struct Merits {
     /// Single-axis limits of each error; empty for listed poses.
     pub tolerances: Vec<tolerance::Tolerance>,
     /// Warnings of the method, and of the accepted set itself.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Merits {
@@ -130,8 +130,8 @@ impl Merits {
             merits.centered = Some(centered::centered_cube(acceptance, exec)?);
             merits.tolerances = tolerance::tolerances(acceptance)?;
         }
-        let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
-        let own = doubts(acceptance, exec)?;
+        let known = |w: &Diagnostic| acceptance.warnings.iter().any(|o| o.code == w.code);
+        let own = warnings(acceptance, exec)?;
         merits.warnings.extend(own.into_iter().filter(|w| !known(w)));
         Ok(merits)
     }
@@ -165,26 +165,28 @@ fn gap(axis: &GridAxis, k: usize) -> f64 {
 ///
 /// # Errors
 /// If the computation is cancelled.
-pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Cancelled> {
+pub fn warnings(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Diagnostic>, Cancelled> {
     let mut warnings = Vec::new();
     if let Some(grid) = acceptance.grid() {
         let axes = border_axes(acceptance, grid, exec)?;
         if !axes.is_empty() {
             let axes = axes.iter().map(|d| d.name().to_owned()).collect();
-            warnings.push(Warning::TouchesBorder { axes });
+            warnings.push(Warning::TouchesBorder { axes }.into());
         }
         let tolerable = tolerance::around_zero(grid);
         // An undecided cell may be accepted.
         let may = [Outcome::Aligned, Outcome::Undecided];
         let holds = |cell: &usize| may.contains(&acceptance.outcomes[*cell]);
         if !tolerable.is_empty() && !tolerable.iter().any(holds) {
-            warnings.push(Warning::MatedPoseNotAccepted);
+            warnings.push(Warning::MatedPoseNotAccepted.into());
         }
     }
     let undecided = acceptance.counts()[Outcome::Undecided as usize - 1];
-    let is_said = |warning: &Warning| matches!(warning, Warning::Undecided { .. } | Warning::Open { .. });
+    let is_said = |warning: &Diagnostic| {
+        matches!(warning.facts.as_deref(), Some(Warning::Undecided { .. } | Warning::Open { .. }))
+    };
     if undecided > 0 && !acceptance.warnings.iter().any(is_said) {
-        warnings.push(Warning::Undecided { cells: undecided });
+        warnings.push(Warning::Undecided { cells: undecided }.into());
     }
     Ok(warnings)
 }
@@ -273,15 +275,15 @@ mod tests {
     fn a_set_cut_off_by_the_box_says_along_which_axes() {
         let grid = grid(&[8, 8, 8], &[1.0, 1.0, 1.0]);
         let slab = accept(&grid, |e| e[1].abs() < 0.5);
-        let doubts = |acceptance| super::doubts(acceptance, &Exec::new()).unwrap();
-        assert_eq!(doubts(&slab), [Warning::TouchesBorder { axes: vec!["x".into(), "roll".into()] }]);
-        assert_eq!(doubts(&ball(&grid, 0.5)), []);
+        let warnings = |acceptance| super::warnings(acceptance, &Exec::new()).unwrap();
+        assert_eq!(warnings(&slab), [Warning::TouchesBorder { axes: vec!["x".into(), "roll".into()] }]);
+        assert!(warnings(&ball(&grid, 0.5)).is_empty());
     }
 
     #[test]
-    fn a_set_beside_the_mated_pose_is_doubtful() {
+    fn a_set_beside_the_mated_pose_has_a_warning() {
         let grid = grid(&[9, 9], &[1.0, 1.0]);
         let beside = accept(&grid, |e| (0.2..0.8).contains(&e[0]) && e[1].abs() < 0.5);
-        assert_eq!(doubts(&beside, &Exec::new()).unwrap(), [Warning::MatedPoseNotAccepted]);
+        assert_eq!(warnings(&beside, &Exec::new()).unwrap(), [Warning::MatedPoseNotAccepted]);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::descent::{DescentSettings, End, Follower};
 use crate::acceptance::{Domain, Outcome};
-use crate::advice::Advice;
 use crate::contact::Pair;
+use crate::diagnostic::Advice;
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::pose::PoseError;

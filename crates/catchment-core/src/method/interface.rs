@@ -16,9 +16,10 @@
 //! A method for translation alone ([`zraa`](super::zraa)) stands outside of it.
 
 use super::descent::{self, End};
-use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::design::Design;
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape};
 use crate::method::certified::BoxCertificate;
@@ -185,7 +186,12 @@ pub trait PoseMethod: DecisionMethod {
     ///
     /// # Errors
     /// See [`DecideError`].
-    fn doubt(&self, _problem: &Problem, _seed: u64, _exec: &Exec) -> Result<Option<Warning>, DecideError> {
+    fn step_warning(
+        &self,
+        _problem: &Problem,
+        _seed: u64,
+        _exec: &Exec,
+    ) -> Result<Option<Warning>, DecideError> {
         Ok(None)
     }
 }

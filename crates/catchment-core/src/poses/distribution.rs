@@ -1,9 +1,9 @@
 //! Distributions of pose errors.
 
 use super::terms::terms;
-use super::{PoseDefect, PoseDiagnostics};
-use crate::design::Diagnostics;
+use super::{FAMILY, defect};
 use crate::design::{Design, Quantity};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
 
@@ -70,14 +70,14 @@ fn sizes(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
 /// # Errors
 /// All errors of the text: sizes must not be negative, and must belong to free errors of the design.
 pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diagnostics> {
-    let mut found = PoseDiagnostics::default();
+    let mut found = DiagnosticCollector::default();
     let (written, spans) = terms(text, &mut found);
     let mut values = [None; 5];
     for dof in Dof::ALL {
         let Some(quantity) = written[dof.index()] else { continue };
         match size(dof, quantity, design) {
             Ok(value) => values[dof.index()] = Some(value),
-            Err(fault) => found.push(fault, || Some(spans[dof.index()].clone())),
+            Err(fault) => found.push_at(fault, || Some(spans[dof.index()].clone())),
         }
     }
     found.refuse()?;
@@ -85,17 +85,17 @@ pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diag
 }
 
 /// A size of an error, in D or radians.
-pub(super) fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, PoseDefect> {
+pub(super) fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Diagnostic> {
     let name = dof.name();
     if !design.alignment.free.contains(dof) {
         let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
         let help = format!("its free errors are {}", free.join(", "));
-        return Err(PoseDefect::new(format!("{name}: this design locks it"), help));
+        return Err(defect(format!("{name}: this design locks it"), help));
     }
     let size = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
-    let size = size.map_err(|c| PoseDefect { message: format!("{name}: {c}"), help: c.help() })?;
+    let size = size.map_err(|c| Diagnostic::error(FAMILY, format!("{name}: {c}"), c.help()))?;
     if size < 0.0 {
-        return Err(PoseDefect { message: format!("{name}: a size cannot be negative"), help: None });
+        return Err(Diagnostic::error(FAMILY, format!("{name}: a size cannot be negative"), None));
     }
     Ok(size)
 }

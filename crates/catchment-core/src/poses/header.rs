@@ -18,8 +18,9 @@
 //!
 //! Names with control characters, or with invisible characters (a byte order mark), are always rejected.
 
-use super::{PoseDefect, is_hidden, shortened};
+use super::{defect, is_hidden, shortened};
 use crate::design::{Design, LengthUnit, QuantityUnit, nearest};
+use crate::diagnostic::Diagnostic;
 use crate::pose::Dof;
 use crate::suggest::{as_it_looks, odd};
 
@@ -49,20 +50,20 @@ const ADDED: [&str; 3] = ["outcome", "final_height", "contacts"];
 const LONGEST_NAME: usize = 200;
 
 /// The error and the unit of a column; `None` for a column that is passed through.
-pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, PoseDefect> {
+pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, QuantityUnit)>, Diagnostic> {
     if name.contains(is_hidden) {
         let message = format!("`{}` has a character that does not show", shortened(name));
-        return Err(PoseDefect::new(
+        return Err(defect(
             message,
             "type the name anew; line breaks and byte order marks do not belong here",
         ));
     }
     if name.len() > LONGEST_NAME {
         let message = format!("`{}…` is a name of {} bytes", shortened(name), name.len());
-        return Err(PoseDefect::new(message, format!("the name of a column has at most {LONGEST_NAME}")));
+        return Err(defect(message, format!("the name of a column has at most {LONGEST_NAME}")));
     }
     if ADDED.contains(&name) || name.strip_prefix("final_").is_some_and(|rest| split(rest).is_some()) {
-        return Err(PoseDefect::new(format!("`{name}` is a column that the answer adds"), "rename it"));
+        return Err(defect(format!("`{name}` is a column that the answer adds"), "rename it"));
     }
     let Some((dof, symbol)) = split(name) else {
         let looks = as_it_looks(name);
@@ -72,7 +73,7 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Quantit
         });
         return meant.map_or(Ok(None), |meant| {
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
-            Err(PoseDefect::new(format!("`{}` is no pose error{}", shortened(name), odd(name)), help))
+            Err(defect(format!("`{}` is no pose error{}", shortened(name), odd(name)), help))
         });
     };
     let base = dof.name();
@@ -89,20 +90,17 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Quantit
             let help = format!(
                 "name the column {base} and give it in D, or give the design a unit (connector.unit)"
             );
-            Err(PoseDefect::new(format!("{name}: the design has no unit of length"), help))
+            Err(defect(format!("{name}: the design has no unit of length"), help))
         }
         Some(_) if dof.is_rotation() => {
-            Err(PoseDefect::new(format!("{name}: {base} is an angle"), format!("{base}_deg or {base}_rad")))
+            Err(defect(format!("{name}: {base} is an angle"), format!("{base}_deg or {base}_rad")))
         }
-        Some(_) => Err(PoseDefect::new(
-            format!("{name}: {base} is a length"),
-            format!("{base} (in D), {base}_mm, …"),
-        )),
+        Some(_) => Err(defect(format!("{name}: {base} is a length"), format!("{base} (in D), {base}_mm, …"))),
         None => {
             let units = UNITS.map(|(symbol, _)| symbol);
             let known = format!("units are {}", units.join(", "));
             let help = nearest(symbol, units).map_or(known, |meant| format!("did you mean {base}_{meant}?"));
-            Err(PoseDefect::new(format!("`{}`: unknown unit{}", shortened(name), odd(symbol)), help))
+            Err(defect(format!("`{}`: unknown unit{}", shortened(name), odd(symbol)), help))
         }
     }
 }
@@ -200,7 +198,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn read(name: &str) -> Result<Option<(Dof, QuantityUnit)>, PoseDefect> {
+    fn read(name: &str) -> Result<Option<(Dof, QuantityUnit)>, Diagnostic> {
         let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\n";
         column(name, &crate::design::read(text, Path::new("")).unwrap().design)
     }
@@ -260,7 +258,7 @@ mod tests {
         ] {
             let fault = read(name).expect_err(name);
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
-            assert_eq!(fault.help.as_deref(), Some(help.as_str()), "{name}");
+            assert_eq!(fault.help().as_deref(), Some(help.as_str()), "{name}");
         }
         for (name, said) in [("x_ft", "unknown unit"), ("x [ft]", "unknown unit"), ("x (deg)", "is a length")]
         {
@@ -285,7 +283,7 @@ mod tests {
         ] {
             let fault = read(name).expect_err(name);
             assert!(fault.message.contains(code), "{}", fault.message);
-            assert!(fault.help.unwrap().starts_with(&format!("did you mean {meant}?")), "{name}");
+            assert!(fault.help().unwrap().starts_with(&format!("did you mean {meant}?")), "{name}");
         }
         assert!(read("x_mм").unwrap_err().message.contains("U+043C"));
     }

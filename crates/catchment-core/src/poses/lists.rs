@@ -8,8 +8,9 @@
 //! ```
 
 use super::terms::terms;
-use super::{PoseDefect, PoseDiagnostics, shortened};
-use crate::design::{Design, DesignDefect, Diagnostics, Quantity, QuantityUnit};
+use super::{FAMILY, defect, shortened};
+use crate::design::{Design, DesignDefect, Quantity, QuantityUnit};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::Dof;
 
 /// Most angles of a list.
@@ -24,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// Everything that is wrong with the text, each with its bytes.
 pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], Diagnostics> {
-    let mut found = PoseDiagnostics::default();
+    let mut found = DiagnosticCollector::default();
     let (written, spans) = terms(text, &mut found);
     let mut counts = [None; 5];
     for dof in Dof::ALL {
@@ -33,15 +34,12 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
         let name = dof.name();
         if !design.alignment.free.contains(dof) {
             let help = format!("leave {name} out, or free it in [alignment] of the design");
-            found.push(PoseDefect::new(format!("{name} is locked, so it has one place"), help), span);
+            found.push_at(defect(format!("{name} is locked, so it has one place"), help), span);
         } else if unit != QuantityUnit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value)
         {
             let help = "write how many points, such as 5: 2 or more";
-            found.push(
-                PoseDefect::new(
-                    format!("{name}: `{}` is no number of points", Quantity { value, unit }),
-                    help,
-                ),
+            found.push_at(
+                defect(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help),
                 span,
             );
         } else {
@@ -59,7 +57,7 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
 ///
 /// # Examples
 /// ```
-/// # fn main() -> Result<(), catchment_core::design::Diagnostics> {
+/// # fn main() -> Result<(), catchment_core::diagnostic::Diagnostics> {
 /// let angles = catchment_core::poses::parse_angles("0..45:2.25 deg")?;
 /// assert_eq!((angles.len(), angles[20]), (21, 45f64.to_radians()));
 /// # Ok(())
@@ -74,52 +72,50 @@ pub fn parse_angles(text: &str) -> Result<Vec<f64>, Diagnostics> {
 /// # Errors
 /// The errors of the text.
 pub fn parse_length(text: &str, design: &Design) -> Result<f64, Diagnostics> {
-    let told = |c: DesignDefect| one(text, PoseDefect { message: c.to_string(), help: c.help() });
+    let told = |c: DesignDefect| one(text, Diagnostic::error(FAMILY, c.to_string(), c.help()));
     let quantity: Quantity = text.parse().map_err(told)?;
     quantity.length_d(&design.scale()).map_err(told)
 }
 
-fn one(text: &str, fault: PoseDefect) -> Diagnostics {
-    let mut found = PoseDiagnostics::default();
-    found.push(fault, || Some(0..text.len()));
-    Diagnostics { source: None, list: found.list, omitted: 0 }
+fn one(text: &str, fault: Diagnostic) -> Diagnostics {
+    Diagnostic { span: Some(0..text.len()), ..fault }.into()
 }
 
-fn angles(text: &str) -> Result<Vec<f64>, PoseDefect> {
+fn angles(text: &str) -> Result<Vec<f64>, Diagnostic> {
     const FORM: &str =
         "write angles such as \"0..45:2.25 deg\" or \"0,20 deg\"; without a unit they are radians";
     let text = text.trim();
     let numbers = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°');
     let symbol = &text[numbers.len()..];
-    let read = |part: &str| -> Result<f64, PoseDefect> {
+    let read = |part: &str| -> Result<f64, Diagnostic> {
         let quantity: Quantity = format!("{} {symbol}", part.trim())
             .parse()
-            .map_err(|c: DesignDefect| PoseDefect { message: c.to_string(), help: Some(FORM.to_owned()) })?;
+            .map_err(|c: DesignDefect| Diagnostic::error(FAMILY, c.to_string(), Some(FORM.to_owned())))?;
         // An angle like those of any pose: within half a turn.
-        quantity.angle_rad().map_err(|c| PoseDefect { message: c.to_string(), help: c.help() })
+        quantity.angle_rad().map_err(|c| Diagnostic::error(FAMILY, c.to_string(), c.help()))
     };
-    let within = |angle: f64| -> Result<f64, PoseDefect> {
+    let within = |angle: f64| -> Result<f64, Diagnostic> {
         if angle.abs() <= std::f64::consts::PI {
             Ok(angle)
         } else {
-            Err(PoseDefect::new(format!("`{}` leaves half a turn", shortened(text)), FORM))
+            Err(defect(format!("`{}` leaves half a turn", shortened(text)), FORM))
         }
     };
     let Some((from, rest)) = numbers.split_once("..") else {
-        let list: Result<Vec<f64>, PoseDefect> = numbers.split(',').map(|part| within(read(part)?)).collect();
+        let list: Result<Vec<f64>, Diagnostic> = numbers.split(',').map(|part| within(read(part)?)).collect();
         return list;
     };
     let Some((to, step)) = rest.split_once(':') else {
-        return Err(PoseDefect::new(format!("`{}` has no step", shortened(text)), FORM));
+        return Err(defect(format!("`{}` has no step", shortened(text)), FORM));
     };
     let (from, to, step) = (within(read(from)?)?, within(read(to)?)?, read(step)?);
     let steps = (to - from) / step;
     if !(step > 0.0 && steps >= 0.0) {
-        return Err(PoseDefect::new(format!("`{}` goes nowhere", shortened(text)), FORM));
+        return Err(defect(format!("`{}` goes nowhere", shortened(text)), FORM));
     }
     if steps >= MOST_ANGLES as f64 {
         let help = format!("at most {MOST_ANGLES}");
-        return Err(PoseDefect::new(format!("`{}` has too many steps", shortened(text)), help));
+        return Err(defect(format!("`{}` has too many steps", shortened(text)), help));
     }
     let count = (steps + ROUNDING).floor() as usize;
     // The end is the end, not its neighbour in double precision.

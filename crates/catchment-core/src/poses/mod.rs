@@ -19,7 +19,7 @@
 //! ```
 //!
 //! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`]
-//! selects the centre of rotation. A text is read completely or rejected with all its errors ([`Diagnostics`]),
+//! selects the centre of rotation. A text is read completely or rejected with all its errors ([`Diagnostics`](crate::diagnostic::Diagnostics)),
 //! each [`Diagnostic`] with its byte range in the text.
 //!
 //! Not promised: that a pose can be reached, or that the halves meet there. Only values of locked errors, and
@@ -52,51 +52,14 @@ pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};
 
-use crate::design::{Diagnostic, Diagnostics};
-use std::ops::Range;
+use crate::diagnostic::Diagnostic;
 
-/// Most diagnostics that are spelled out.
-const MOST_OBJECTIONS: usize = 20;
+/// The family of errors of this room.
+const FAMILY: &str = "poses";
 
 /// An error, before its place is known.
-#[derive(Debug, Clone, PartialEq)]
-struct PoseDefect {
-    message: String,
-    help: Option<String>,
-}
-
-impl PoseDefect {
-    fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { message: message.into(), help: Some(help.into()) }
-    }
-}
-
-/// Objections as they are found, of which only the first are kept.
-#[derive(Debug, Default)]
-struct PoseDiagnostics {
-    list: Vec<Diagnostic>,
-    omitted: usize,
-}
-
-impl PoseDiagnostics {
-    /// Adds an error; `span` is called only if it is kept.
-    fn push(&mut self, fault: PoseDefect, span: impl FnOnce() -> Option<Range<usize>>) {
-        if self.list.len() < MOST_OBJECTIONS {
-            let PoseDefect { message, help } = fault;
-            self.list.push(Diagnostic { message, help, span: span() });
-        } else {
-            self.omitted += 1;
-        }
-    }
-
-    /// Refuses if anything was found.
-    fn refuse(mut self) -> Result<(), Diagnostics> {
-        if self.list.is_empty() {
-            return Ok(());
-        }
-        self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map(|span| span.start));
-        Err(Diagnostics { source: None, list: self.list, omitted: self.omitted })
-    }
+fn defect(message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(FAMILY, message, Some(help.into()))
 }
 
 /// The first characters, without control characters and invisible characters.

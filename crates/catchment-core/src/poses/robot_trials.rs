@@ -10,8 +10,9 @@
 //! predictions in the table are not used: they are recomputed.
 
 use super::fields::{records, spans};
-use super::{OffsetsAt, PoseDefect, PoseDiagnostics, PoseTable, shortened};
-use crate::design::{Design, Diagnostics, nearest};
+use super::{OffsetsAt, PoseTable, defect, shortened};
+use crate::design::{Design, nearest};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::PoseError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -93,26 +94,24 @@ impl RobotTrialTable {
     /// a column, a missing column of outcomes, an invalid outcome, an invalid number of a trial or line, and
     /// a repeated trial.
     pub fn parse(text: &str, design: &Design, at: OffsetsAt) -> Result<Self, Diagnostics> {
-        let mut found = PoseDiagnostics::default();
+        let mut found = DiagnosticCollector::default();
         let errors = match PoseTable::parse_beside(text, design, at, &[OUTCOME]) {
             Ok(table) => {
                 head(&table, design, text, &mut found);
                 table.errors().to_vec()
             }
-            Err(Diagnostics { list, omitted, .. }) => {
-                (found.list, found.omitted) = (list, omitted);
+            Err(diagnostics) => {
+                found = diagnostics.into();
                 Vec::new()
             }
         };
         let mut all = records(text);
-        let Some((top, names)) = all.next() else { return refused(found) };
+        let Some((top, names)) = all.next() else { return Err(found.sorted()) };
         let place = |name: &str| names.iter().position(|n| n == name);
         let [outcome, trial, line, predicted] = [OUTCOME, TRIAL, LINE, PREDICTED].map(place);
         if outcome.is_none() {
             let help = "write what was seen of every trial into a column `outcome`, and nothing where it was not made";
-            found.push(PoseDefect::new("no column says what was seen", help), || {
-                spans(text, top).first().cloned()
-            });
+            found.push_at(defect("no column says what was seen", help), || spans(text, top).first().cloned());
         }
         let mut rows = Vec::new();
         let mut seen: BTreeSet<u64> = BTreeSet::new();
@@ -120,14 +119,14 @@ impl RobotTrialTable {
             if record.len() != names.len() {
                 continue;
             }
-            let mut wrong = |index: usize, fault: PoseDefect| {
-                found.push(fault, || spans(text, start).get(index).cloned());
+            let mut wrong = |index: usize, fault: Diagnostic| {
+                found.push_at(fault, || spans(text, start).get(index).cloned());
             };
             let cell = |index: Option<usize>| index.map_or("", |index| &record[index]);
             let mut count = |index: Option<usize>, or: u64| match (index, cell(index)) {
                 (Some(_), "") | (None, _) => or,
                 (Some(index), text) => text.parse().unwrap_or_else(|_| {
-                    let fault = PoseDefect::new(
+                    let fault = defect(
                         format!("`{}` is no whole number", shortened(text)),
                         format!("{} numbers rows: 1, 2, 3", &names[index]),
                     );
@@ -142,7 +141,7 @@ impl RobotTrialTable {
             {
                 let help =
                     "keep one of them, or number them apart; a pose may be tried again under another number";
-                wrong(index, PoseDefect::new(format!("trial {trial_number} is there twice"), help));
+                wrong(index, defect(format!("trial {trial_number} is there twice"), help));
             }
             let observed = read(cell(outcome)).unwrap_or_else(|fault| {
                 if let Some(index) = outcome {
@@ -163,29 +162,21 @@ impl RobotTrialTable {
     }
 }
 
-/// A refusal that has its reasons.
-fn refused(found: PoseDiagnostics) -> Result<RobotTrialTable, Diagnostics> {
-    Err(Diagnostics { source: None, list: found.list, omitted: found.omitted })
-}
-
 /// Every free error has a column.
-fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut PoseDiagnostics) {
+fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut DiagnosticCollector) {
     for dof in design.alignment.free.iter().filter(|dof| !table.has(*dof)) {
         let name = dof.name();
         let help = format!(
             "add a column of it, 0 where it does not occur, or lock {name} in [alignment] of the design"
         );
-        found.push(
-            PoseDefect::new(format!("no column is {name}, which the design leaves free"), help),
-            || {
-                let all = spans(text, records(text).next().map_or(0, |(start, _)| start));
-                Some(all.first()?.start..all.last()?.end)
-            },
-        );
+        found.push_at(defect(format!("no column is {name}, which the design leaves free"), help), || {
+            let all = spans(text, records(text).next().map_or(0, |(start, _)| start));
+            Some(all.first()?.start..all.last()?.end)
+        });
     }
 }
 
-fn read(text: &str) -> Result<Option<ObservedOutcome>, PoseDefect> {
+fn read(text: &str) -> Result<Option<ObservedOutcome>, Diagnostic> {
     if text.is_empty() {
         return Ok(None);
     }
@@ -196,7 +187,7 @@ fn read(text: &str) -> Result<Option<ObservedOutcome>, PoseDefect> {
             || format!("one of {}, or nothing", names.join(", ")),
             |meant| format!("did you mean {meant}?"),
         );
-        PoseDefect::new(format!("`{}` is no outcome", shortened(text)), help)
+        defect(format!("`{}` is no outcome", shortened(text)), help)
     })
 }
 

@@ -1,8 +1,9 @@
 //! Pose errors as rows of numbers, as other programs hold them in memory.
 
 use super::written::resolve;
-use super::{OffsetsAt, PoseDefect, PoseDiagnostics};
-use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
+use super::{OffsetsAt, defect};
+use crate::design::{Design, Quantity, QuantityUnit};
+use crate::diagnostic::{DiagnosticCollector, Diagnostics};
 
 /// Rejects rows that cannot be followed, as for a table: numbers that are NaN, out of range, or nonzero for
 /// locked errors. Each row has the five errors in the order of [`Dof::ALL`](crate::pose::Dof::ALL), of the
@@ -11,18 +12,16 @@ use crate::design::{Design, Diagnostics, Quantity, QuantityUnit};
 /// # Errors
 /// The first invalid rows, each with its number from 0, and the number of further invalid rows.
 pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Diagnostics> {
-    let mut found = PoseDiagnostics::default();
+    let mut found = DiagnosticCollector::default();
     for (number, row) in rows.iter().enumerate() {
         if row.iter().any(|value| !value.is_finite()) {
-            let fault =
-                PoseDefect::new(format!("row {number} holds a value that is no number"), "leave it out");
-            found.push(fault, || None);
+            found.push(defect(format!("row {number} holds a value that is no number"), "leave it out"));
             continue;
         }
         let written = row.map(|value| Some(Quantity { value, unit: QuantityUnit::Bare }));
         if let Err(faults) = resolve(&written, OffsetsAt::Face, design) {
-            for (_, PoseDefect { message, help }) in faults {
-                found.push(PoseDefect { message: format!("row {number}: {message}"), help }, || None);
+            for (_, fault) in faults {
+                found.push(fault.prefixed(&format!("row {number}")));
             }
         }
     }

@@ -2,9 +2,9 @@
 
 use super::fields::{records, spans};
 use super::written::{Written, from_d, resolve};
-use super::{OffsetsAt, PoseDefect, PoseDiagnostics, header, shortened};
-use crate::design::Diagnostics;
+use super::{OffsetsAt, defect, header, shortened};
 use crate::design::{Design, Quantity, QuantityUnit};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::number_help;
 use csv::StringRecord;
@@ -56,24 +56,24 @@ impl<'a> PoseTable<'a> {
         at: OffsetsAt,
         known: &[&str],
     ) -> Result<Self, Diagnostics> {
-        let mut found = PoseDiagnostics::default();
+        let mut found = DiagnosticCollector::default();
         let mut rows = records(text);
         let Some((start, names)) = rows.next() else {
             return Err(empty("the table is empty"));
         };
         let width = names.len();
         if width > MOST_COLUMNS {
-            let fault = PoseDefect::new(
+            let fault = defect(
                 format!("{width} columns"),
                 format!("a table has at most {MOST_COLUMNS}; is it one of poses?"),
             );
-            found.push(fault, || spans(text, start).into_iter().next());
-            return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
+            found.push_at(fault, || spans(text, start).into_iter().next());
+            return Err(found.sorted());
         }
         if width == 1 && names[0].contains([';', '\t']) {
-            let fault = PoseDefect::new("one column alone", "separate the columns with commas");
-            found.push(fault, || spans(text, start).into_iter().next());
-            return Err(Diagnostics { source: None, list: found.list, omitted: 0 });
+            let fault = defect("one column alone", "separate the columns with commas");
+            found.push_at(fault, || spans(text, start).into_iter().next());
+            return Err(found.sorted());
         }
         let columns = columns(&names, &spans(text, start), design, known, &mut found);
         let mut errors = Vec::new();
@@ -82,10 +82,10 @@ impl<'a> PoseTable<'a> {
             if record.len() != width {
                 let message = format!("{} values under {width} column names", record.len());
                 let help = "every row has as many values as the header has names";
-                found.push(PoseDefect::new(message, help), || whole(&spans(text, start)));
+                found.push_at(defect(message, help), || whole(&spans(text, start)));
             } else if errors.len() == MOST_POSES {
-                let fault = PoseDefect::new(format!("more than {MOST_POSES} poses"), "split the table");
-                found.push(fault, || spans(text, start).into_iter().next());
+                let fault = defect(format!("more than {MOST_POSES} poses"), "split the table");
+                found.push_at(fault, || spans(text, start).into_iter().next());
                 break;
             } else {
                 let error = row(&record, &columns, at, design).unwrap_or_else(|faults| {
@@ -95,7 +95,7 @@ impl<'a> PoseTable<'a> {
                         let said = locked && std::mem::replace(&mut locked_said[dof.index()], true);
                         if !said {
                             let column = columns[dof.index()].as_ref();
-                            found.push(fault, || column.map(|column| spans[column.index].clone()));
+                            found.push_at(fault, || column.map(|column| spans[column.index].clone()));
                         }
                     }
                     PoseError::default()
@@ -103,7 +103,7 @@ impl<'a> PoseTable<'a> {
                 errors.push(error);
             }
         }
-        if errors.is_empty() && found.list.is_empty() {
+        if errors.is_empty() && found.is_empty() {
             return Err(empty("the table has no rows"));
         }
         found.refuse()?;
@@ -170,9 +170,7 @@ impl<'a> PoseTable<'a> {
 }
 
 fn empty(message: &str) -> Diagnostics {
-    let mut found = PoseDiagnostics::default();
-    found.push(PoseDefect::new(message, "write a header such as x,pitch_deg and one row per pose"), || None);
-    Diagnostics { source: None, list: found.list, omitted: 0 }
+    defect(message, "write a header such as x,pitch_deg and one row per pose").into()
 }
 
 /// The bytes from the first field to the last.
@@ -186,7 +184,7 @@ fn columns(
     spans: &[Range<usize>],
     design: &Design,
     known: &[&str],
-    found: &mut PoseDiagnostics,
+    found: &mut DiagnosticCollector,
 ) -> Columns {
     let mut columns = Columns::default();
     let mut wrong = false;
@@ -200,17 +198,17 @@ fn columns(
                     continue;
                 };
                 let message = format!("a second column for {}, after {}", dof.name(), first.name);
-                PoseDefect::new(message, "keep one of them")
+                defect(message, "keep one of them")
             }
             Err(fault) => fault,
         };
         wrong = true;
-        found.push(fault, || spans.get(index).cloned());
+        found.push_at(fault, || spans.get(index).cloned());
     }
     if columns.iter().all(Option::is_none) && !wrong {
         let help = "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
                     x_mm and pitch_deg";
-        found.push(PoseDefect::new("no column is a pose error", help), || whole(spans));
+        found.push_at(defect("no column is a pose error", help), || whole(spans));
     }
     columns
 }
@@ -221,7 +219,7 @@ fn row(
     columns: &Columns,
     at: OffsetsAt,
     design: &Design,
-) -> Result<PoseError, Vec<(Dof, PoseDefect, bool)>> {
+) -> Result<PoseError, Vec<(Dof, Diagnostic, bool)>> {
     let mut written = Written::default();
     let mut faults = Vec::new();
     for (dof, column) in Dof::ALL.into_iter().zip(columns) {
@@ -246,28 +244,27 @@ fn row(
     }
 }
 
-fn number(text: &str) -> Result<f64, PoseDefect> {
+fn number(text: &str) -> Result<f64, Diagnostic> {
     if text.is_empty() {
-        return Err(PoseDefect::new("a value is missing", "write 0 for an error that does not occur"));
+        return Err(defect("a value is missing", "write 0 for an error that does not occur"));
     }
     let value: f64 = text.parse().map_err(|_| {
         let help = number_help(text).unwrap_or_else(|| {
             "a number with a decimal point; its unit belongs into the name of the column, as in x_mm"
                 .to_owned()
         });
-        PoseDefect::new(format!("`{}` is no number", shortened(text)), help)
+        defect(format!("`{}` is no number", shortened(text)), help)
     })?;
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(PoseDefect::new(format!("`{}` is not finite", shortened(text)), "leave the row out"))
+        Err(defect(format!("`{}` is not finite", shortened(text)), "leave the row out"))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::poses::MOST_OBJECTIONS;
     use std::path::Path;
     use std::time::{Duration, Instant};
 
@@ -322,7 +319,7 @@ mod tests {
         assert_eq!(wrong("time,part\n1,2\n")[0].1, "no column is a pose error");
         assert_eq!(wrong("")[0].1, "the table is empty");
         assert_eq!(wrong("x\n\n")[0].1, "the table has no rows");
-        assert_eq!(wrong(&("x\n".to_owned() + &"?\n".repeat(50))).len(), MOST_OBJECTIONS);
+        assert_eq!(wrong(&("x\n".to_owned() + &"?\n".repeat(50))).len(), Diagnostics::MOST);
     }
 
     #[test]
@@ -333,7 +330,7 @@ mod tests {
         // As many columns as there may be, each cell of many rows wrong.
         let header = "x,".to_owned() + &"dx,".repeat(998) + "pitch";
         let rows = (",".repeat(999) + "\n").repeat(10_000);
-        assert_eq!(wrong(&format!("{header}\n{rows}")).len(), MOST_OBJECTIONS);
+        assert_eq!(wrong(&format!("{header}\n{rows}")).len(), Diagnostics::MOST);
         // Looking for each cell from the start of its record takes minutes.
         assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
     }

@@ -1,9 +1,9 @@
 //! Errors on a line: `x=0.2,pitch=10 deg`.
 
 use super::written::{Written, resolve};
-use super::{OffsetsAt, PoseDefect, PoseDiagnostics, shortened};
-use crate::design::Diagnostics;
+use super::{FAMILY, OffsetsAt, defect, shortened};
 use crate::design::{Design, DesignDefect, Quantity, nearest};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::odd;
 use std::ops::Range;
@@ -26,11 +26,11 @@ use std::ops::Range;
 /// # }
 /// ```
 pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
-    let mut found = PoseDiagnostics::default();
+    let mut found = DiagnosticCollector::default();
     let (written, spans) = terms(text, &mut found);
     let error = resolve(&written, OffsetsAt::Face, design).unwrap_or_else(|faults| {
         for (dof, fault) in faults {
-            found.push(fault, || Some(spans[dof.index()].clone()));
+            found.push_at(fault, || Some(spans[dof.index()].clone()));
         }
         PoseError::default()
     });
@@ -40,7 +40,7 @@ pub fn parse_pose(text: &str, design: &Design) -> Result<PoseError, Diagnostics>
 
 /// The value of each error, and its byte range in the text. Of an error that is named twice the first value
 /// counts.
-pub(super) fn terms(text: &str, found: &mut PoseDiagnostics) -> (Written, [Range<usize>; 5]) {
+pub(super) fn terms(text: &str, found: &mut DiagnosticCollector) -> (Written, [Range<usize>; 5]) {
     let (mut written, mut spans) = (Written::default(), <[Range<usize>; 5]>::default());
     let mut start = 0;
     for part in text.split(',') {
@@ -49,24 +49,24 @@ pub(super) fn terms(text: &str, found: &mut PoseDiagnostics) -> (Written, [Range
         start += part.len() + 1;
         match term(part.trim()) {
             Ok((dof, _)) if written[dof.index()].is_some() => {
-                let fault = PoseDefect::new(format!("{} is given twice", dof.name()), "name it once");
-                found.push(fault, || Some(span));
+                let fault = defect(format!("{} is given twice", dof.name()), "name it once");
+                found.push_at(fault, || Some(span));
             }
             Ok((dof, quantity)) => {
                 written[dof.index()] = Some(quantity);
                 spans[dof.index()] = span;
             }
-            Err(fault) => found.push(fault, || Some(span)),
+            Err(fault) => found.push_at(fault, || Some(span)),
         }
     }
     (written, spans)
 }
 
 /// Reads `pitch=10 deg`.
-fn term(part: &str) -> Result<(Dof, Quantity), PoseDefect> {
+fn term(part: &str) -> Result<(Dof, Quantity), Diagnostic> {
     const FORM: &str = "write errors such as \"x=0.2,pitch=10 deg\"";
     let Some((name, number)) = part.split_once('=') else {
-        return Err(PoseDefect::new(format!("`{}` is no error", shortened(part)), FORM));
+        return Err(defect(format!("`{}` is no error", shortened(part)), FORM));
     };
     let name = name.trim();
     let Some(dof) = Dof::ALL.into_iter().find(|dof| dof.name() == name) else {
@@ -74,11 +74,11 @@ fn term(part: &str) -> Result<(Dof, Quantity), PoseDefect> {
             || "one of x, y, roll, pitch, yaw".to_owned(),
             |meant| format!("did you mean {meant}?"),
         );
-        return Err(PoseDefect::new(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
+        return Err(defect(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
     };
     let quantity = number
         .parse()
-        .map_err(|c: DesignDefect| PoseDefect { message: format!("{name}: {c}"), help: c.help() })?;
+        .map_err(|c: DesignDefect| Diagnostic::error(FAMILY, format!("{name}: {c}"), c.help()))?;
     Ok((dof, quantity))
 }
 

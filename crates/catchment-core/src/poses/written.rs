@@ -1,7 +1,8 @@
 //! A pose error as written, with the checks of its units and of the design.
 
-use super::{OffsetsAt, PoseDefect};
+use super::{FAMILY, OffsetsAt, defect};
 use crate::design::{Design, Quantity, QuantityUnit};
+use crate::diagnostic::Diagnostic;
 use crate::pose::{Dof, PoseError, face_from_cor};
 use std::f64::consts::PI;
 
@@ -24,7 +25,7 @@ pub(super) fn resolve(
     written: &Written,
     at: OffsetsAt,
     design: &Design,
-) -> Result<PoseError, Vec<(Dof, PoseDefect)>> {
+) -> Result<PoseError, Vec<(Dof, Diagnostic)>> {
     let alignment = &design.alignment;
     let mut faults = Vec::new();
     let mut values = [0.0; 5];
@@ -63,21 +64,21 @@ pub(super) fn resolve(
 }
 
 /// The error in D or radians, if it is permitted.
-pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, PoseDefect> {
+pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Diagnostic> {
     let read = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
-    let value = read.map_err(|c| PoseDefect { message: format!("{}: {c}", dof.name()), help: c.help() })?;
+    let value = read.map_err(|c| Diagnostic::error(FAMILY, format!("{}: {c}", dof.name()), c.help()))?;
     let (limit, help) = if dof.is_rotation() {
         (HALF_TURN, "angles lie between -pi and pi (-180 and 180 deg); a bare number is in radians")
     } else {
         (FARTHEST, "offsets lie between -100 and 100 D; a bare number is in D, the width of the connector")
     };
     if value.abs() > limit {
-        return Err(PoseDefect::new(format!("{} = {quantity} is out of range", dof.name()), help));
+        return Err(defect(format!("{} = {quantity} is out of range", dof.name()), help));
     }
     Ok(value)
 }
 
-fn locked(dof: Dof, quantity: Quantity, stays: &str) -> PoseDefect {
+fn locked(dof: Dof, quantity: Quantity, stays: &str) -> Diagnostic {
     let name = dof.name();
     let help = if dof.is_rotation() {
         format!("leave {name} out, or free it in [alignment] of the design")
@@ -86,7 +87,7 @@ fn locked(dof: Dof, quantity: Quantity, stays: &str) -> PoseDefect {
             "leave {name} out, or write what the lock makes of it; free it in [alignment] of the design if it varies"
         )
     };
-    PoseDefect::new(format!("{name} = {quantity}, but {name} is locked: {stays}"), help)
+    defect(format!("{name} = {quantity}, but {name} is locked: {stays}"), help)
 }
 
 /// The value of a locked offset of the face centre, in the unit of the text.

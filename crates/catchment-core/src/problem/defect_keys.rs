@@ -3,7 +3,8 @@
 use crate::connector::{GeometryDefect, HalfRole, MeshProblem, PartGeometryError};
 use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::mated::MatedProblem;
-use crate::design::{DesignDefect, Diagnostic, Diagnostics, keys};
+use crate::design::{DesignDefect, keys};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use std::mem::discriminant;
 
 /// The key that forbids a change.
@@ -66,7 +67,7 @@ fn message(problem: &GeometryDefect, told: DisplayUnit) -> String {
 
 /// Geometric problems of halves that no file describes.
 pub fn diagnostics(problems: &[GeometryDefect]) -> Diagnostics {
-    let diagnostic = |(_, message, help)| Diagnostic::new(message, help);
+    let diagnostic = |(_, message, help)| Diagnostic::error("geometry", message, help);
     let list = of_geometry(problems, DisplayUnit::IN_D).into_iter().map(diagnostic).collect();
     Diagnostics { source: None, list, omitted: 0 }
 }

@@ -7,9 +7,9 @@ use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
 use crate::design::{
-    ConnectorSpec, Design, DesignDefect, Diagnostic, Diagnostics, FilesInMemory, SourceText, Sources, Width,
-    load, read_as,
+    ConnectorSpec, Design, DesignDefect, FilesInMemory, SourceText, Sources, Width, load, read_as,
 };
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::exec::Exec;
 use std::path::Path;
 
@@ -81,9 +81,8 @@ impl Draft {
             }
             Err(problems) => {
                 let place = |problem: crate::design::LocatedDefect| Diagnostic {
-                    message: problem.defect.to_string(),
-                    help: problem.defect.help(),
                     span: Some(problem.span),
+                    ..Diagnostic::error("design", problem.defect.to_string(), problem.defect.help())
                 };
                 let list = problems.list.into_iter().map(place).collect();
                 Err(Diagnostics { source: Some(source), list, omitted: problems.omitted }.into())
@@ -131,19 +130,25 @@ impl Draft {
     /// This design, rejected for an error of the key at `place` (such as `connector.fixed.pieces[2]`), or of
     /// the nearest item in the file.
     pub fn refused(self, place: &str, message: String, help: Option<String>) -> Diagnostics {
-        let diagnostic = self.diagnostic(place, message, help);
-        Diagnostics { source: self.source, list: vec![diagnostic], omitted: 0 }
+        let list = vec![self.diagnostic("design", place, message, help)];
+        Diagnostics { source: self.source, list, omitted: 0 }
     }
 
-    fn diagnostic(&self, place: &str, message: String, help: Option<String>) -> Diagnostic {
-        Diagnostic::new(message, help).at(self.places.span(place))
+    fn diagnostic(
+        &self,
+        code: &'static str,
+        place: &str,
+        message: String,
+        help: Option<String>,
+    ) -> Diagnostic {
+        Diagnostic::error(code, message, help).at(self.places.span(place))
     }
 
     /// Loads the meshes, builds the halves and checks the mated pose.
     ///
     /// # Errors
     /// All errors of the geometry; halves that do not meet in the aligned pose. An aligned pose with contact
-    /// that is not stable is a warning ([`Problem::doubts`]).
+    /// that is not stable is a warning ([`Problem::mated_warnings`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
         self.build_on(&Exec::new())
     }
@@ -197,7 +202,7 @@ impl Draft {
     pub(super) fn unbuilt(self, problems: &[crate::connector::GeometryDefect]) -> Diagnostics {
         let list = defect_keys::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
-            .map(|(place, message, help)| self.diagnostic(&place, message, help))
+            .map(|(place, message, help)| self.diagnostic("geometry", &place, message, help))
             .collect();
         Diagnostics { source: self.source, list, omitted: 0 }
     }
@@ -222,13 +227,13 @@ impl Draft {
         let pair = Pair::new(&connector, &self.design.alignment);
         let misdrawn = face::misdrawn(&connector, &self.design.connector);
         let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
-        let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
+        let (apart, unstable): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         let refusal = apart.first().map(|first| {
             // Reported once: all problems concern the same pose.
             let advice = remedies::advice(&connector, &pair, &self.design, first);
             self.clone().unmated(&apart, advice)
         });
-        (Problem::assembled(self, connector, pair, doubts), refusal)
+        (Problem::assembled(self, connector, pair, unstable), refusal)
     }
 
     /// Rejection for the mated pose; additional advice is attached to the first error.
@@ -237,7 +242,7 @@ impl Draft {
         let diagnostic = |problem: &MatedProblem| {
             let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.diagnostic(defect_keys::of_mated(problem), problem.in_words(told), help)
+            self.diagnostic("mated-pose", defect_keys::of_mated(problem), problem.in_words(told), help)
         };
         let list = problems.iter().map(diagnostic).collect();
         Diagnostics { list, source: self.source, omitted: 0 }

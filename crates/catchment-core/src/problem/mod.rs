@@ -3,7 +3,7 @@
 //! ```text
 //!   design file ──▶ Draft ──(meshes loaded, halves built, mated pose checked once)──▶ Problem
 //!   values in memory ─────────────────────────────────────────────────────────────────┘
-//!                                                     geometry · alignment · mirrors · doubts · digest
+//!                                                     geometry · alignment · mirrors · warnings · digest
 //! ```
 //!
 //! A [`Problem`] holds everything that determines a result besides the method and its settings. It is cheap
@@ -32,7 +32,8 @@ pub use draft::Draft;
 use crate::connector::{Connector, HalfRole};
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, ConnectorSpec, Design, Diagnostics, FamilySpec, LoadError, SourceText, hex};
+use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, LoadError, SourceText, hex};
+use crate::diagnostic::Diagnostics;
 use crate::exec::Exec;
 use crate::pose::Dof;
 use glam::DVec3;
@@ -48,7 +49,7 @@ struct Inner {
     draft: Draft,
     connector: Connector,
     pair: Pair,
-    doubts: Vec<MatedProblem>,
+    mated_warnings: Vec<MatedProblem>,
     digest: String,
 }
 
@@ -95,11 +96,11 @@ impl Problem {
         Draft::from(design).beside(&self.0.draft).build()
     }
 
-    fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
+    fn assembled(draft: Draft, connector: Connector, pair: Pair, mated_warnings: Vec<MatedProblem>) -> Self {
         // The mesh contents are known at this point for any design whose halves were built, so a digest
         // exists.
         let digest = draft.design().digest().map_or_else(String::new, |digest| hex(&digest));
-        Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
+        Self(Arc::new(Inner { draft, connector, pair, mated_warnings, digest }))
     }
 
     /// The design, resolved.
@@ -133,8 +134,8 @@ impl Problem {
     }
 
     /// Warnings about the mated pose.
-    pub fn doubts(&self) -> &[MatedProblem] {
-        &self.0.doubts
+    pub fn mated_warnings(&self) -> &[MatedProblem] {
+        &self.0.mated_warnings
     }
 
     /// SHA-256, in hexadecimal digits, of everything that may change an answer.
@@ -161,8 +162,8 @@ impl Problem {
     }
 
     /// Additional advice for a warning about its mated pose.
-    pub(crate) fn advice(&self, doubt: &MatedProblem) -> Option<String> {
-        remedies::advice(self.connector(), self.pair(), self.design(), doubt)
+    pub(crate) fn advice(&self, problem: &MatedProblem) -> Option<String> {
+        remedies::advice(self.connector(), self.pair(), self.design(), problem)
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.

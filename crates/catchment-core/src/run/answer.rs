@@ -3,7 +3,8 @@
 use super::jams::Jams;
 use super::window::{ToleranceWindow, WindowError};
 use super::{Run, Seating, Upright};
-use crate::acceptance::{Acceptance, Warning};
+use crate::acceptance::Acceptance;
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::landscape::Grid;
 use crate::merit::Merits;
 use crate::merit::onaa::Onaa;
@@ -86,7 +87,7 @@ impl Answer {
     }
 
     /// Everything that speaks against the numbers, in the order in which it was found.
-    pub fn warnings(&self) -> Vec<Warning> {
+    pub fn warnings(&self) -> Vec<Diagnostic> {
         let mut warnings = self.merits.warnings.clone();
         let descended = self.run.method.follows().is_some() && self.run.method.name() == "descent";
         // A certified result states its own undecided share.
@@ -95,21 +96,23 @@ impl Answer {
             Some(corrected) => {
                 let ([lo, hi], sum_grid) = (corrected.found.ci95, self.merits.sum.sum);
                 if !is_certain && !(lo..=hi).contains(&sum_grid) {
-                    warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] });
+                    warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] }.into());
                 }
                 let motions = corrected.found.strata.iter().map(|stratum| stratum.undecided).sum();
                 if motions > 0 {
-                    warnings.push(Warning::UndecidedSample { motions, of: corrected.found.descents });
+                    warnings.push(Warning::UndecidedSample { motions, of: corrected.found.descents }.into());
                 }
             }
-            None if !(descended || is_certain) && self.grid().is_some() => warnings.push(Warning::NoInterval),
+            None if !(descended || is_certain) && self.grid().is_some() => {
+                warnings.push(Warning::NoInterval.into());
+            }
             None => {}
         }
         if let Some(Err(error)) = &self.window {
-            warnings.push(Warning::Note { text: format!("there is no window: {error}") });
+            warnings.push(Diagnostic::warning("no-window", format!("there is no window: {error}")));
         }
         warnings.extend(self.seating.warnings(&self.problem));
-        warnings.extend(self.problem.seat_warnings().into_iter().map(|text| Warning::Note { text }));
+        warnings.extend(self.problem.warnings());
         warnings
     }
 }

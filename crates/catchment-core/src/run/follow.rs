@@ -1,6 +1,7 @@
 //! Exact motions of given poses: outcomes and trajectories.
 
-use crate::acceptance::{Acceptance, Domain, FailureReason, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, FailureReason, Outcome};
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
 use crate::method::{DecideError, Method, PoseObserver};
@@ -92,7 +93,7 @@ impl Problem {
                 let ends: Vec<End> = kept.into_iter().map(|(_, end)| end).collect();
                 let outcomes: Vec<Outcome> = ends.iter().map(|end| end.outcome).collect();
                 let cells = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
-                let warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+                let warnings = if cells > 0 { vec![Warning::Undecided { cells }.into()] } else { Vec::new() };
                 let domain = Domain::Poses(finished.iter().map(|number| poses[*number]).collect());
                 let acceptance = Acceptance { method: method.name(), domain, outcomes, warnings };
                 Ok(FollowedPoses { acceptance, ends, finished: Some(finished) })

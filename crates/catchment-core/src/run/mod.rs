@@ -46,7 +46,7 @@ pub use requirement::{Requirement, RequirementCheck, RequirementError};
 pub use seat::{Deeper, Residual, Seating};
 pub use upright::Upright;
 
-use crate::design::Diagnostics;
+use crate::diagnostic::Diagnostics;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};
 use crate::merit::MeritError;

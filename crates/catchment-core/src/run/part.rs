@@ -22,7 +22,8 @@
 //! A part stores the digest of its problem and its run: parts that do not belong together are rejected.
 
 use super::{Answer, Run, RunError, RunPlan, stages};
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::diagnostic::Warning;
 use crate::exec::{Exec, Stopwatch};
 use crate::method::{DecideError, MethodOutput};
 use crate::problem::Problem;
@@ -167,7 +168,8 @@ impl Run {
             return Err(RunPartError::Incomplete { number: parts[of].part.number, what: "is there twice" });
         }
         let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
-        let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+        let warnings =
+            if undecided > 0 { vec![Warning::Undecided { cells: undecided }.into()] } else { Vec::new() };
         let method = plan.method.name();
         let acceptance = Acceptance { method, domain: plan.domain.clone(), outcomes, warnings };
         let decided = MethodOutput::plain(acceptance, plan.method.settings_for(problem));

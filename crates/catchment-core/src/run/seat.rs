@@ -8,11 +8,12 @@
 //! Not promised: the poses are sampled uniformly from the accepted set, not from the errors of a robot.
 //! Lengths in D, angles in radians.
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome, Stream};
 use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
 use crate::contact::{Pair, Play, Seat, play};
-use crate::design::{ConnectorSpec, Diagnostics};
+use crate::design::ConnectorSpec;
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower};
 use crate::method::{DecisionMethod, motions_in};
@@ -114,31 +115,34 @@ impl Seating {
     }
 
     /// Its warnings: halves that rest farther off than the computed play of the seat.
-    pub fn warnings(&self, problem: &Problem) -> Vec<Warning> {
+    pub fn warnings(&self, problem: &Problem) -> Vec<Diagnostic> {
         let docked = &problem.alignment().docked;
         let far =
             self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
         let told = DisplayUnit::of(problem.design());
-        let far = far.map(|residual| Warning::Note {
-            text: format!(
+        let far = far.map(|residual| {
+            let text = format!(
                 "docked halves rest up to {} off in {}: state in [docked] how far off still counts as docked",
                 told.amount(residual.axis, residual.most),
                 residual.axis.name()
-            ),
+            );
+            Diagnostic::warning("rests-off", text)
         });
-        let deeper = self.deeper.iter().map(|Deeper { sinks, error }| Warning::Note {
-            text: format!(
+        let deeper = self.deeper.iter().map(|Deeper { sinks, error }| {
+            let text = format!(
                 "the mated pose does not hold: docked halves rest {} deeper, at {}; draw the halves so that this is the mated pose",
                 told.length(*sinks),
                 told.error(error)
-            ),
+            );
+            Diagnostic::warning("deeper-rest", text)
         });
-        let leaks = Seat::new(problem.pair()).leaks().then(|| Warning::Note {
-            text: format!(
+        let leaks = Seat::new(problem.pair()).leaks().then(|| {
+            let text = format!(
                 "the seat leaks: its rim is lower than docked.depth, {} above the mated pose, so every motion is followed until it rests; \
                  give a smaller depth if only what is in the hollow is docked",
                 told.length(docked.depth)
-            ),
+            );
+            Diagnostic::warning("leaky-seat", text)
         });
         far.chain(deeper).chain(leaks).collect()
     }
@@ -205,8 +209,8 @@ impl Problem {
     /// # Errors
     /// It is not stable, with the distance to the rest of the half.
     pub fn ensure_held(&self) -> Result<(), Diagnostics> {
-        let (message, advice) = match self.doubts().iter().find(|doubt| is_unstable(doubt)) {
-            Some(doubt) => (self.sentence(doubt), self.advice(doubt)),
+        let (message, advice) = match self.mated_warnings().iter().find(|problem| is_unstable(problem)) {
+            Some(problem) => (self.sentence(problem), self.advice(problem)),
             None => match self.fallen() {
                 Some(message) => (message, None),
                 None => return Ok(()),
@@ -215,27 +219,20 @@ impl Problem {
         Err(self.refused("alignment.free", message, advice))
     }
 
-    /// Warnings about the mated pose, as sentences: with the rest that the half reaches instead, if it is not
-    /// stable.
-    pub fn seat_warnings(&self) -> Vec<String> {
-        let mut said = self.said();
-        if !self.doubts().iter().any(is_unstable) {
-            said.extend(self.fallen());
-        }
-        said
-    }
-
-    /// The warnings, in the unit of the design.
-    fn said(&self) -> Vec<String> {
-        self.doubts().iter().map(|doubt| self.sentence(doubt)).collect()
+    /// Warnings about the mated pose: with the rest that the half reaches instead, if it is not stable.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        let problems = self.mated_warnings();
+        let fallen = if problems.iter().any(is_unstable) { None } else { self.fallen() };
+        let sentences = problems.iter().map(|problem| self.sentence(problem)).chain(fallen);
+        sentences.map(|text| Diagnostic::warning("mated-pose", text)).collect()
     }
 
     /// A warning as a sentence; for an unstable mated pose with the distance to the rest of the half and the
     /// remedy.
-    fn sentence(&self, doubt: &MatedProblem) -> String {
+    fn sentence(&self, problem: &MatedProblem) -> String {
         let told = DisplayUnit::of(self.design());
-        let said = doubt.in_words(told);
-        if !is_unstable(doubt) {
+        let said = problem.in_words(told);
+        if !is_unstable(problem) {
             return said;
         }
         let End { outcome, error, height } = self.settled();
@@ -279,6 +276,6 @@ impl Problem {
 }
 
 /// Whether the mated pose does not hold.
-const fn is_unstable(doubt: &MatedProblem) -> bool {
-    matches!(doubt, MatedProblem::NotMinimum { .. })
+const fn is_unstable(problem: &MatedProblem) -> bool {
+    matches!(problem, MatedProblem::NotMinimum { .. })
 }

@@ -3,7 +3,8 @@
 use super::plan::{Afterwards, GRID_PART};
 use super::window::WindowError;
 use super::{Answer, Over, Run, RunCorrection, RunError, RunPlan, Seating, Upright, jams, window};
-use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::acceptance::{Acceptance, Domain};
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
 use crate::merit::Merits;
@@ -82,8 +83,8 @@ pub(super) fn finish(
     }
     let corrected = stages.corrected(&mut acceptance, doubts, started, &part(0.0, sum))?;
     if stages.follower.own.is_some() || corrected.is_some() || doubts.is_some() {
-        let found = stages.follower.as_follow().doubt(problem, run.seed, &part(sum, step))?;
-        acceptance.warnings.extend(found);
+        let found = stages.follower.as_follow().step_warning(problem, run.seed, &part(sum, step))?;
+        acceptance.warnings.extend(found.map(Diagnostic::from));
     }
     let of_boxes = part(limit, boxes);
     let window = stages.window(&of_boxes)?;
@@ -203,7 +204,7 @@ impl Stages<'_> {
 const SMALL: f64 = 0.2;
 
 /// Warning that a small part of the error box docks, for results from samples.
-fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
+fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Diagnostic> {
     let share = |tolerance: &Tolerance| {
         let axis = grid.axes.iter().find(|axis| axis.dof == tolerance.dof)?;
         let share = tolerance.minus.max(tolerance.plus) / axis.lo.abs().max(axis.hi.abs());
@@ -215,7 +216,7 @@ fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
          four times the limits make the Sum more precise",
         shares.join(", ")
     );
-    (!shares.is_empty()).then_some(Warning::Note { text })
+    (!shares.is_empty()).then(|| Diagnostic::warning("small-part", text))
 }
 
 /// Remaining part of a time budget after the grid; samples always have a part.
@@ -275,7 +276,7 @@ fn settle(
     let of = acceptance.outcomes.len();
     let (cells, listed) = correction::ambiguous(of, |cell| doubts.is_ambiguous(cell), most, exec)?;
     if cells > most {
-        acceptance.warnings.push(Warning::Ambiguous { cells, of });
+        acceptance.warnings.push(Warning::Ambiguous { cells, of }.into());
         return Ok(());
     }
     let follower = follower(method);

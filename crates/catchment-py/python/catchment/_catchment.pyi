@@ -43,8 +43,8 @@ class Problem:
     def design(self) -> str:
         """The resolved design as JSON: lengths in D, angles in radians."""
 
-    def doubts(self) -> list[str]:
-        """Warnings about the mated pose, as sentences."""
+    def diagnostics(self) -> list[tuple[str, str | None, int | None, int | None, str, str]]:
+        """Warnings about the mated pose: message, advice, line, column, severity and code."""
 
     def error_box(self) -> list[tuple[str, float]]:
         """Names of the free errors, with the half-widths of the error box, in D and radians."""

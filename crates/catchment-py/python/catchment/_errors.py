@@ -7,17 +7,21 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 
-class Finding(NamedTuple):
-    """A diagnostic: an error in the input, with its place and advice."""
+class Diagnostic(NamedTuple):
+    """An error in the input, or a warning about a result, with its place and advice."""
 
-    #: Description of the error.
+    #: Description, a sentence or several.
     message: str
-    #: How to correct it, or `None`.
-    advice: str | None
+    #: What to do, or `None`.
+    advice: str | None = None
     #: Line in the text of the design, from 1; `None` without a place.
-    line: int | None
+    line: int | None = None
     #: Column in that line, in characters from 1.
-    column: int | None
+    column: int | None = None
+    #: `error`, `warning` or `note`.
+    severity: str = "error"
+    #: Stable code in kebab case, such as `touches-border`.
+    code: str = ""
 
 
 #: Characters that change the direction of writing, and invisible line breaks.
@@ -34,24 +38,23 @@ class Error(Exception):
     """Base class of all exceptions of this package. `except catchment.Error` catches these and no others."""
 
     #: All errors, each with its place and advice; empty if there is only a message.
-    findings: tuple[Finding, ...]
+    diagnostics: tuple[Diagnostic, ...]
     #: The file or name that the places refer to.
     path: str | None
 
     def __init__(
         self,
         message: str,
-        findings: Sequence[tuple[str, str | None, tuple[int, int] | None]] = (),
+        diagnostics: Sequence[tuple[str, str | None, int | None, int | None, str, str]] = (),
         omitted: int = 0,
         path: str | None = None,
     ) -> None:
         message = _escaped(message)
-        findings = [(_escaped(said), advice and _escaped(advice), place) for said, advice, place in findings]
-        super().__init__(message, findings, omitted, path)
-        self.findings = tuple(
-            Finding(said, advice, *(place or (None, None))) for said, advice, place in findings
+        self.diagnostics = tuple(
+            Diagnostic(_escaped(text), advice and _escaped(advice), *rest) for text, advice, *rest in diagnostics
         )
-        #: Number of further errors that are not in `findings`.
+        super().__init__(message, self.diagnostics, omitted, path)
+        #: Number of further errors that are not in `diagnostics`.
         self.omitted = omitted
         self.path = path
 
@@ -65,17 +68,17 @@ class DesignError(Error):
     @property
     def line(self) -> int | None:
         """Line of the first error, from 1."""
-        return self.findings[0].line if self.findings else None
+        return self.diagnostics[0].line if self.diagnostics else None
 
     @property
     def column(self) -> int | None:
         """Column of the first error, from 1."""
-        return self.findings[0].column if self.findings else None
+        return self.diagnostics[0].column if self.diagnostics else None
 
     @property
     def advice(self) -> str | None:
         """How to correct the first error."""
-        return self.findings[0].advice if self.findings else None
+        return self.diagnostics[0].advice if self.diagnostics else None
 
 
 class GeometryError(DesignError):

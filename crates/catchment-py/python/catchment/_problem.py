@@ -37,7 +37,7 @@ from ._arguments import (
     unmasked,
     whole,
 )
-from ._errors import ArgumentError
+from ._errors import ArgumentError, Diagnostic
 from ._results import End, Ends, Picture, Report, Result, Touching
 
 if TYPE_CHECKING:
@@ -216,9 +216,9 @@ class Problem:
         return dict(self._native.error_box())
 
     @property
-    def doubts(self) -> list[str]:
-        """Warnings about the mated pose, as sentences; empty without warnings."""
-        return self._native.doubts()
+    def diagnostics(self) -> list[Diagnostic]:
+        """Warnings about the mated pose; empty without warnings."""
+        return [Diagnostic(*fields) for fields in self._native.diagnostics()]
 
     @property
     def picture(self) -> Picture:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from . import _catchment
 from ._arguments import Progress, how
+from ._errors import Diagnostic
 
 if TYPE_CHECKING:
     import xarray
@@ -85,6 +86,14 @@ class Report(Generic[Fields]):
     def warnings(self) -> list[str]:
         """Warnings about the results, as sentences."""
         return [warning["message"] for warning in self["warnings"]]
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Warnings about the results, with severity, code and advice; `self["warnings"]` has their numbers."""
+        return [
+            Diagnostic(one["message"], one["help"], severity=one["severity"], code=one["code"])
+            for one in self["warnings"]
+        ]
 
     @property
     def csv(self) -> str:

@@ -1,6 +1,6 @@
 //! A document as a self-contained page of HTML.
 
-use super::Described;
+use super::{Described, in_a_line};
 use crate::html::Html;
 use catchment_core::document::{Section, SectionPart, Table};
 
@@ -22,7 +22,8 @@ pub fn html(described: &Described<'_>) -> String {
         page = parts(page, section);
     }
     for warning in &described.warnings {
-        page = page.fixed("<p class=\"warning\">Warning: ").text(warning).fixed("</p>\n");
+        let [severity, words] = in_a_line(warning);
+        page = page.fixed("<p class=\"warning\">").text(&format!("{severity} {words}")).fixed("</p>\n");
     }
     page.fixed("</body></html>\n").into_string()
 }

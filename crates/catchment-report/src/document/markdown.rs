@@ -1,6 +1,6 @@
 //! A document as Markdown, for notes, issues and pages.
 
-use super::Described;
+use super::{Described, in_a_line};
 use catchment_core::document::{Section, SectionPart, Table};
 use catchment_core::terminal::printable;
 use std::fmt::Write;
@@ -16,7 +16,8 @@ pub fn markdown(described: &Described<'_>) -> String {
         parts(&mut text, section);
     }
     for warning in &described.warnings {
-        let _ = write!(text, "\n> **Warning:** {}\n", escaped(warning));
+        let [severity, words] = in_a_line(warning);
+        let _ = write!(text, "\n> **{severity}** {}\n", escaped(&words));
     }
     text
 }

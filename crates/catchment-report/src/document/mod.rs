@@ -17,12 +17,12 @@ mod text;
 
 pub use html::html;
 pub use markdown::markdown;
-pub use text::{Style, body, lines, text, warnings};
+pub use text::{Style, body, diagnostics, lines, text};
 
 use crate::envelope::{ReportBody, ReportEnvelope};
-use crate::schema::{Timing, WarningReport};
-use catchment_core::advice::Advice;
+use crate::schema::Timing;
 use catchment_core::design::{ConnectorSpec, Design};
+use catchment_core::diagnostic::{Advice, Diagnostic, Severity};
 use catchment_core::document::{Document, Subject, Table, rounded};
 use catchment_core::pose::Dof;
 use serde::Serialize;
@@ -63,8 +63,8 @@ impl<T> DerefMut for OfDesign<T> {
 
 impl<T: Subject> ReportOf<T> {
     /// The report of a result. Warnings of its own numbers follow `warnings`, which are those of the problem.
-    pub fn new(design: &Design, result: T, mut warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
-        warnings.extend(result.warnings().into_iter().map(WarningReport::from));
+    pub fn new(design: &Design, result: T, mut warnings: Vec<Diagnostic>, timing: Option<Timing>) -> Self {
+        warnings.extend(result.warnings());
         Self::of(OfDesign { design: design.clone(), result }, warnings, timing)
     }
 }
@@ -99,15 +99,11 @@ impl<B: Printed> ReportEnvelope<B> {
     }
 
     /// The same, with the advice of each warning phrased by `controls`: `--samples 4000`, for a command line.
-    pub fn described_with(&self, controls: impl Fn(Advice) -> Option<String>) -> Described<'_> {
-        let warning = |warning: &WarningReport| {
-            let advice = warning.warning.advice().and_then(&controls);
-            advice.map_or_else(|| warning.message.clone(), |words| format!("{} ({words})", warning.message))
-        };
+    pub fn described_with(&self, controls: impl Fn(&Advice) -> Option<String>) -> Described<'_> {
         Described {
             title: self.body.title(),
             document: self.body.document(),
-            warnings: self.warnings.iter().map(warning).collect(),
+            warnings: self.warnings.iter().map(|warning| warning.worded(&controls)).collect(),
         }
     }
 
@@ -129,8 +125,20 @@ pub struct Described<'a> {
     pub title: Cow<'a, str>,
     /// The document.
     pub document: Document,
-    /// Warnings, a sentence or several each.
-    pub warnings: Vec<String>,
+    /// Warnings, with advice in the words of a front end.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A diagnostic in a line: `Warning: it is so (help)`, divided behind the severity.
+fn in_a_line(diagnostic: &Diagnostic) -> [String; 2] {
+    let severity = match diagnostic.severity {
+        Severity::Error => "Error:",
+        Severity::Warning => "Warning:",
+        Severity::Note => "Note:",
+    };
+    let message = diagnostic.message.clone();
+    let help = diagnostic.help().map_or_else(String::new, |help| format!(" ({help})"));
+    [severity.to_owned(), message + &help]
 }
 
 /// The rows about a design that stand below every result; with the error box and ρ below those that sample pose errors.
@@ -266,7 +274,7 @@ pub(crate) mod tests {
         Described {
             title: "peg | <socket>\u{1b}[2J".into(),
             document,
-            warnings: vec!["2 poses are undecided".to_owned()],
+            warnings: vec![Diagnostic::warning("undecided", "2 poses are undecided")],
         }
     }
 

@@ -1,6 +1,7 @@
 //! A document as text, for terminals.
 
 use super::Described;
+use catchment_core::diagnostic::{Diagnostic, Severity};
 use catchment_core::document::{Cell, Column, Document, Section, SectionPart, Table};
 use catchment_core::terminal::printable;
 
@@ -18,10 +19,10 @@ const RULE: usize = 24;
 /// The fewest columns in which a text at the end of a row is wrapped.
 const LEAST_TEXT: usize = 16;
 
-/// What a warning begins with.
-const WARNING: &str = "warning: ";
 const BOLD: &str = "\u{1b}[1m";
+const RED: &str = "\u{1b}[31m";
 const YELLOW: &str = "\u{1b}[33m";
+const CYAN: &str = "\u{1b}[36m";
 const RESET: &str = "\u{1b}[0m";
 
 /// How text is laid out.
@@ -29,7 +30,7 @@ const RESET: &str = "\u{1b}[0m";
 pub struct Style {
     /// Columns of the terminal.
     pub columns: usize,
-    /// Whether titles are bold and warnings yellow.
+    /// Whether titles are bold and severities coloured.
     pub colour: bool,
     /// Whether sections of details are shown.
     pub details: bool,
@@ -50,7 +51,7 @@ impl Style {
 /// A document with its warnings as text; ends with a line break.
 pub fn text(described: &Described<'_>, style: Style) -> String {
     let mut text = body(described, style);
-    for warning in warnings(described, style) {
+    for warning in diagnostics(&described.warnings, style) {
         text.extend(["\n", &warning]);
     }
     text
@@ -68,15 +69,27 @@ pub fn body(described: &Described<'_>, style: Style) -> String {
     page.text
 }
 
-/// The warnings of a document as text; each ends with a line break.
-pub fn warnings(described: &Described<'_>, style: Style) -> Vec<String> {
-    let one = |warning: &String| {
+/// `warning: …` and, if there is advice, `help: …` below the last of those that share it; each ends with a line break.
+pub fn diagnostics(list: &[Diagnostic], style: Style) -> Vec<String> {
+    let painted = |name: &str, colour: &str, text: &str| {
         let mut page = Page::new(style);
-        page.wrapped(WARNING, warning);
-        page.text.replace_range(..WARNING.trim_end().len(), &style.painted(YELLOW, WARNING.trim_end()));
+        page.wrapped(&format!("{name}: "), text);
+        page.text.replace_range(..=name.len(), &style.painted(colour, &format!("{name}:")));
         page.text
     };
-    described.warnings.iter().map(one).collect()
+    let one = |(k, Diagnostic { severity, message, advice, .. }): (usize, &Diagnostic)| {
+        let colour = match severity {
+            Severity::Error => RED,
+            Severity::Warning => YELLOW,
+            Severity::Note => CYAN,
+        };
+        let help = advice
+            .as_ref()
+            .filter(|help| list[k + 1..].iter().all(|next| next.advice.as_ref() != Some(*help)));
+        painted(severity.name(), colour, message)
+            + &help.map_or_else(String::new, |help| painted("help", CYAN, &help.to_string()))
+    };
+    list.iter().enumerate().map(one).collect()
 }
 
 /// The lines of a document without title and warnings.

@@ -8,7 +8,7 @@
 //! Measured; `tests/memory.py` repeats the measurement.
 
 use catchment_core::acceptance::Domain;
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::{Exec, OutOfBudget};
 use catchment_core::landscape::Grid;
 use catchment_core::merit::slice;

@@ -11,7 +11,7 @@
 use super::{PageError, deflated};
 use crate::schema::{AxisReport, axes};
 use catchment_core::acceptance::{Acceptance, Outcome};
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::Exec;
 use catchment_core::merit::MeritError;
 use rayon::prelude::*;

@@ -8,9 +8,9 @@ use crate::{JamsReport, Report, WindowReport};
 use catchment_core::acceptance::Acceptance;
 #[cfg(feature = "zarr")]
 use catchment_core::acceptance::Domain;
-use catchment_core::advice::Advice;
 #[cfg(feature = "zarr")]
 use catchment_core::design::{Design, hex};
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::method::Method;
 use catchment_core::problem::Problem;

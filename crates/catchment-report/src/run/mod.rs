@@ -458,9 +458,9 @@ fn axes(body: &RunBody) -> Vec<Dof> {
 mod tests {
     use crate::Report;
     use crate::schema::testing::*;
-    use catchment_core::acceptance::Warning;
     use catchment_core::contact::Play;
     use catchment_core::design::LengthUnit;
+    use catchment_core::diagnostic::Warning;
     use catchment_core::exec::Exec;
     use catchment_core::pose::{Dof, DofSet};
     use catchment_core::run::{Residual, Seating};
@@ -468,7 +468,7 @@ mod tests {
     fn text(free: DofSet, cells: usize) -> String {
         let design = design(free);
         let mut blob = blob(&design, cells);
-        blob.warnings.push(Warning::Undecided { cells: 3 });
+        blob.warnings.push(Warning::Undecided { cells: 3 }.into());
         Report::new(&design, &blob, serde_json::Value::Null, None, &Exec::new()).unwrap().table()
     }
 

@@ -2,7 +2,7 @@
 //! [`ReportEnvelope`] of every report. The same run writes the same bytes except for `timing`.
 
 use super::envelope::{ReportBody, ReportEnvelope};
-use catchment_core::acceptance::{Acceptance, Warning};
+use catchment_core::acceptance::Acceptance;
 use catchment_core::design::Design;
 use catchment_core::exec::Exec;
 use catchment_core::merit::centered::CenteredBox;
@@ -274,32 +274,6 @@ pub struct SuccessReport {
     pub outside: f64,
 }
 
-/// A warning, for programs and for people. A kind that this version does not know is read as a
-/// [`Warning::Note`] with its sentence.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(from = "StoredWarning")]
-pub struct WarningReport {
-    /// The warning, with its `kind`.
-    pub warning: Warning,
-    /// The warning as a sentence.
-    pub message: String,
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct StoredWarning {
-    warning: serde_json::Value,
-    message: String,
-}
-
-impl From<StoredWarning> for WarningReport {
-    fn from(StoredWarning { warning, message }: StoredWarning) -> Self {
-        let warning = serde_json::from_value(warning).unwrap_or(Warning::Note { text: message.clone() });
-        Self { warning, message }
-    }
-}
-
 /// Time of the computation. Only this part of a report differs between equal runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -368,7 +342,7 @@ impl Report {
             window: None,
             seat: None,
         };
-        ReportEnvelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
+        ReportEnvelope::of(body, warnings, timing)
     }
 
     /// Adds the success probability for a distribution of errors.
@@ -429,24 +403,6 @@ impl Outcomes {
     /// From counts in the order of [`Outcome::ALL`].
     const fn new([aligned, jammed, missed, undecided]: [usize; 4]) -> Self {
         Self { aligned, jammed, missed, undecided }
-    }
-}
-
-impl From<Warning> for WarningReport {
-    fn from(warning: Warning) -> Self {
-        Self { message: warning.to_string(), warning }
-    }
-}
-
-impl WarningReport {
-    /// A warning that is only a sentence.
-    pub fn note(text: &(impl ToString + ?Sized)) -> Self {
-        Self::from(Warning::Note { text: text.to_string() })
-    }
-
-    /// As it stands on stderr.
-    pub fn line(&self) -> String {
-        format!("warning: {}", self.message)
     }
 }
 

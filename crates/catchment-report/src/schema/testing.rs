@@ -3,6 +3,7 @@
 use super::*;
 use catchment_core::acceptance::{Domain, Outcome};
 use catchment_core::design::{Alignment, ConnectorSpec, Family, FamilySpec, LengthUnit};
+use catchment_core::diagnostic::Warning;
 use catchment_core::landscape::Grid;
 use catchment_core::pose::{DofSet, Mount};
 
@@ -33,6 +34,6 @@ pub(crate) fn blob(design: &Design, cells: usize) -> Acceptance {
         method: "flood",
         outcomes: (0..grid.len()).map(outcome).collect(),
         domain: Domain::Grid(grid.clone()),
-        warnings: vec![Warning::FloodingBias],
+        warnings: vec![Warning::FloodingBias.into()],
     }
 }

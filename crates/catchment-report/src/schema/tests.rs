@@ -3,6 +3,7 @@
 use super::testing::*;
 use super::*;
 use catchment_core::acceptance::{Domain, Outcome};
+use catchment_core::diagnostic::Warning;
 use catchment_core::pose::{DofSet, PoseError};
 
 fn report() -> Report {
@@ -43,16 +44,15 @@ fn the_contract_names_its_fields() {
 }
 
 #[test]
-fn doubts_of_the_set_itself_are_added_once() {
+fn warnings_of_the_set_itself_are_added_once() {
     let design = design([Dof::X, Dof::Y].into_iter().collect());
     let mut all = blob(&design, 4);
     all.outcomes.fill(Outcome::Aligned);
     all.outcomes[0] = Outcome::Undecided;
-    all.warnings.push(Warning::Undecided { cells: 1 });
+    all.warnings.push(Warning::Undecided { cells: 1 }.into());
     let report = Report::new(&design, &all, serde_json::Value::Null, None, &Exec::new()).unwrap();
-    let kinds: Vec<_> = report.warnings.iter().map(|w| w.warning.clone()).collect();
     let border = Warning::TouchesBorder { axes: vec!["x".to_owned(), "y".to_owned()] };
-    assert_eq!(kinds, [Warning::FloodingBias, Warning::Undecided { cells: 1 }, border]);
+    assert_eq!(report.warnings, [Warning::FloodingBias, Warning::Undecided { cells: 1 }, border]);
 }
 
 #[test]

@@ -16,8 +16,8 @@ pub use vtp::vtp;
 
 use super::document::Printed;
 use super::envelope::{ReportBody, ReportEnvelope};
-use super::schema::WarningReport;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{Column, ColumnFormat, Document, Table, grouped};
 use catchment_core::method::partition::{PartitionSettings, Solid, SolidShape, Solids};
 use glam::DVec3;
@@ -63,7 +63,7 @@ impl ReportBody for SolidsBody {
 
 impl SolidsReport {
     /// Report of a solid, with the warnings about its design.
-    pub fn new(design: &Design, shape: &Solids, warnings: Vec<WarningReport>) -> Self {
+    pub fn new(design: &Design, shape: &Solids, warnings: Vec<Diagnostic>) -> Self {
         let (low, high) = bounds(shape);
         let sum = |count: fn(&Solid) -> usize| shape.solids.iter().map(count).sum();
         let body = SolidsBody {

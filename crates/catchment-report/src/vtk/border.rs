@@ -13,7 +13,7 @@
 use super::xml::File;
 use super::{View, ViewError};
 use catchment_core::acceptance::Outcome;
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::Exec;
 
 /// The corners of the face towards −x, −y, −z and +x, +y, +z of a cell, counter-clockwise seen from outside.

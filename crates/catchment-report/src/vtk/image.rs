@@ -10,7 +10,7 @@
 use super::xml::File;
 use super::{View, ViewError};
 use catchment_core::acceptance::Outcome;
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::Exec;
 
 /// Bytes of a cell in the file: two codes and two numbers; and a count while the shares are made.

@@ -6,7 +6,7 @@ use super::outcomes::{self, OutcomesError};
 use super::{LAYOUT, ZarrError};
 use crate::{Report, bounded};
 use catchment_core::acceptance::{Acceptance, Domain};
-use catchment_core::advice::Advice;
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::Exec;
 use catchment_core::landscape::{Grid, GridAxis};
 use catchment_core::method::REGISTRY;
@@ -59,7 +59,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
         OutcomesError::Content(path, reason) => at(&path, reason),
         OutcomesError::Cancelled(cancelled) => cancelled.into(),
     })?;
-    let warnings = report.warnings.iter().map(|doubt| doubt.warning.clone()).collect();
+    let warnings = report.warnings.clone();
     let acceptance = Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings };
     let [aligned, jammed, missed, undecided] = acceptance.counts();
     let told = report.acceptance.outcomes;

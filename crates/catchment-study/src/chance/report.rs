@@ -2,8 +2,9 @@
 
 use super::results::place;
 use super::{Chance, ChanceMap, Overall, PoseChance};
-use catchment_core::acceptance::{Outcome, Warning};
+use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{
     Cell, Column, DesignUnits, Document, Subject, Table, grouped, percent, significant,
 };
@@ -21,7 +22,7 @@ const MUCH_CUT: f64 = 0.01;
 impl Subject for Chance {
     const KIND: &'static str = "chance";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let mut notes = Vec::new();
         for declared in self.declared.iter().filter(|declared| declared.cut > MUCH_CUT) {
             notes.push(format!(
@@ -70,7 +71,7 @@ impl Subject for Chance {
                 percent(share)
             ));
         }
-        notes.into_iter().map(|text| Warning::Note { text }).collect()
+        notes.into_iter().map(|text| Diagnostic::warning(Self::KIND, text)).collect()
     }
 
     fn setup(&self, design: &Design, document: &mut Document) {

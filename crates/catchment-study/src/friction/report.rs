@@ -1,8 +1,8 @@
 //! Text and table form of the effect of friction.
 
 use super::{FirstSticking, Friction, FrictionLevel, RetainedShare};
-use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::{Diagnostic, Warning};
 use catchment_core::document::{Cell, Column, ColumnFormat, Document, Subject, Table, grouped, tenths};
 use catchment_core::run::jams::contact_in_words;
 use serde::Serializer;
@@ -15,12 +15,12 @@ const SHOWN: usize = 6;
 impl Subject for Friction {
     const KIND: &'static str = "friction";
 
-    fn warnings(&self) -> Vec<Warning> {
-        let note = |text: String| Warning::Note { text };
+    fn warnings(&self) -> Vec<Diagnostic> {
+        let note = |text: String| Diagnostic::warning(Self::KIND, text);
         let undecided: usize = self.curve.iter().map(|rung| rung.undecided.count).sum();
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<Diagnostic> = Vec::new();
         if undecided > 0 {
-            warnings.push(Warning::Undecided { cells: undecided });
+            warnings.push(Warning::Undecided { cells: undecided }.into());
         }
         // Some poses always dock only just; the share is reported if it exceeds the confidence interval.
         let hardly = self.curve.iter().filter(|rung| {

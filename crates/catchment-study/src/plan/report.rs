@@ -2,8 +2,9 @@
 
 use super::{Pattern, PoseColumns, Prediction, TrialPlan, TrialPlanCounts, accuracy_words};
 use crate::validate::{FEWEST, LIMIT};
-use catchment_core::acceptance::{Outcome, Warning};
+use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, exact_motions, grouped};
 use catchment_core::pose::{Dof, PoseError};
 
@@ -13,13 +14,13 @@ const SHOWN: usize = 6;
 impl Subject for TrialPlan {
     const KIND: &'static str = "plan";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let TrialPlanCounts { poses, asymmetric, open, .. } = self.counts;
         let mut warnings = Vec::new();
         if poses == 0 {
             return warnings;
         }
-        let mut warn = |text: String| warnings.push(Warning::Note { text });
+        let mut warn = |text: String| warnings.push(Diagnostic::warning(Self::KIND, text));
         let deciding = |docks: bool| {
             let decides =
                 |prediction: &Prediction| prediction.margin() >= LIMIT && prediction.docks() == docks;

@@ -9,6 +9,7 @@
 use super::layout::{AxisDirection, PartLayout};
 use super::seat_check::{RejectedLayout, SeatCandidate, judge};
 use super::{PartFrames, Parts, SeatSearch, is_seat, rank, sink, ways};
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec2;
 
@@ -95,7 +96,7 @@ pub(super) fn let_down(
     looks: &[(AxisDirection, sink::ApproachResult)],
     looked: &mut SeatSearch,
     exec: &Exec,
-) -> Result<Option<String>, Cancelled> {
+) -> Result<Option<Diagnostic>, Cancelled> {
     let apart: Vec<AxisDirection> = looks
         .iter()
         .filter(|(_, drawn)| matches!(drawn, sink::ApproachResult::Apart(_)))
@@ -112,9 +113,10 @@ pub(super) fn let_down(
     rank(&mut looked.judged, both.settings.free, both.told, exec)?;
     let best = looked.judged.first().filter(|best| is_seat(best)).and_then(|best| best.sunk);
     Ok(best.map(|sunk| {
-        format!(
+        let text = format!(
             "in doubt: as drawn the parts are {} apart; the moving part slides so far along the approach to first contact",
             both.told.length(sunk.height.abs())
-        )
+        );
+        Diagnostic::note("drawn-apart", text)
     }))
 }

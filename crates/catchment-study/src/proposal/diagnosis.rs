@@ -12,10 +12,10 @@
 use super::halves::file_unit;
 use super::sink::{self, ApproachResult, Grain, Triangles, together};
 use super::{AxisDirection, PartFile, ProposalSettings};
-use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
+use catchment_core::diagnostic::Advice;
 use catchment_core::disjoint::DisjointSets;
 use glam::DVec3;
 use std::collections::HashMap;

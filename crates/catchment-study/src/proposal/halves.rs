@@ -3,9 +3,8 @@
 use super::candidate::shown_unit;
 use super::{PartDetail, PartFile, ProposalError, ProposalSettings, file};
 use catchment_core::connector::{Half, HalfRole, of_half};
-use catchment_core::design::{
-    ConnectorSpec, Diagnostics, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText,
-};
+use catchment_core::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
+use catchment_core::diagnostic::Diagnostics;
 use catchment_core::exec::Exec;
 use catchment_core::problem::{Draft, diagnostics};
 use glam::DVec3;

@@ -43,11 +43,11 @@ pub use layout::{AxisDirection, PartLayout};
 
 use assembled::{docked, let_down};
 use candidate::{candidate, shown_unit};
-use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::height_map;
 use catchment_core::design::LengthUnit;
+use catchment_core::diagnostic::{Advice, Diagnostic};
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::pose::DofSet;
 use catchment_core::problem::{Problem, ProblemError};
@@ -122,8 +122,8 @@ pub struct Proposal {
     pub problem: Problem,
     /// All evaluated candidates, the best first.
     pub candidates: Vec<Candidate>,
-    /// Warnings for the user, as sentences.
-    pub doubts: Vec<String>,
+    /// Notes for the user.
+    pub notes: Vec<Diagnostic>,
 }
 
 /// Why there is no proposal.
@@ -258,7 +258,7 @@ pub fn propose(
         known => known == frames,
     };
     let mut looked = SeatSearch::default();
-    let (mut doubts, mut why, mut frame) = (Vec::new(), None, diagnosis::Frame::Own);
+    let (mut notes, mut why, mut frame) = (Vec::new(), None, diagnosis::Frame::Own);
     // The cause for parts that lie flat on each other as drawn; reported only if there is no other seat.
     let mut flat = None;
     let meet = settings.frames != PartFrames::Any || settings.approach.is_some() || are_near(both.halves);
@@ -269,8 +269,8 @@ pub fn propose(
         }
         let may_be_assembly = frame != diagnosis::Frame::Own;
         if !looked.has_seat() {
-            if may_be_assembly && let Some(doubt) = let_down(&both, &looks, &mut looked, exec)? {
-                doubts.push(doubt);
+            if may_be_assembly && let Some(note) = let_down(&both, &looks, &mut looked, exec)? {
+                notes.push(note);
             }
             // Parts in frames of their own say nothing about an assembly, so no cause is given.
             why = (may_be_assembly || !may_be(PartFrames::Facing))
@@ -284,7 +284,7 @@ pub fn propose(
     if faces && !looked.has_seat() {
         anywhere(&both, &mut looked, exec)?;
         if frame == diagnosis::Frame::Perhaps {
-            doubts.push(diagnosis::ELSEWHERE.to_owned());
+            notes.push(Diagnostic::note("drawn-elsewhere", diagnosis::ELSEWHERE));
         }
     }
     let SeatSearch { judged, mut refused } = looked;
@@ -320,23 +320,22 @@ pub fn propose(
         };
         return Err(ProposalError::NoSeat { tried, remedy, advice });
     };
-    doubts.extend(warnings::of(&candidates, settings));
+    notes.extend(warnings::of(&candidates, settings));
     if best.score() < remedy::WEAK
         && faces
         && let Some((score, told)) = remedy::mirrored(&both, exec)?
         && score * NEARLY > best.score()
     {
-        doubts.push(told);
+        notes.push(Diagnostic::note("mirror-image", told));
     }
     if halves::are_more_than_two(parts, settings, exec) {
-        doubts.push(
-            "in doubt: the file holds more than two separate bodies; the two largest were taken".to_owned(),
-        );
+        let text = "in doubt: the file holds more than two separate bodies; the two largest were taken";
+        notes.push(Diagnostic::note("several-bodies", text));
     }
-    doubts.extend(diagnosis::inches(both.halves, settings, unit));
+    notes.extend(diagnosis::inches(both.halves, settings, unit).map(|text| Diagnostic::note("unit", text)));
     let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;
-    doubts.extend(problem.design().unit.and_then(|unit| warnings::of_size(problem.design().width, unit)));
-    Ok(Proposal { text, problem, candidates, doubts })
+    notes.extend(problem.design().unit.and_then(|unit| warnings::of_size(problem.design().width, unit)));
+    Ok(Proposal { text, problem, candidates, notes })
 }
 
 /// Parts in their own frames: the places at which one sinks into the other, or the shallow places if there

@@ -22,8 +22,8 @@ mod report;
 
 use super::pose_bytes;
 use catchment_core::acceptance::{Acceptance, Domain, Outcome};
-use catchment_core::advice::Advice;
 use catchment_core::design::{ConnectorSpec, Design, DesignDefect, Quantity, QuantityUnit};
+use catchment_core::diagnostic::Advice;
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::sum::Sum;
 use catchment_core::method::correction::Z95;

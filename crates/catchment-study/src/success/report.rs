@@ -1,8 +1,8 @@
 //! Text and table form of the success of robots.
 
 use super::{Factor, NearestFailure, NormalFit, RobotDocking, Success};
-use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{
     Cell, Column, DesignUnits, Document, Subject, Table, exact_motions, grouped, percent, significant,
 };
@@ -18,11 +18,14 @@ const FEW: usize = 50;
 impl Subject for Success {
     const KIND: &'static str = "success";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let is_one_of_many = self.robots.len() > 1;
         let of = |robot: &RobotDocking| {
             let name = if is_one_of_many { format!("{}: ", robot.robot) } else { String::new() };
-            robot.warnings().into_iter().map(move |text| Warning::Note { text: format!("{name}{text}") })
+            robot
+                .warnings()
+                .into_iter()
+                .map(move |text| Diagnostic::warning(Self::KIND, format!("{name}{text}")))
         };
         self.robots.iter().flat_map(of).collect()
     }

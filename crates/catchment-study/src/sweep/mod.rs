@@ -21,7 +21,7 @@ mod report;
 pub use axis::{SweepAxis, SweepAxisError};
 
 use catchment_core::acceptance::Outcome;
-use catchment_core::design::{Design, DesignDefect, DesignParameter, Diagnostic, SourceText, with_key};
+use catchment_core::design::{Design, DesignDefect, DesignParameter, SourceText, with_key};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::slice::GridSlice;
 use catchment_core::method::NotApplicable;
@@ -403,12 +403,10 @@ fn one(draft: &Draft, run: &Run, keep: &dyn DesignStore, exec: &Exec) -> Result<
 
 /// The error of a design with advice, in one line.
 fn reason(error: &ProblemError) -> String {
-    let said = |Diagnostic { message, help, .. }: &Diagnostic| match help {
-        Some(help) => format!("{message}; {help}"),
-        None => message.clone(),
-    };
     match error {
-        ProblemError::Diagnostics(diagnostics) => diagnostics.list.first().map(said).unwrap_or_default(),
+        ProblemError::Diagnostics(diagnostics) => {
+            diagnostics.list.first().map(ToString::to_string).unwrap_or_default()
+        }
         ProblemError::Load(error) => error.to_string(),
     }
 }
@@ -443,7 +441,7 @@ fn figures(answer: &Answer) -> Result<Figures, SweepError> {
         centered_edge: merits.centered.as_ref().map(|centered| centered.scale),
         tolerances: merits.tolerances.iter().map(along).collect(),
         success: answer.success.as_ref().map(|success| success.probability),
-        warnings: answer.warnings().iter().map(ToString::to_string).collect(),
+        warnings: answer.warnings().into_iter().map(|warning| warning.message).collect(),
         outline: outline(answer).map_err(RunError::from)?,
     })
 }

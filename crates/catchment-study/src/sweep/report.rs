@@ -41,7 +41,7 @@ impl Subject for Sweep {
                 document.row(what, value).more(self.named(trial));
             }
         }
-        self.describe_doubts(&mut document);
+        self.describe_warnings(&mut document);
         document.table(self.data());
         document
     }
@@ -122,7 +122,7 @@ impl Sweep {
     }
 
     /// The designs without figures, and the warnings of the others, each reason once.
-    fn describe_doubts(&self, document: &mut Document) {
+    fn describe_warnings(&self, document: &mut Document) {
         let mut reasons: BTreeMap<(bool, &str), Vec<&SweepDesign>> = BTreeMap::new();
         for trial in &self.designs {
             match &trial.found {

@@ -199,7 +199,7 @@ pub fn run(problem: &Problem, settings: &TrialsSettings, exec: &Exec) -> Result<
     let finest = settings.resolutions.iter().copied().max().unwrap_or(least);
     let trials = (finest as u64).saturating_pow(alignment.free.len() as u32);
     exec.ensure_fits("the trials", trials.saturating_mul(TRIAL_BYTES), |_| {
-        vec![catchment_core::advice::Advice::CoarserGrid]
+        vec![catchment_core::diagnostic::Advice::CoarserGrid]
     })?;
     let zraa = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
     let coarse = settings.resolutions.iter().map(|resolution| (*resolution, 0));

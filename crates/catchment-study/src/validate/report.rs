@@ -5,8 +5,8 @@ use super::{
     Validation,
 };
 use crate::plan::{PoseColumns, accuracy_words};
-use catchment_core::acceptance::Warning;
 use catchment_core::design::Design;
+use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{Column, DesignUnits, Document, Subject, Table, grouped, percent};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::ObservedOutcome;
@@ -17,9 +17,9 @@ const SHOWN: usize = 10;
 impl Subject for Validation {
     const KIND: &'static str = "validate";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let mut warnings = Vec::new();
-        let mut warn = |text: String| warnings.push(Warning::Note { text });
+        let mut warn = |text: String| warnings.push(Diagnostic::warning(Self::KIND, text));
         let Evidence { inside, outside, beyond, .. } = self.evidence;
         let limit = self.settings.limit;
         if self.verdict == PredictionVerdict::Undecided {

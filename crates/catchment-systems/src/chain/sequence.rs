@@ -17,7 +17,8 @@
 
 use super::kinematics::nearest_quarter;
 use super::shape::{ChainShape, LatchingPair, Reading, latches};
-use catchment::design::{Diagnostic, DiagnosticCollector, Diagnostics, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use catchment::suggest::number_help;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -190,26 +191,30 @@ pub fn table(source: &SourceText) -> Result<Vec<CommandStep>, Diagnostics> {
     let joints: Vec<Option<usize>> = match reader.headers() {
         Ok(names) => names.iter().skip(1).map(joint_of).collect(),
         Err(error) => {
-            wrong.push(Diagnostic::new(error.to_string(), None));
+            wrong.push(Diagnostic::error("chain", error.to_string(), None));
             return Err(wrong.of(source.clone()));
         }
     };
     if joints.is_empty() || joints.contains(&None) {
         let help = "the header is time_s and a column module_N for each joint".to_owned();
-        wrong.push(Diagnostic::new("a column is of no module", Some(help)).at(Some(0..first_line(source))));
+        wrong.push(
+            Diagnostic::error("chain", "a column is of no module", Some(help))
+                .at(Some(0..first_line(source))),
+        );
     }
     let mut steps: Vec<CommandStep> = Vec::new();
     for record in reader.records() {
         let record = match record {
             Ok(record) => record,
             Err(error) => {
-                wrong.push(Diagnostic::new(error.to_string(), None));
+                wrong.push(Diagnostic::error("chain", error.to_string(), None));
                 continue;
             }
         };
         let start = record.position().map_or(0, |p| p.byte() as usize);
         let end = source.text[start..].find('\n').map_or(source.text.len(), |at| start + at);
-        let mut refuse = |what: String, help| wrong.push(Diagnostic::new(what, help).at(Some(start..end)));
+        let mut refuse =
+            |what: String, help| wrong.push(Diagnostic::error("chain", what, help).at(Some(start..end)));
         let time_s = match record.get(0).unwrap_or_default().parse::<f64>() {
             Ok(time) if time.is_finite() => time,
             _ => {

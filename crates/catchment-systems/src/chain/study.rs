@@ -15,7 +15,7 @@ use super::file::ChainFile;
 use super::fold::{FoldError, FoldSettings, Folded, fold};
 use super::ring::{self, Corners};
 use super::shape::{ChainShape, LatchingPair};
-use catchment::design::Diagnostics;
+use catchment::diagnostic::Diagnostics;
 use catchment::exec::{Cancelled, Exec};
 use catchment::problem::{Draft, Problem, ProblemError};
 use serde::{Deserialize, Serialize};

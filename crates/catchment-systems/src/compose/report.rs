@@ -3,9 +3,9 @@
 use super::measure::LargestSquare;
 use super::read::ParsedRegion;
 use super::{ComposeSettings, Composition, HeadingSlice, RegionFrames};
+use catchment::diagnostic::Diagnostic;
 use catchment::document::{Cell, Column, Document, Table, number, significant};
 use catchment::report::document::Printed;
-use catchment::report::schema::WarningReport;
 use catchment::report::{ReportBody, ReportEnvelope};
 use glam::DVec2;
 use serde::Serialize;
@@ -179,13 +179,13 @@ pub(super) fn bracket([inner, outer]: [f64; 2]) -> String {
 
 /// The report of a composition.
 pub fn report(found: &Composition) -> ComposeReport {
-    let mut warnings: Vec<WarningReport> = Vec::new();
+    let mut warnings = Vec::new();
     if found.slices[found.shown].region.inner.parts() == 0 {
         let message = match found.bodies {
             Some(_) => "the bodies keep the halves apart everywhere",
             None => "the region has no area: the halves meet on a line at most",
         };
-        warnings.push(WarningReport::note(message));
+        warnings.push(Diagnostic::warning(ComposeBody::KIND, message));
     }
     ReportEnvelope::of(ComposeBody::new(found), warnings, None)
 }

@@ -65,6 +65,7 @@ pub use turns::{Between, MOST_TURNS, list_of_angles};
 use catchment::connector::{Connector, Half};
 use catchment::contact::Pair;
 use catchment::design::Design;
+use catchment::diagnostic::Diagnostic;
 use catchment::exec::Exec;
 use catchment::method::zraa::{HeightFacet, ZraaError, ZraaSettings, heights as first_contact, highest};
 use catchment::pose::{Dof, rotation};
@@ -281,7 +282,10 @@ pub fn invert(
 }
 
 /// Warnings about the mated pose of the result, as in `catchment check`, if it is not a rest.
-pub fn doubts(design: &Design, inverse: &Inverse) -> Vec<String> {
+pub fn warnings(design: &Design, inverse: &Inverse) -> Vec<Diagnostic> {
     let pair = Pair::new(&inverse.connector, &design.alignment);
-    catchment::contact::mated::problems(&pair).iter().map(ToString::to_string).collect()
+    catchment::contact::mated::problems(&pair)
+        .iter()
+        .map(|problem| Diagnostic::warning("mated-pose", problem.to_string()))
+        .collect()
 }

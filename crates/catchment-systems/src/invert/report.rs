@@ -1,13 +1,12 @@
 //! The report of an inverse: JSON and text.
 
 use super::file::pieces;
-use super::{Between, Inverse, InvertSettings, REACHED, Shortfall, doubts, measure};
-use catchment::acceptance::Warning;
+use super::{Between, Inverse, InvertSettings, REACHED, Shortfall, measure, warnings};
 use catchment::design::Design;
+use catchment::diagnostic::Diagnostic;
 use catchment::document::{Document, Subject, percent, significant};
 use catchment::method::zraa::area;
 use catchment::report::ReportOf;
-use catchment::report::schema::WarningReport;
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
@@ -82,14 +81,13 @@ pub fn report(design: &Design, found: &Inverse, limits: ManufacturingLimits) -> 
         draft_rad: (1.0 / found.steepest).atan(),
         narrowest_d: found.narrowest,
     };
-    let doubts = doubts(design, found).iter().map(WarningReport::note).collect();
-    ReportOf::new(design, body, doubts, None)
+    ReportOf::new(design, body, warnings(design, found), None)
 }
 
 impl Subject for InvertBody {
     const KIND: &'static str = "invert";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let mut warnings = Vec::new();
         let limits = &self.limits;
         if self.narrowest_d < limits.feature_d {
@@ -97,13 +95,13 @@ impl Subject for InvertBody {
             let text = format!(
                 "a facet of the new half is only {width} D wide, less than the {least} D that can be made"
             );
-            warnings.push(Warning::Note { text });
+            warnings.push(Diagnostic::warning(Self::KIND, text));
         }
         if self.draft_rad < limits.draft_rad {
             let [draft, least] = [self.draft_rad, limits.draft_rad].map(degrees);
             let text =
                 format!("the draft is only {draft}, less than {least}: the half may stick in its mould");
-            warnings.push(Warning::Note { text });
+            warnings.push(Diagnostic::warning(Self::KIND, text));
         }
         warnings
     }

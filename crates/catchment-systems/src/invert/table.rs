@@ -1,7 +1,8 @@
 //! Wanted heights as a table `x,y,height`, in D, over a grid; planes over triangles between its points.
 
 use super::Heights;
-use catchment::design::{Diagnostic, DiagnosticCollector, Diagnostics, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use catchment::method::zraa::HeightFacet;
 use catchment::suggest::number_help;
 use catchment::terminal::escaped;
@@ -21,7 +22,7 @@ pub fn wanted_from_table(source: SourceText) -> Result<Heights, Diagnostics> {
     let (rows, count) = rows(&source.text, &mut found);
     if count > MOST {
         let help = format!("at most {MOST} are taken");
-        found.push(Diagnostic::new(format!("the grid has {count} places"), Some(help)));
+        found.push(Diagnostic::error("heights", format!("the grid has {count} places"), Some(help)));
     }
     let heights = if found.is_empty() { grid(&rows, &mut found) } else { Heights::default() };
     if found.is_empty() { Ok(heights) } else { Err(found.of(source)) }
@@ -42,7 +43,9 @@ fn rows(text: &str, found: &mut DiagnosticCollector) -> (Vec<(DVec3, Range<usize
             continue;
         }
         let mut refuse = |message: String, help: &str| {
-            found.push_with(|| Diagnostic::new(message, Some(help.to_owned())).at(Some(span.clone())));
+            found.push_with(|| {
+                Diagnostic::error("heights", message, Some(help.to_owned())).at(Some(span.clone()))
+            });
         };
         if !named {
             named = true;
@@ -81,7 +84,8 @@ fn grid(rows: &[(DVec3, Range<usize>)], found: &mut DiagnosticCollector) -> Heig
     for (p, span) in rows {
         if places.insert((key(p.x), key(p.y)), p.z).is_some() {
             found.push(
-                Diagnostic::new(format!("({}, {}) is there twice", p.x, p.y), None).at(Some(span.clone())),
+                Diagnostic::error("heights", format!("({}, {}) is there twice", p.x, p.y), None)
+                    .at(Some(span.clone())),
             );
         }
         xs.push(p.x);
@@ -96,7 +100,7 @@ fn grid(rows: &[(DVec3, Range<usize>)], found: &mut DiagnosticCollector) -> Heig
             format!("{} places do not make a grid of {} x by {} y", places.len(), xs.len(), ys.len());
         let help =
             "give every x with every y, two of each at least; for a planar design y = -1 and y = 1 alike";
-        found.push(Diagnostic::new(message, Some(help.to_owned())));
+        found.push(Diagnostic::error("heights", message, Some(help.to_owned())));
     }
     if !found.is_empty() {
         return Heights::default();

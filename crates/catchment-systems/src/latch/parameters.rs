@@ -3,7 +3,8 @@
 use super::outline::Geometry;
 use super::rules::{RuleCheck, WIDEST_SLIT, rules};
 use crate::form::{Form, FormTable};
-use catchment::design::{Diagnostics, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::Diagnostics;
 use serde::Serialize;
 
 /// `MPa` in a `GPa`.

@@ -5,9 +5,9 @@ use super::measured::{THREE_SIDED_FAILURE, THREE_SIDED_LATCHING};
 use super::press::{Dip, Position, Record};
 use super::rules::{play, rules};
 use super::{Geometry, LatchDesign, LatchRule, RuleCheck, stiffness};
+use catchment::diagnostic::Diagnostic;
 use catchment::document::{Cell, Column, Document, Table};
 use catchment::report::document::Printed;
-use catchment::report::schema::WarningReport;
 use catchment::report::{ReportBody, ReportEnvelope};
 use serde::Serialize;
 use std::borrow::Cow;
@@ -104,9 +104,9 @@ pub fn report(latch: &LatchDesign, geometry: &Geometry, forces: &Forces, record:
     let (latching, failure) = (forces.latching(latch, geometry), forces.failure(latch));
     let [low, high] = latching.interval_n;
     let rules = rules(latch, geometry);
-    let doubts = rules.iter().filter(|rule| rule.verdict == RuleCheck::Doubt);
+    let unmet = rules.iter().filter(|rule| rule.verdict == RuleCheck::Doubt);
     let mut warnings: Vec<String> =
-        doubts.map(|rule| format!("not met: {} ({}); {}", rule.rule, rule.found, rule.reason)).collect();
+        unmet.map(|rule| format!("not met: {} ({}); {}", rule.rule, rule.found, rule.reason)).collect();
     for (name, doubts) in [("force to latch", &latching.doubts), ("force to break", &failure.doubts)] {
         warnings.extend(doubts.iter().map(|doubt| format!("{name}: {doubt}")));
     }
@@ -151,7 +151,8 @@ pub fn report(latch: &LatchDesign, geometry: &Geometry, forces: &Forces, record:
         rules,
         files: Vec::new(),
     };
-    ReportEnvelope::of(body, warnings.iter().map(WarningReport::note).collect(), None)
+    let warnings = warnings.into_iter().map(|text| Diagnostic::warning(LatchBody::KIND, text)).collect();
+    ReportEnvelope::of(body, warnings, None)
 }
 
 impl Printed for LatchBody {
@@ -317,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn the_defaults_are_without_doubt_and_fit_eighty_columns() {
+    fn the_defaults_have_no_warning_and_fit_eighty_columns() {
         let report = report(&LatchDesign::default());
         let text = report.table();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
@@ -351,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn doubts_travel_with_their_reasons() {
+    fn warnings_have_their_reasons() {
         let small = report(&LatchDesign { overhang: 1.27, ..LatchDesign::default() });
         let said = small.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>().join("\n");
         assert!(said.contains("less than 1 mm") && said.contains("upper bound"), "{said}");

@@ -1,6 +1,7 @@
 //! What must hold of the readers of this crate, whatever they read: for the tests beside, and for the fuzzer.
 
-use catchment::design::{Diagnostics, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::Diagnostics;
 use catchment::exec::Exec;
 use catchment_systems::chain::{ChainFile, sequence};
 use catchment_systems::compose::read::{ReadError, read};

@@ -26,7 +26,7 @@ use crate::study::accuracy::Accuracy;
 use crate::study::claims::claims;
 use crate::study::reproduce::TableComparison;
 use crate::study::{COVERAGE, Reproduction};
-use catchment::acceptance::Warning;
+use catchment::diagnostic::{Diagnostic, Warning};
 use serde_json::{Value, json};
 
 /// Version of the JSON.
@@ -123,8 +123,12 @@ impl Reproduction {
     }
 
     /// What must be known before any of these numbers is used.
-    pub fn warnings(&self) -> Vec<Warning> {
-        if self.tables.iter().any(is_fitted) { vec![Warning::DissertationConventions] } else { Vec::new() }
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        if self.tables.iter().any(is_fitted) {
+            vec![Warning::DissertationConventions.into()]
+        } else {
+            Vec::new()
+        }
     }
 }
 
@@ -151,13 +155,14 @@ fn is_fitted(table: &TableComparison) -> bool {
 
 fn table(table: &TableComparison) -> Value {
     let mut value = json!(table);
-    let warnings = if is_fitted(table) { vec![Warning::DissertationConventions] } else { Vec::new() };
-    let told = warnings.iter().map(|warning| {
-        let mut doubt = json!(warning);
-        doubt["message"] = warning.to_string().into();
-        doubt
-    });
-    value["warnings"] = told.collect();
+    let warnings: Vec<Diagnostic> =
+        if is_fitted(table) { vec![Warning::DissertationConventions.into()] } else { Vec::new() };
+    let with_kind = |warning: &Diagnostic| {
+        let mut entry = json!(warning);
+        entry["kind"] = warning.code.as_ref().into();
+        entry
+    };
+    value["warnings"] = warnings.iter().map(with_kind).collect();
     value
 }
 

@@ -8,7 +8,7 @@ mod peg;
 use catchment::acceptance::Domain;
 use catchment::contact::mated::MatedProblem;
 use catchment::contact::play;
-use catchment::design::Diagnostic;
+use catchment::diagnostic::{Diagnostic, Warning};
 use catchment::method::descent::{self, Follower};
 use catchment::method::drop;
 use catchment::method::zraa::{self, Zraa};
@@ -144,15 +144,15 @@ fn limits_decide_where_the_seat_leaves_play() {
     // It rests where it comes down: 0.03 off.
     assert_eq!(limit(0.035).follow(&at(0.03, 0.0)).outcome, Outcome::Aligned);
     assert_eq!(limit(0.02).follow(&at(0.03, 0.0)).outcome, Outcome::Jammed);
-    assert!(matches!(limit(0.02).doubts(), [MatedProblem::LimitCutsPlay { dof: Dof::X, .. }]));
-    assert_eq!(limit(0.05).doubts(), []);
+    assert!(matches!(limit(0.02).mated_warnings(), [MatedProblem::LimitCutsPlay { dof: Dof::X, .. }]));
+    assert_eq!(limit(0.05).mated_warnings(), []);
 }
 
 /// What keeps a problem from being built, as text.
 fn refused(problem: Result<Problem, ProblemError>) -> String {
     match problem {
         Err(ProblemError::Diagnostics(found)) => {
-            let said = |f: &Diagnostic| format!("{} ({})", f.message, f.help.clone().unwrap_or_default());
+            let said = |f: &Diagnostic| format!("{} ({})", f.message, f.help().unwrap_or_default());
             found.list.iter().map(said).collect::<Vec<_>>().join("\n")
         }
         other => panic!("{other:?}"),
@@ -372,8 +372,8 @@ fn flooding_says_that_level_ground_drains() {
         let over = Over::Grid("60".parse().unwrap());
         let run = Run { over, ..Run::by(method.parse().unwrap()) };
         let answer = run.on(&problem, &Exec::new()).unwrap();
-        let level = answer.warnings().iter().find_map(|warning| match warning {
-            Warning::LevelGround { cells, of } => Some((*cells, *of)),
+        let level = answer.warnings().iter().find_map(|warning| match warning.facts.as_deref() {
+            Some(Warning::LevelGround { cells, of }) => Some((*cells, *of)),
             _ => None,
         });
         // Without the level ground, and half a cell all around, it is the mouth.

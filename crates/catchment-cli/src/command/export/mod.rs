@@ -12,7 +12,7 @@ use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::written;
-use crate::result_args::{PrintArgs, warnings};
+use crate::result_args::PrintArgs;
 use crate::signals;
 use crate::source::is_stream;
 use catchment::exec::Exec;
@@ -134,6 +134,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         sdf: file(SDF),
         meshes,
     };
-    let report = ExportReport::new(body, warnings(&problem));
+    let report = ExportReport::new(body, problem.warnings());
     args.print.print(&report, &report.described())
 }

@@ -4,7 +4,8 @@ use super::RunArgs;
 use super::sample::duration;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::result_args::{Output, seat_warnings};
+use crate::output::lines;
+use crate::result_args::Output;
 use catchment::document::Subject;
 use catchment::exec::Exec;
 use catchment::problem::Problem;
@@ -74,7 +75,7 @@ pub(super) fn study<T: Subject>(
     let found = compute(&problem, exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let report = ReportOf::new(problem.design(), found, Vec::new(), Some(timing));
-    let mut notes = seat_warnings(&problem);
+    let mut notes = lines(&problem.warnings());
     let pictures = || Ok(vec![(T::KIND, draw(&report))]);
     notes.extend(output.write(&report, pictures, |_| Ok(String::new()), exec)?);
     drop(running);

@@ -1,6 +1,6 @@
 //! Limits on the memory of a result.
 
-use crate::advice::Advised;
+use crate::diagnostic::Advised;
 use std::fmt;
 
 /// A result would not fit in the memory budget.

@@ -41,8 +41,9 @@ mod touch;
 mod tree;
 mod tube;
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::{Nearby, Pair, SEAT_CORE};
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec, Stopwatch};
 use crate::landscape::Grid;
 use crate::pose::Dof;
@@ -417,7 +418,7 @@ impl Certified {
             "{undecided} of {} cells hold poses that are not certain; docking is certain in the others that count as aligned",
             outcomes.len()
         );
-        let warnings = if undecided > 0 { vec![Warning::Open { text: note }] } else { Vec::new() };
+        let warnings = if undecided > 0 { vec![Warning::Open { text: note }.into()] } else { Vec::new() };
         Ok(Acceptance { method: entry::INFO.name, domain: Domain::Grid(grid.clone()), outcomes, warnings })
     }
 

@@ -39,9 +39,9 @@ mod tests;
 
 use super::descent;
 use super::metric::Metric;
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
-use crate::advice::Advice;
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::Pair;
+use crate::diagnostic::{Advice, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{DescentDirections, Fold, Gradient, Grid, Landscape, LandscapeError, Resolution};
 use crate::pose::PoseError;
@@ -244,14 +244,14 @@ impl GridLabels {
             outcomes[*cell] == Outcome::Undecided && self.kept[self.fold.kept_cell(*cell)].is_known()
         };
         let cells = (0..outcomes.len()).into_par_iter().filter(lost).count();
-        let mut warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+        let mut warnings = if cells > 0 { vec![Warning::Undecided { cells }.into()] } else { Vec::new() };
         let (left, of) = (self.unreached(), self.inherited.cells);
         if left > 0 {
             let text = format!(
                 "the budget was spent before {left} of {of} cells in contact were reached, mirror images counted once: they are undecided, and lie \
                  higher than those that were decided"
             );
-            warnings.push(Warning::Open { text });
+            warnings.push(Warning::Open { text }.into());
         }
         Acceptance { method: entry::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
     }

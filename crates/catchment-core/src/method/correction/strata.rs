@@ -12,7 +12,7 @@
 
 use super::CorrectionError;
 use crate::acceptance::Outcome;
-use crate::advice::Advice;
+use crate::diagnostic::Advice;
 use crate::exec::Exec;
 use rayon::prelude::*;
 

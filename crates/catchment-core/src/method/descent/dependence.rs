@@ -10,8 +10,9 @@
 //! Not detected: errors that both steps share.
 
 use super::{DescentSettings, run};
-use crate::acceptance::{Domain, Warning};
+use crate::acceptance::Domain;
 use crate::contact::Pair;
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec};
 use crate::method::correction::wilson95;
 use crate::method::{affordable, motions_in};

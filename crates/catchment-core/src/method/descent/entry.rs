@@ -1,8 +1,9 @@
 //! Exact descent as a method: every pose is followed separately.
 
 use super::{DescentSettings, End, rests, rests_observed, run, step_dependence};
-use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
+use crate::diagnostic::Warning;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells, motions_in};
@@ -97,7 +98,12 @@ impl PoseMethod for DescentSettings {
         Ok(rests_observed(problem.pair(), domain, self, exec, finished)?)
     }
 
-    fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {
+    fn step_warning(
+        &self,
+        problem: &Problem,
+        seed: u64,
+        exec: &Exec,
+    ) -> Result<Option<Warning>, DecideError> {
         Ok(step_dependence(problem.pair(), self, seed, exec)?)
     }
 

@@ -54,8 +54,9 @@ pub use rest::{Rest, settle};
 pub use sticking::{FrictionAmbiguity, HARDLY, Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::Pair;
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec};
 use crate::method::interface::PoseObserver;
 use crate::pose::PoseError;
@@ -352,6 +353,7 @@ fn each(
     })?;
     let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
     let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
-    let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+    let warnings =
+        if undecided > 0 { vec![Warning::Undecided { cells: undecided }.into()] } else { Vec::new() };
     Ok((Acceptance { method: "descent", domain, outcomes, warnings }, ends))
 }

@@ -3,10 +3,11 @@
 use super::fall::home;
 use super::rest::TOUCHING;
 use super::{DescentSettings, Follower, outcome, run, trace};
-use crate::acceptance::{Domain, Outcome, Warning};
+use crate::acceptance::{Domain, Outcome};
 use crate::connector::{Connector, HalfSource};
 use crate::contact::{Pair, meshes};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::diagnostic::Warning;
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, face_from_cor};
 use glam::DVec3;

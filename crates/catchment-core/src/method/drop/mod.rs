@@ -43,9 +43,9 @@ mod turning;
 pub use path::{DropMoment, Path};
 pub use settings::{DropSettings, Launch, MassProperties, PRESETS, Preset, Push, SettingError};
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
-use crate::advice::Advice;
+use crate::acceptance::{Acceptance, Domain, Outcome, Stream};
 use crate::contact::Pair;
+use crate::diagnostic::{Advice, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::method::descent::End;
@@ -142,7 +142,8 @@ fn run_observed(
     })?;
     let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
     let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
-    let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+    let warnings =
+        if undecided > 0 { vec![Warning::Undecided { cells: undecided }.into()] } else { Vec::new() };
     Ok((Acceptance { method: "drop", domain, outcomes, warnings }, ends))
 }
 

@@ -16,7 +16,7 @@ use super::meyer::neighbourhood::Neighbourhood;
 use super::steepest::Metric;
 use super::sweep::{Slabs, level, level_of, number_of};
 use super::{DrainageRule, FloodError};
-use crate::advice::Advice;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};

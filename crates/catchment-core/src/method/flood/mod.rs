@@ -58,9 +58,9 @@ mod tree;
 mod watersheds;
 
 use crate::acceptance::{Acceptance, Outcome};
-use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::design::Alignment;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
 use crate::method::descent;

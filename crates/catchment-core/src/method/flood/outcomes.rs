@@ -2,7 +2,8 @@
 
 use super::Basin;
 use super::tree::{MergeTree, explains};
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, Landscape};
 use rayon::prelude::*;
@@ -142,28 +143,27 @@ pub(super) fn warnings(
     targets: &[usize],
     border_cells: usize,
     exec: &Exec,
-) -> Result<Vec<Warning>, Cancelled> {
+) -> Result<Vec<Diagnostic>, Cancelled> {
     let grid = &landscape.grid;
-    let mut warnings = vec![Warning::FloodingBias];
+    let mut warnings = vec![Warning::FloodingBias.into()];
     if targets.is_empty() || targets.iter().all(|t| outcomes[*t] != Outcome::Aligned) {
-        warnings.push(Warning::MatedPoseNotAccepted);
+        warnings.push(Warning::MatedPoseNotAccepted.into());
     }
     let [cells, of] = level_ground(landscape, outcomes, targets, exec)?;
     if cells as f64 > LEVEL_SHARE * of as f64 {
-        warnings.push(Warning::LevelGround { cells, of });
+        warnings.push(Warning::LevelGround { cells, of }.into());
     }
     let axes = touched_axes(grid, outcomes);
     if !axes.is_empty() {
-        warnings.push(Warning::TouchesBorder { axes });
+        warnings.push(Warning::TouchesBorder { axes }.into());
     }
     if border_cells > 0 {
         let share = 100.0 * border_cells as f64 / outcomes.len() as f64;
-        warnings.push(Warning::Note {
-            text: format!(
-                "{share:.1} % of the poses drain to the border of the error box, beyond which nothing was sampled; \
-                 they count as missed at a border of x or y, as jammed at one of an angle"
-            ),
-        });
+        let text = format!(
+            "{share:.1} % of the poses drain to the border of the error box, beyond which nothing was sampled; \
+             they count as missed at a border of x or y, as jammed at one of an angle"
+        );
+        warnings.push(Diagnostic::warning("drains-to-border", text));
     }
     Ok(warnings)
 }

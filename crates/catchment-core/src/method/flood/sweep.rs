@@ -10,7 +10,7 @@
 //! slabs are held at once. A value is a height in the upper half of a word and a distinguishing number in the
 //! lower half: the smallest value is that of the lowest cell, and among equals that of the smallest number.
 
-use crate::advice::Advice;
+use crate::diagnostic::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use std::ops::Range;
 

@@ -38,9 +38,9 @@ pub mod stepping;
 
 pub use lever::{Lever, LeverBody, LeverPose};
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
-use crate::advice::Advice;
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::design::{ConnectorSpec, Design, Docked, Family};
+use crate::diagnostic::{Advice, Diagnostic};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::pose::{Dof, DofSet, Mount};
@@ -241,7 +241,7 @@ pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, K
             "the kinematic stepping knows one contact at a time, both halves pivot, and their x is kept"
         }
     };
-    let warnings = vec![Warning::Note { text: text.to_owned() }];
+    let warnings = vec![Diagnostic::warning("kinematic-bounds", text)];
     Ok(Acceptance { method: "kinematic", domain: Domain::Grid(grid.clone()), outcomes, warnings })
 }
 

@@ -31,10 +31,10 @@ mod tests;
 mod watershed;
 
 use super::descent;
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
-use crate::advice::Advice;
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::{Pair, Seat};
 use crate::design::Alignment;
+use crate::diagnostic::{Advice, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::polytope::{MAX_DIMENSION, Polytope, PolytopePoint};
@@ -347,10 +347,10 @@ impl Partition {
         let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
         let mut warnings = Vec::new();
         if self.watersheds.cut_off {
-            warnings.push(Warning::CutOff);
+            warnings.push(Warning::CutOff.into());
         }
         if undecided > 0 {
-            warnings.push(Warning::Undecided { cells: undecided });
+            warnings.push(Warning::Undecided { cells: undecided }.into());
         }
         Ok(Acceptance { method: "partition", domain, outcomes, warnings })
     }

@@ -36,9 +36,9 @@ mod solve;
 mod tests;
 
 use super::descent;
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
-use crate::advice::Advice;
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::Pair;
+use crate::diagnostic::{Advice, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Fold, Gradient, GradientField, Grid, LandscapeError, Resolution};
 use crate::method::metric::Metric;
@@ -158,7 +158,7 @@ impl ArrivalFractions {
         });
         let mut warnings = Vec::new();
         if self.cut_off {
-            warnings.push(Warning::CutOff);
+            warnings.push(Warning::CutOff.into());
         }
         Ok(Acceptance { method: "transport", domain: Domain::Grid(self.grid.clone()), outcomes, warnings })
     }

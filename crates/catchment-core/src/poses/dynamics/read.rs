@@ -1,8 +1,9 @@
 //! Parser of distributions: from a file, or a line.
 
-use super::super::{PoseDefect, PoseDiagnostics, shortened};
+use super::super::{FAMILY, defect, shortened};
 use super::{Circumstance, Dynamics, ScalarDistribution};
-use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
+use crate::design::{Design, Quantity, SourceText, nearest};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::suggest::{number_help, value_help};
 use std::ops::Range;
 use toml::Spanned;
@@ -22,29 +23,17 @@ const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { mea
 /// # Errors
 /// The errors of the text, with their byte ranges.
 pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Diagnostics> {
-    let mut found = PoseDiagnostics::default();
-    let read = draw(text, design);
-    match read {
-        Ok(read) => Ok(read),
-        Err((span, fault)) => {
-            found.push(fault, || Some(span));
-            found.refuse()?;
-            Err(Diagnostics { source: None, list: Vec::new(), omitted: 0 })
-        }
-    }
+    Ok(draw(text, design)?)
 }
 
-fn draw(
-    text: &str,
-    design: &Design,
-) -> Result<(Circumstance, ScalarDistribution), (Range<usize>, PoseDefect)> {
+fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution), Diagnostic> {
     let Some((name, law)) = text.split_once('=') else {
         let message = format!("`{}` is no circumstance and its law", shortened(text));
-        return Err((0..text.len(), PoseDefect::new(message, "write \"friction=0.1..0.3\"")));
+        return Err(placed(0..text.len(), defect(message, "write \"friction=0.1..0.3\"")));
     };
-    let of = named(name.trim()).map_err(|fault| (0..name.len(), fault))?;
+    let of = named(name.trim()).map_err(|fault| placed(0..name.len(), fault))?;
     let law = line(law, of, design).and_then(|law| sound(law, of));
-    law.map(|law| (of, law)).map_err(|fault| (name.len() + 1..text.len(), fault))
+    law.map(|law| (of, law)).map_err(|fault| placed(name.len() + 1..text.len(), fault))
 }
 
 /// Reads a file with a table `[dynamics]` for a design.
@@ -53,22 +42,22 @@ fn draw(
 /// Everything that is wrong with the file, each in its place.
 pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
-    let mut found = PoseDiagnostics::default();
+    let mut found = DiagnosticCollector::default();
     let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
     for (error, span) in syntax.iter().zip(&broken) {
         let help = value_help(&source.text, span.start);
-        let fault = PoseDefect { message: error.message().to_owned(), help };
-        found.push(fault, || Some(span.clone()));
+        let fault = Diagnostic::error(FAMILY, error.message().to_owned(), help);
+        found.push_at(fault, || Some(span.clone()));
     }
     let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
     reader.file(document.get_ref());
     let Reader { found, dynamics, .. } = reader;
-    found.refuse().map_err(|diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics })?;
+    found.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
     Ok(dynamics)
 }
 
 struct Reader<'a> {
-    found: PoseDiagnostics,
+    found: DiagnosticCollector,
     /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
     design: &'a Design,
@@ -76,9 +65,10 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn note(&mut self, span: Range<usize>, fault: PoseDefect) {
+    fn note(&mut self, fault: Diagnostic) {
+        let span = fault.span.clone().unwrap_or_default();
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(fault, || Some(span).filter(|span| !span.is_empty()));
+            self.found.push(fault.at(Some(span)));
         }
     }
 
@@ -86,46 +76,45 @@ impl Reader<'_> {
         const HELP: &str = "begin with [dynamics]";
         for (name, _) in root.iter().filter(|(name, _)| name.get_ref() != "dynamics") {
             let message = format!("unknown key `{}` in the file", shortened(name.get_ref()));
-            self.note(name.span(), PoseDefect::new(message, HELP));
+            self.note(placed(name.span(), defect(message, HELP)));
         }
         let Some(value) = root.get("dynamics") else {
             if self.broken.is_empty() {
-                self.note(0..0, PoseDefect::new("the file declares no dynamics", HELP));
+                self.note(placed(0..0, defect("the file declares no dynamics", HELP)));
             }
             return;
         };
         let DeValue::Table(table) = value.get_ref() else {
-            self.note(value.span(), PoseDefect::new("`dynamics` is no table", HELP));
+            self.note(placed(value.span(), defect("`dynamics` is no table", HELP)));
             return;
         };
         if table.is_empty() && self.broken.is_empty() {
             let message = "it declares nothing";
-            self.note(value.span(), PoseDefect::new(message, "such as speed = \"50 ± 10 mm/s\""));
+            self.note(placed(value.span(), defect(message, "such as speed = \"50 ± 10 mm/s\"")));
         }
         for (name, value) in table {
             let of = match named(name.get_ref()) {
                 Ok(of) => of,
                 Err(fault) => {
-                    self.note(name.span(), fault);
+                    self.note(placed(name.span(), fault));
                     continue;
                 }
             };
-            match self.law(value, of).and_then(|law| sound(law, of).map_err(|fault| (value.span(), fault))) {
+            match self
+                .law(value, of)
+                .and_then(|law| sound(law, of).map_err(|fault| placed(value.span(), fault)))
+            {
                 Ok(law) => self.dynamics.declared.insert(of, law).map_or((), |_| ()),
-                Err((span, fault)) => self.note(span, fault),
+                Err(fault) => self.note(fault),
             }
         }
     }
 
-    fn law(
-        &mut self,
-        value: &Value<'_>,
-        of: Circumstance,
-    ) -> Result<ScalarDistribution, (Range<usize>, PoseDefect)> {
+    fn law(&mut self, value: &Value<'_>, of: Circumstance) -> Result<ScalarDistribution, Diagnostic> {
         if let DeValue::Table(table) = value.get_ref() {
             return self.table(table, value.span(), of);
         }
-        line(&written(value)?, of, self.design).map_err(|fault| (value.span(), fault))
+        line(&written(value)?, of, self.design).map_err(|fault| placed(value.span(), fault))
     }
 
     fn table(
@@ -133,14 +122,14 @@ impl Reader<'_> {
         table: &DeTable<'_>,
         span: Range<usize>,
         of: Circumstance,
-    ) -> Result<ScalarDistribution, (Range<usize>, PoseDefect)> {
+    ) -> Result<ScalarDistribution, Diagnostic> {
         const KEYS: [&str; 7] = ["mean", "sigma", "from", "to", "median", "factor", "measured"];
         for (name, _) in table {
             if !KEYS.contains(&&**name.get_ref()) {
                 let help = nearest(name.get_ref(), KEYS)
                     .map_or_else(|| TABLES.to_owned(), |meant| format!("did you mean `{meant}`?"));
                 let message = format!("unknown key `{}` in {}", shortened(name.get_ref()), of.name());
-                return Err((name.span(), PoseDefect::new(message, help)));
+                return Err(placed(name.span(), defect(message, help)));
             }
         }
         let design = self.design;
@@ -148,12 +137,12 @@ impl Reader<'_> {
             Some(value) => {
                 let text = written(value)?;
                 let read = if bare { plain(&text) } else { quantity(&text, of, None, design) };
-                read.map(Some).map_err(|fault| (value.span(), fault))
+                read.map(Some).map_err(|fault| placed(value.span(), fault))
             }
             None => Ok(None),
         };
         let of_two = |first: &str, second: &str, bare: bool| {
-            Ok(number(first, false)?.zip(number(second, bare)?).filter(|_| table.len() == 2))
+            Ok::<_, Diagnostic>(number(first, false)?.zip(number(second, bare)?).filter(|_| table.len() == 2))
         };
         if let Some((mean, sigma)) = of_two("mean", "sigma", false)? {
             return Ok(ScalarDistribution::Normal { mean, sigma });
@@ -167,50 +156,54 @@ impl Reader<'_> {
         let list = table.get("measured").filter(|_| table.len() == 1);
         let Some(list) = list else {
             let message = format!("the law of {} is not complete, or two at once", of.name());
-            return Err((span, PoseDefect::new(message, TABLES)));
+            return Err(placed(span, defect(message, TABLES)));
         };
         let DeValue::Array(values) = list.get_ref() else {
-            return Err((list.span(), PoseDefect::new("`measured` is no list", "measured = [0.1, 0.2]")));
+            return Err(placed(list.span(), defect("`measured` is no list", "measured = [0.1, 0.2]")));
         };
         if values.is_empty() || values.len() > MOST_VALUES {
             let message = format!("{} measured values", values.len());
-            return Err((list.span(), PoseDefect::new(message, format!("give 1 to {MOST_VALUES}"))));
+            return Err(placed(list.span(), defect(message, format!("give 1 to {MOST_VALUES}"))));
         }
         let mut measured = Vec::new();
         for value in values {
             let read = quantity(&written(value)?, of, None, design);
-            measured.push(read.map_err(|fault| (value.span(), fault))?);
+            measured.push(read.map_err(|fault| placed(value.span(), fault))?);
         }
         Ok(ScalarDistribution::Measured { measured })
     }
 }
 
+fn placed(span: Range<usize>, fault: Diagnostic) -> Diagnostic {
+    Diagnostic { span: Some(span), ..fault }
+}
+
 type Value<'t> = Spanned<DeValue<'t>>;
 
 /// A number or a text, as it is written.
-fn written(value: &Value<'_>) -> Result<String, (Range<usize>, PoseDefect)> {
+fn written(value: &Value<'_>) -> Result<String, Diagnostic> {
     match value.get_ref() {
         DeValue::String(text) => Ok(text.to_string()),
         // TOML lets digits be grouped.
         DeValue::Integer(integer) => Ok(integer.as_str().replace('_', "")),
         DeValue::Float(float) => Ok(float.as_str().replace('_', "")),
-        _ => Err((value.span(), PoseDefect::new("it is no number and no law", FORM))),
+        _ => Err(placed(value.span(), defect("it is no number and no law", FORM))),
     }
 }
 
 /// The circumstance of this name.
-fn named(name: &str) -> Result<Circumstance, PoseDefect> {
+fn named(name: &str) -> Result<Circumstance, Diagnostic> {
     let names = Circumstance::ALL.map(Circumstance::name);
     let found = Circumstance::ALL.into_iter().find(|of| of.name() == name);
     found.ok_or_else(|| {
         let help = nearest(name, names)
             .map_or_else(|| format!("one of {}", names.join(", ")), |meant| format!("did you mean {meant}?"));
-        PoseDefect::new(format!("there is no circumstance `{}`", shortened(name)), help)
+        defect(format!("there is no circumstance `{}`", shortened(name)), help)
     })
 }
 
 /// A law on a line.
-fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribution, PoseDefect> {
+fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribution, Diagnostic> {
     let two = |separator: &str| {
         let (first, second) = text.split_once(separator)?;
         Some((first.trim(), second.trim()))
@@ -218,7 +211,10 @@ fn line(text: &str, of: Circumstance, design: &Design) -> Result<ScalarDistribut
     // `50 ± 10 mm/s`: the unit stands once, behind both.
     let both = |(first, second): (&str, &str)| {
         let unit = unit_of(second);
-        Ok((quantity(first, of, Some(unit), design)?, quantity(second, of, Some(unit_of(first)), design)?))
+        Ok::<_, Diagnostic>((
+            quantity(first, of, Some(unit), design)?,
+            quantity(second, of, Some(unit_of(first)), design)?,
+        ))
     };
     if let Some(parts) = two("±").or_else(|| two("+-")) {
         let (mean, sigma) = both(parts)?;
@@ -245,30 +241,28 @@ fn unit_of(text: &str) -> &str {
 }
 
 /// A number without a unit.
-fn plain(text: &str) -> Result<f64, PoseDefect> {
+fn plain(text: &str) -> Result<f64, Diagnostic> {
     let read = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     read.ok_or_else(|| {
         let help = number_help(text).unwrap_or_else(|| FORM.to_owned());
-        PoseDefect::new(format!("`{}` is no number", shortened(text.trim())), help)
+        defect(format!("`{}` is no number", shortened(text.trim())), help)
     })
 }
 
 /// A number of a parameter, in its unit; a number without a unit has the unit written beside it.
-fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, PoseDefect> {
+fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, Diagnostic> {
     let (text, own) = (text.trim(), unit_of(text.trim()));
     let unit = if own.is_empty() { beside.unwrap_or_default() } else { own };
     let number = text[..text.len() - own.len()].trim();
     if number.is_empty() {
-        return Err(PoseDefect::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
+        return Err(defect(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
     }
-    let told = |c: crate::design::DesignDefect| PoseDefect {
-        message: format!("{}: {c}", of.name()),
-        help: c.help(),
-    };
+    let told =
+        |c: crate::design::DesignDefect| Diagnostic::error(FAMILY, format!("{}: {c}", of.name()), c.help());
     match of {
         Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),
         Circumstance::Friction | Circumstance::Restitution => {
-            Err(PoseDefect::new(format!("{} has no unit", of.name()), "give a bare number"))
+            Err(defect(format!("{} has no unit", of.name()), "give a bare number"))
         }
         Circumstance::Mass => {
             let factor = match unit {
@@ -277,7 +271,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
                 "lb" => 0.453_592_37,
                 _ => {
                     let message = format!("mass: there is no unit `{}`", shortened(unit));
-                    return Err(PoseDefect::new(message, "kg, g or lb"));
+                    return Err(defect(message, "kg, g or lb"));
                 }
             };
             Ok(factor * plain(number)?)
@@ -292,7 +286,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
                 None if unit.is_empty() => "",
                 None => {
                     let message = format!("{}: `{}` is no rate", of.name(), shortened(unit));
-                    return Err(PoseDefect::new(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
+                    return Err(defect(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
                 }
             };
             let read = format!("{number} {length}").parse::<Quantity>().map_err(told)?;
@@ -305,18 +299,18 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
 }
 
 /// A valid distribution within the range of its parameter.
-fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, PoseDefect> {
+fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution, Diagnostic> {
     let name = of.name();
     match &law {
         ScalarDistribution::Normal { sigma, .. } if *sigma < 0.0 => {
-            return Err(PoseDefect::new(format!("{name}: a standard deviation cannot be negative"), FORM));
+            return Err(defect(format!("{name}: a standard deviation cannot be negative"), FORM));
         }
         ScalarDistribution::Uniform { from, to } if from > to => {
-            return Err(PoseDefect::new(format!("{name}: {from} is above {to}"), "the lower first"));
+            return Err(defect(format!("{name}: {from} is above {to}"), "the lower first"));
         }
         ScalarDistribution::Lognormal { median, factor } if *factor < 1.0 || *median <= 0.0 => {
             let message = format!("{name}: a lognormal law has a median above 0 and a factor of 1 or more");
-            return Err(PoseDefect::new(message, "such as \"0.2 */ 1.3\""));
+            return Err(defect(message, "such as \"0.2 */ 1.3\""));
         }
         _ => {}
     }
@@ -330,7 +324,7 @@ fn sound(law: ScalarDistribution, of: Circumstance) -> Result<ScalarDistribution
         } else {
             format!("{name}: {:.0} % of this law is out of range", 100.0 * (1.0 - inside))
         };
-        return Err(PoseDefect::new(message, help));
+        return Err(defect(message, help));
     }
     Ok(law)
 }

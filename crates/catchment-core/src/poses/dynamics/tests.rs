@@ -1,5 +1,6 @@
 use super::*;
-use crate::design::{Design, Diagnostics, SourceText};
+use crate::design::{Design, SourceText};
+use crate::diagnostic::Diagnostics;
 use std::path::Path;
 
 fn design() -> Design {
@@ -13,7 +14,7 @@ fn read(text: &str) -> Result<Dynamics, Diagnostics> {
 
 /// The messages about a file, with the text to which each refers.
 fn wrong(text: &str) -> Vec<(String, String)> {
-    let of = |diagnostic: &crate::design::Diagnostic| {
+    let of = |diagnostic: &crate::diagnostic::Diagnostic| {
         let place = diagnostic.span.clone().map_or_else(String::new, |span| text[span].to_owned());
         (place, diagnostic.message.clone())
     };

@@ -2,9 +2,10 @@
 
 use super::super::covariance::{IDENTITY, Matrix, cholesky, least_eigenvalue};
 use super::super::distribution::size;
-use super::super::{PoseDefect, shortened};
+use super::super::{FAMILY, shortened};
 use super::read::{Reader, Value};
 use crate::design::Quantity;
+use crate::diagnostic::Diagnostic;
 use crate::pose::{Dof, PoseError};
 use std::ops::Range;
 use toml::de::DeValue;
@@ -185,7 +186,7 @@ impl Reader<'_> {
         for (dof, (text, span)) in dofs.iter().zip(texts) {
             let read = text
                 .parse::<Quantity>()
-                .map_err(|c| PoseDefect { message: c.to_string(), help: c.help() })
+                .map_err(|c| Diagnostic::error(FAMILY, c.to_string(), c.help()))
                 .and_then(|quantity| size(*dof, quantity, self.design));
             match read {
                 Ok(factor) => factors.push(factor),

@@ -38,7 +38,8 @@ pub use read::{MOST_ROBOTS, read_robots};
 
 use super::Distribution;
 use super::covariance::{self, IDENTITY, Matrix};
-use crate::design::{Design, Diagnostics, SourceText};
+use crate::design::{Design, SourceText};
+use crate::diagnostic::Diagnostics;
 use crate::pose::{Dof, PoseError};
 use serde::Serialize;
 

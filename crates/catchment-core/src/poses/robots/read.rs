@@ -3,9 +3,10 @@
 use super::super::covariance::IDENTITY;
 use super::super::distribution::size;
 use super::super::written::in_range;
-use super::super::{OffsetsAt, PoseDefect, PoseDiagnostics, PoseTable, shortened};
+use super::super::{FAMILY, OffsetsAt, PoseTable, defect, shortened};
 use super::{Robot, Spread};
-use crate::design::{Design, Diagnostics, Quantity, SourceText, nearest};
+use crate::design::{Design, Quantity, SourceText, nearest};
+use crate::diagnostic::{Diagnostic, DiagnosticCollector, Diagnostics};
 use crate::pose::{Dof, PoseError};
 use crate::suggest::value_help;
 use std::ops::Range;
@@ -34,17 +35,18 @@ pub fn read_robots(
 ) -> Result<Vec<Robot>, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
     let mut reader =
-        Reader { found: PoseDiagnostics::default(), broken: Vec::new(), foreign: None, design, table };
+        Reader { found: DiagnosticCollector::default(), broken: Vec::new(), foreign: None, design, table };
     for error in syntax {
         let span = error.span().unwrap_or(0..0);
         let help = value_help(&source.text, span.start);
-        reader.found.push(PoseDefect { message: error.message().to_owned(), help }, || Some(span.clone()));
+        reader
+            .found
+            .push_at(Diagnostic::error(FAMILY, error.message().to_owned(), help), || Some(span.clone()));
         reader.broken.push(span);
     }
     let robots = reader.robots(document.get_ref());
     let Reader { found, foreign, .. } = reader;
-    let refused = |diagnostics: Diagnostics| Diagnostics { source: Some(source.clone()), ..diagnostics };
-    found.refuse().map_err(refused)?;
+    found.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
     foreign.map_or(Ok(robots), Err)
 }
 
@@ -53,7 +55,7 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The result so far.
 pub(super) struct Reader<'a> {
-    found: PoseDiagnostics,
+    found: DiagnosticCollector,
     /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
     /// The errors of a table.
@@ -63,14 +65,14 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    pub(super) fn note(&mut self, span: Range<usize>, fault: PoseDefect) {
+    pub(super) fn note(&mut self, span: Range<usize>, fault: Diagnostic) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(fault, || Some(span).filter(|span| !span.is_empty()));
+            self.found.push_at(fault, || Some(span).filter(|span| !span.is_empty()));
         }
     }
 
     pub(super) fn refuse(&mut self, span: Range<usize>, message: impl Into<String>, help: &str) {
-        self.note(span, PoseDefect::new(message, help));
+        self.note(span, defect(message, help));
     }
 
     fn robots(&mut self, root: &DeTable<'_>) -> Vec<Robot> {
@@ -170,7 +172,7 @@ impl Reader<'_> {
         &mut self,
         value: &Value<'_>,
         key: &str,
-        read: impl Fn(Dof, Quantity, &Design) -> Result<f64, PoseDefect>,
+        read: impl Fn(Dof, Quantity, &Design) -> Result<f64, Diagnostic>,
     ) -> Option<[f64; 5]> {
         let DeValue::Table(table) = value.get_ref() else {
             let help = format!("{key} = {{ x = \"1 mm\", yaw = \"2 deg\" }}");
@@ -228,7 +230,7 @@ impl Reader<'_> {
 
     pub(super) fn dof(&mut self, name: &str, span: Range<usize>) -> Option<Dof> {
         let read = name.parse::<Dof>();
-        read.map_err(|unknown| self.note(span, PoseDefect { message: unknown.to_string(), help: None })).ok()
+        read.map_err(|unknown| self.note(span, Diagnostic::error(FAMILY, unknown.to_string(), None))).ok()
     }
 
     fn quantity(&mut self, value: &Value<'_>) -> Option<Quantity> {
@@ -243,7 +245,7 @@ impl Reader<'_> {
         };
         // TOML lets digits be grouped.
         let read = text.replace('_', "").parse::<Quantity>();
-        read.map_err(|c| self.note(value.span(), PoseDefect { message: c.to_string(), help: c.help() })).ok()
+        read.map_err(|c| self.note(value.span(), Diagnostic::error(FAMILY, c.to_string(), c.help()))).ok()
     }
 
     fn measured(&mut self, value: &Value<'_>) -> Option<Spread> {
@@ -289,21 +291,21 @@ impl Reader<'_> {
 pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Diagnostics> {
     let read = PoseTable::parse(&source.text, design, OffsetsAt::Face);
     let poses = read.map(|table| table.errors().to_vec()).and_then(|poses| {
-        let mut found = PoseDiagnostics::default();
+        let mut found = DiagnosticCollector::default();
         if poses.len() < FEWEST_ROWS {
-            let fault = PoseDefect::new(
+            let fault = defect(
                 format!("{} row says nothing of how errors spread", poses.len()),
                 "measure more of them",
             );
-            found.push(fault, || None);
+            found.push(fault);
         } else if poses.iter().all(|pose| *pose == PoseError::default()) {
-            found.push(PoseDefect::new("every error of the table is 0", "is it the right table?"), || None);
+            found.push(defect("every error of the table is 0", "is it the right table?"));
         }
         found.refuse()?;
         Ok(poses)
     });
     match poses {
         Ok(poses) => Ok(Spread::Measured { source: source.path.display().to_string(), poses }),
-        Err(diagnostics) => Err(Diagnostics { source: Some(source), ..diagnostics }),
+        Err(diagnostics) => Err(diagnostics.of(source)),
     }
 }

@@ -2,8 +2,9 @@
 
 use super::descriptions::{FACES, RestDescriptions, contact_in_words};
 use super::{Examined, Jam, Jams, NamedFeature};
-use crate::acceptance::{Outcome, Warning};
+use crate::acceptance::Outcome;
 use crate::design::Design;
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::document::{
     Cell, Column, ColumnFormat, Document, Share, Subject, Table, exact_motions, grouped, tenths,
     tenths_between,
@@ -16,13 +17,15 @@ const SHOWN: usize = 6;
 impl Subject for Jams {
     const KIND: &'static str = "jams";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let undecided = |of: &std::collections::BTreeMap<Outcome, Share>| {
             of.get(&Outcome::Undecided).map_or(0, |share| share.count)
         };
         let cells = undecided(&self.outcomes) + self.expected.as_ref().map_or(0, undecided);
-        let open = (cells > 0).then_some(Warning::Undecided { cells });
-        open.into_iter().chain(self.barely_stuck().map(|text| Warning::Note { text })).collect()
+        let open = (cells > 0).then(|| Warning::Undecided { cells }.into());
+        open.into_iter()
+            .chain(self.barely_stuck().map(|text| Diagnostic::warning("barely-stuck", text)))
+            .collect()
     }
 
     fn setup(&self, _: &Design, document: &mut Document) {

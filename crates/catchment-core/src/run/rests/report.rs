@@ -3,8 +3,9 @@
 use super::super::jams::descriptions::{FACES, RestDescriptions};
 use super::super::jams::{contacts_in_words, escape_height};
 use super::{RestPlace, Rests};
-use crate::acceptance::{Outcome, Warning};
+use crate::acceptance::Outcome;
 use crate::design::Design;
+use crate::diagnostic::{Diagnostic, Warning};
 use crate::document::{
     Cell, Document, Share, Subject, Table, exact_motions, grouped, tenths, tenths_between,
 };
@@ -15,9 +16,9 @@ const SHOWN: usize = 6;
 impl Subject for Rests {
     const KIND: &'static str = "rests";
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self) -> Vec<Diagnostic> {
         let undecided = self.outcomes.get(&Outcome::Undecided).filter(|share| share.count > 0);
-        undecided.map(|share| Warning::Undecided { cells: share.count }).into_iter().collect()
+        undecided.map(|share| Warning::Undecided { cells: share.count }.into()).into_iter().collect()
     }
 
     fn setup(&self, _: &Design, document: &mut Document) {

@@ -25,7 +25,8 @@ use super::kinematics::{ModuleDimensions, nearest_quarter};
 use super::sequence::{Command, CommandSequence, CommandStep};
 use super::shape::{ChainShape, FIRST_CORNERS, LatchingPair, Reading, latches};
 use crate::form::{Form, FormTable};
-use catchment::design::{Diagnostic, Diagnostics, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -127,8 +128,7 @@ impl ChainFile {
     }
 
     fn refused(&self, place: Option<Range<usize>>, message: String, help: Option<String>) -> Diagnostics {
-        let list = vec![Diagnostic::new(message, help).at(place)];
-        Diagnostics { source: Some(self.source.clone()), list, omitted: 0 }
+        Diagnostics::from(Diagnostic::error("chain", message, help).at(place)).of(self.source.clone())
     }
 }
 

@@ -7,8 +7,9 @@ use super::kinematics::{ModuleDimensions, rotors};
 use super::ring::Corners;
 use super::shape::{ChainShape, cells};
 use super::study::{ArrivalErrors, Length, Study};
+use catchment::diagnostic::Diagnostic;
 use catchment::document::{number, rounded};
-use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::schema::Timing;
 use catchment::report::{ReportBody, ReportEnvelope};
 use catchment::run::Requirement;
 use serde::{Deserialize, Serialize};
@@ -266,12 +267,12 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<ChainReach> {
 /// The report of a study.
 pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing>) -> ChainReport {
     let body = ChainBody::of(study, requirements);
-    let doubts = doubts(study, &body).iter().map(WarningReport::note).collect();
-    ReportEnvelope::of(body, doubts, timing)
+    let warnings = warnings(study, &body);
+    ReportEnvelope::of(body, warnings, timing)
 }
 
 /// The warnings.
-fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
+fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
     let mut told = Vec::new();
     if let Some(docking) = &study.docking {
         let (found, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
@@ -308,7 +309,7 @@ fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
             }
         }
     }
-    told
+    told.into_iter().map(|text| Diagnostic::warning(ChainBody::KIND, text)).collect()
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ fn poses_are_listed_step_by_step() {
 }
 
 #[test]
-fn a_latch_that_does_not_hold_is_a_doubt() {
+fn a_latch_that_does_not_hold_is_a_warning() {
     let report = reported(
         "[sequence]\nname = 'P'\n[servo]\ntorque = 0.8",
         &ChainSettings { chains: 1, ..ChainSettings::default() },

@@ -2,9 +2,8 @@
 
 use super::rings::{MOST_CORNERS, Ring, region, too_many};
 use super::{Measure, ParsedRegion, ReadError};
-use catchment::design::{
-    Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText, nearest,
-};
+use catchment::design::{LengthUnit, Quantity, QuantityUnit, SourceText, nearest};
+use catchment::diagnostic::{Diagnostic, DiagnosticCollector};
 use catchment::suggest::{number_help, odd};
 use glam::DVec2;
 use std::collections::HashSet;
@@ -29,7 +28,7 @@ fn records(text: &str) -> Result<Vec<Record>, Diagnostic> {
         .from_reader(text.as_bytes());
     let mut records = Vec::new();
     for record in reader.records().take(MOST_CORNERS + 2) {
-        let record = record.map_err(|error| Diagnostic::new(error.to_string(), None))?;
+        let record = record.map_err(|error| Diagnostic::error("region", error.to_string(), None))?;
         let start = record.position().map_or(0, |p| p.byte() as usize);
         // The reader may report the end of the previous line.
         let start = start + text[start..].len() - text[start..].trim_start_matches(['\r', '\n']).len();
@@ -81,7 +80,7 @@ fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> 
             Some(which) if places[which].is_none() => places[which] = Some((k, unit)),
             Some(_) => {
                 found.push(
-                    Diagnostic::new(format!("`{name}` is a second column of {base}"), None)
+                    Diagnostic::error("region", format!("`{name}` is a second column of {base}"), None)
                         .at(Some(span.clone())),
                 );
             }
@@ -89,7 +88,7 @@ fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> 
                 let help = nearest(&base, ["x", "y", "ring"])
                     .map_or_else(|| HELP.to_owned(), |meant| format!("did you mean `{meant}`?"));
                 found.push(
-                    Diagnostic::new(format!("unknown column `{name}`{}", odd(name)), Some(help))
+                    Diagnostic::error("region", format!("unknown column `{name}`{}", odd(name)), Some(help))
                         .at(Some(span.clone())),
                 );
             }
@@ -100,7 +99,7 @@ fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> 
     }
     let [Some((x, first)), Some((y, second)), ring] = places else {
         let message = "the table has no columns x and y";
-        found.push(Diagnostic::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        found.push(Diagnostic::error("region", message, Some(HELP.to_owned())).at(Some(header.span.clone())));
         return None;
     };
     let named = |unit: &Option<String>| match unit {
@@ -109,14 +108,14 @@ fn columns(header: &Record, found: &mut DiagnosticCollector) -> Option<Columns> 
     };
     let (Some(of_x), Some(of_y)) = (named(&first), named(&second)) else {
         let message = "the unit of a column is none of mm, cm, m, um, in, D";
-        found.push(Diagnostic::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        found.push(Diagnostic::error("region", message, Some(HELP.to_owned())).at(Some(header.span.clone())));
         return None;
     };
     if matches!(of_x, QuantityUnit::Degrees | QuantityUnit::Radians) || of_x != of_y {
         let text = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "mm".to_owned());
         let message = format!("the units are mixed: x is in {} and y in {}", text(&first), text(&second));
         let help = "give both in one unit of length".to_owned();
-        found.push(Diagnostic::new(message, Some(help)).at(Some(header.span.clone())));
+        found.push(Diagnostic::error("region", message, Some(help)).at(Some(header.span.clone())));
         return None;
     }
     Some(Columns { x, y, ring: ring.map(|(k, _)| k), unit: of_x })
@@ -141,7 +140,7 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, Rea
         }
     } else if found.is_empty() {
         let help = Some("it has a line for the names of the columns and one for each corner".to_owned());
-        found.push(Diagnostic::new("the table is empty", help));
+        found.push(Diagnostic::error("region", "the table is empty", help));
     }
     region(source, stem, measure, rings, found, Vec::new())
 }
@@ -159,7 +158,7 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut D
         let coordinates = [columns.x, columns.y].map(|k| {
             let Some((text, span)) = row.fields.get(k) else {
                 let message = "a coordinate is missing in this line";
-                found.push_with(|| Diagnostic::new(message, None).at(Some(row.span.clone())));
+                found.push_with(|| Diagnostic::error("region", message, None).at(Some(row.span.clone())));
                 return None;
             };
             number(text, span).map_err(|diagnostic| found.push(diagnostic)).ok()
@@ -170,7 +169,7 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut D
                 let message =
                     format!("ring `{label}` was left open: another ring began before it went on here");
                 let help = "the corners of a ring follow each other".to_owned();
-                found.push(Diagnostic::new(message, Some(help)).at(Some(row.span.clone())));
+                found.push(Diagnostic::error("region", message, Some(help)).at(Some(row.span.clone())));
                 continue;
             }
             open = Some(label);
@@ -181,13 +180,14 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut D
         }
     }
     if found.is_empty() && rings.is_empty() {
-        found.push(Diagnostic::new("the table has no corners", None));
+        found.push(Diagnostic::error("region", "the table has no corners", None));
     }
 }
 
 fn number(text: &str, span: &Range<usize>) -> Result<f64, Diagnostic> {
-    let diagnostic =
-        |message: String, help: &str| Diagnostic::new(message, Some(help.to_owned())).at(Some(span.clone()));
+    let diagnostic = |message: String, help: &str| {
+        Diagnostic::error("region", message, Some(help.to_owned())).at(Some(span.clone()))
+    };
     match text.parse::<Quantity>() {
         Ok(Quantity { value, unit: QuantityUnit::Bare }) => Ok(value),
         Ok(_) => Err(diagnostic(

@@ -19,7 +19,8 @@ use super::region::Region;
 use super::sum::SumError;
 use super::sweep::Bracket;
 use crate::form::{Form, FormTable};
-use catchment::design::{Diagnostic, Diagnostics, LengthUnit, SourceText};
+use catchment::design::{LengthUnit, SourceText};
+use catchment::diagnostic::{Diagnostic, Diagnostics};
 use catchment::exec::Exec;
 use catchment::method::zraa::{self, Zraa, ZraaError};
 use catchment::problem::{Draft, ProblemError};
@@ -111,8 +112,7 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<ParsedRegion, ReadError> 
         _ => {
             let help = "a region is read from .csv, .svg or .toml".to_owned();
             let message = format!("cannot tell what is in {}", shown(&source.path));
-            Err(Diagnostics { source: None, list: vec![Diagnostic::new(message, Some(help))], omitted: 0 }
-                .into())
+            Err(Diagnostics::from(Diagnostic::error("region", message, Some(help))).into())
         }
     }
 }

@@ -4,7 +4,8 @@ use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;
 use super::{Measure, ParsedRegion, ReadError};
 use catchment::budget::Limit;
-use catchment::design::{Diagnostic, DiagnosticCollector, SourceText};
+use catchment::design::SourceText;
+use catchment::diagnostic::{Diagnostic, DiagnosticCollector};
 use glam::DVec2;
 use std::ops::Range;
 
@@ -51,7 +52,7 @@ pub(super) fn region(
         if region.is_empty() {
             let place = rings.first().and_then(|ring| ring.corners.first()).map(|(_, span)| span.clone());
             let help = "give at least one ring around an area".to_owned();
-            found.push(Diagnostic::new("the region has no area", Some(help)).at(place));
+            found.push(Diagnostic::error("region", "the region has no area", Some(help)).at(place));
         }
     }
     if found.is_empty() {
@@ -67,7 +68,7 @@ fn shown(p: DVec2) -> String {
 /// The error for a file with too many corners.
 pub(super) fn too_many() -> Diagnostic {
     let message = format!("the outline has more than {MOST_CORNERS} corners");
-    Diagnostic::new(message, Some(CORNERS.remedy.to_owned()))
+    Diagnostic::error("region", message, Some(CORNERS.remedy.to_owned()))
 }
 
 fn wrong(rings: &[Ring], measure: Measure) -> DiagnosticCollector {
@@ -82,14 +83,18 @@ fn wrong(rings: &[Ring], measure: Measure) -> DiagnosticCollector {
         for (p, span) in &ring.corners {
             if p.abs().max_element() > REACH {
                 let message = format!("{} {unit} is farther from the origin than {REACH} {unit}", shown(*p));
-                found
-                    .push(Diagnostic::new(message, Some("check the unit".to_owned())).at(Some(span.clone())));
+                found.push(
+                    Diagnostic::error("region", message, Some("check the unit".to_owned()))
+                        .at(Some(span.clone())),
+                );
             }
         }
         if ring.corners.len() < 3 {
             let place = ring.corners.first().map(|(_, span)| span.clone());
             let message = format!("the ring is open: it has {} different corners", ring.corners.len());
-            found.push(Diagnostic::new(message, Some("a ring has at least three".to_owned())).at(place));
+            found.push(
+                Diagnostic::error("region", message, Some("a ring has at least three".to_owned())).at(place),
+            );
         }
     }
     if found.is_empty() { crossings(rings) } else { found }
@@ -118,7 +123,9 @@ fn crossings(rings: &[Ring]) -> DiagnosticCollector {
         };
         if turn(before[0], p, q) == 0 && dot(before, [p, q]) < 0 {
             let message = format!("the outline runs back along itself at {}", shown(ends[0]));
-            found.push(Diagnostic::new(message, Some("leave the corner out".to_owned())).at(at.clone()));
+            found.push(
+                Diagnostic::error("region", message, Some("leave the corner out".to_owned())).at(at.clone()),
+            );
         }
         for &(s, j) in &all[..later] {
             let others = side(&rings[s], j);
@@ -139,7 +146,7 @@ fn crossings(rings: &[Ring]) -> DiagnosticCollector {
                         shown(others[1])
                     );
                     let help = "rings may touch but not cross; give the parts of a set as rings of their own";
-                    Diagnostic::new(message, Some(help.to_owned())).at(at.clone())
+                    Diagnostic::error("region", message, Some(help.to_owned())).at(at.clone())
                 });
             }
         }

@@ -4,7 +4,8 @@ use super::super::region::REACH;
 use super::rings::{CORNERS, Ring, region};
 use super::{Measure, ParsedRegion, ReadError};
 use catchment::budget::{Budget, Overspent};
-use catchment::design::{Diagnostic, DiagnosticCollector, LengthUnit, Quantity, QuantityUnit, SourceText};
+use catchment::design::{LengthUnit, Quantity, QuantityUnit, SourceText};
+use catchment::diagnostic::{Diagnostic, DiagnosticCollector};
 use catchment::xml::svg::{self, SvgShape, UnsupportedSvg};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
@@ -34,8 +35,10 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, Rea
                         match read {
                             Ok(is_curved) => curved |= is_curved,
                             Err(over) => {
-                                found
-                                    .push(Diagnostic::new(over.to_string(), None).at(Some(shape.tag.head())));
+                                found.push(
+                                    Diagnostic::error("region", over.to_string(), None)
+                                        .at(Some(shape.tag.head())),
+                                );
                                 return ControlFlow::Break(());
                             }
                         }
@@ -45,7 +48,7 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<ParsedRegion, Rea
             });
             if found.is_empty() && rings.is_empty() {
                 let help = "it needs at least one <path d=\"…\"> that is shown".to_owned();
-                found.push(Diagnostic::new("the picture has no path", Some(help)));
+                found.push(Diagnostic::error("region", "the picture has no path", Some(help)));
             }
         }
     }
@@ -65,7 +68,8 @@ fn diagnostic(text: &str, refusal: UnsupportedSvg) -> Diagnostic {
     let UnsupportedSvg { at, message, help } = refusal;
     // A broken document has a place, but nothing there that is to be shown as a whole.
     let inside = |at: usize| (0..=at.min(text.len())).rev().find(|k| text.is_char_boundary(*k)).unwrap_or(0);
-    Diagnostic::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
+    Diagnostic::error("region", message, Some(help.to_owned()))
+        .at(Some(inside(at.start)..inside(at.end.max(at.start))))
 }
 
 /// Lengths of a user unit: 1 mm, unless the picture states its width.
@@ -86,7 +90,7 @@ fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut Diag
         _ => {
             let message = format!("the width of the picture, `{width}`, has no meaning here");
             let help = "write it in mm, with a viewBox".to_owned();
-            found.push(Diagnostic::new(message, Some(help)).at(Some(at.clone())));
+            found.push(Diagnostic::error("region", message, Some(help)).at(Some(at.clone())));
             1.0
         }
     }
@@ -103,25 +107,28 @@ fn element(
     let name = shape.tag.name();
     if name != "path" {
         let help = "turn shapes into paths in the drawing program".to_owned();
-        found.push(Diagnostic::new(format!("<{name}> is not read"), Some(help)).at(Some(shape.tag.head())));
+        found.push(
+            Diagnostic::error("region", format!("<{name}> is not read"), Some(help))
+                .at(Some(shape.tag.head())),
+        );
         return Ok(false);
     }
     if let Some(at) = shape.moved.clone() {
         let help = "apply the transforms to the paths in the drawing program".to_owned();
-        found.push(Diagnostic::new("a transform is not read", Some(help)).at(Some(at)));
+        found.push(Diagnostic::error("region", "a transform is not read", Some(help)).at(Some(at)));
     }
     let Some(data) = shape.tag.attribute("d") else { return Ok(false) };
     if has_huge_numbers(&data.value) {
         let message = "the path has a number that is far too large";
         let help = "check the unit of the picture".to_owned();
-        found.push(Diagnostic::new(message, Some(help)).at(Some(data.span)));
+        found.push(Diagnostic::error("region", message, Some(help)).at(Some(data.span)));
         return Ok(false);
     }
     match BezPath::from_svg(&data.value) {
         Ok(path) if !within_reach(&path, factor) => {
             let message = format!("the path goes farther from the origin than {REACH} mm");
             let help = "check the width and the viewBox of the picture".to_owned();
-            found.push(Diagnostic::new(message, Some(help)).at(Some(data.span)));
+            found.push(Diagnostic::error("region", message, Some(help)).at(Some(data.span)));
             Ok(false)
         }
         Ok(path) => {
@@ -130,7 +137,7 @@ fn element(
         }
         Err(error) => {
             let message = format!("the path cannot be read: {error}");
-            found.push(Diagnostic::new(message, None).at(Some(data.span)));
+            found.push(Diagnostic::error("region", message, None).at(Some(data.span)));
             Ok(false)
         }
     }
@@ -177,7 +184,7 @@ fn path_rings(
         if !closed && first != last {
             let message = format!("the ring that begins at ({}, {}) is open", first.x, first.y);
             let help = "end it with Z, or where it begins".to_owned();
-            found.push(Diagnostic::new(message, Some(help)).at(Some(span.clone())));
+            found.push(Diagnostic::error("region", message, Some(help)).at(Some(span.clone())));
         } else {
             rings.push(ring);
         }

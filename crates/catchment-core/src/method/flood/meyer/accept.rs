@@ -10,8 +10,8 @@
 use super::basins::Shore;
 use super::{Division, Rules, divide};
 use crate::acceptance::{Acceptance, Domain, Outcome};
-use crate::advice::Advice;
 use crate::design::{Alignment, ConnectorSpec, Design};
+use crate::diagnostic::Advice;
 use crate::exec::Exec;
 use crate::landscape::{Landscape, Resolution};
 use crate::method::flood::steepest::Metric;

@@ -1,6 +1,6 @@
-//! An error with its place and advice, as data for any front end.
+//! The errors of a text, and the text.
 
-use super::line_column;
+use super::Diagnostic;
 use crate::terminal::shown;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -42,33 +42,18 @@ impl SourceText {
     }
 }
 
-/// An error in the user's input, from any module.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Diagnostic {
-    /// Description of the error.
-    pub message: String,
-    /// Advice.
-    pub help: Option<String>,
-    /// Byte range in the text to which it refers, if any.
-    pub span: Option<Range<usize>>,
-}
-
-impl Diagnostic {
-    /// A diagnostic without a place.
-    pub fn new(message: impl Into<String>, help: Option<String>) -> Self {
-        Self { message: message.into(), help, span: None }
-    }
-
-    /// The same at a place.
-    #[must_use]
-    pub fn at(mut self, span: Option<Range<usize>>) -> Self {
-        self.span = span.filter(|span| !span.is_empty());
-        self
-    }
+/// Line and column (in characters) of a byte, both from 1. A byte behind the end counts as the end.
+pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
+    let before = &text.as_bytes()[..byte.min(text.len())];
+    let line_start = before.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
+    let line = before.split(|b| *b == b'\n').count();
+    // Count characters by their first bytes, so that a position inside a multi-byte character is valid, too.
+    let column = 1 + before[line_start..].iter().filter(|b| **b & 0xC0 != 0x80).count();
+    (line, column)
 }
 
 /// All errors of a text, in the order of their places; never empty.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostics {
     /// The text, if the input has one.
     pub source: Option<SourceText>,
@@ -82,9 +67,28 @@ impl Diagnostics {
     /// Diagnostics that are kept and shown: who has more will not read them.
     pub const MOST: usize = 20;
 
+    /// These errors, of a text.
+    #[must_use]
+    pub fn of(self, source: SourceText) -> Self {
+        Self { source: Some(source), ..self }
+    }
+
     /// The file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.source.as_ref().map(|source| source.path.as_path())
+    }
+}
+
+/// A single error, of no text.
+impl From<Diagnostic> for Diagnostics {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self { source: None, list: vec![diagnostic], omitted: 0 }
+    }
+}
+
+impl From<Diagnostics> for DiagnosticCollector {
+    fn from(Diagnostics { list, omitted, .. }: Diagnostics) -> Self {
+        Self { list, omitted }
     }
 }
 
@@ -110,20 +114,38 @@ impl DiagnosticCollector {
         }
     }
 
+    /// Adds an error at a place, which is determined only if the error is kept.
+    pub fn push_at(&mut self, diagnostic: Diagnostic, span: impl FnOnce() -> Option<Range<usize>>) {
+        self.push_with(|| Diagnostic { span: span(), ..diagnostic });
+    }
+
     /// How many there are.
     pub const fn len(&self) -> usize {
         self.list.len() + self.omitted
     }
 
-    /// Whether nothing was found.
+    /// Whether there is none.
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The errors of a text, in the order of their places.
-    pub fn of(mut self, source: SourceText) -> Diagnostics {
-        self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
-        Diagnostics { source: Some(source), list: self.list, omitted: self.omitted }
+    pub fn of(self, source: SourceText) -> Diagnostics {
+        self.sorted().of(source)
+    }
+
+    /// The errors in the order of their places.
+    pub fn sorted(mut self) -> Diagnostics {
+        self.list.sort_by_key(|diagnostic| diagnostic.span.as_ref().map(|span| span.start));
+        Diagnostics { source: None, list: self.list, omitted: self.omitted }
+    }
+
+    /// Refuses if there is an error.
+    ///
+    /// # Errors
+    /// All errors, in the order of their places.
+    pub fn refuse(self) -> Result<(), Diagnostics> {
+        if self.is_empty() { Ok(()) } else { Err(self.sorted()) }
     }
 }
 
@@ -140,10 +162,7 @@ impl fmt::Display for Diagnostics {
                 }
                 f.write_str(" ")?;
             }
-            f.write_str(&diagnostic.message)?;
-            if let Some(help) = &diagnostic.help {
-                write!(f, "; {help}")?;
-            }
+            write!(f, "{diagnostic}")?;
         }
         if self.omitted > 0 {
             write!(f, "\nand {} more", self.omitted)?;
@@ -159,11 +178,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_findings_are_kept_and_the_others_counted() {
+    fn lines_and_columns_count_from_one_in_characters() {
+        let text = "a\n µ=1\n";
+        assert_eq!(line_column(text, 0), (1, 1));
+        assert_eq!(line_column(text, 2), (2, 1));
+        assert_eq!(line_column(text, text.find('=').unwrap()), (2, 3));
+        assert_eq!(line_column(text, 1000), (3, 1));
+        assert_eq!(line_column("", 0), (1, 1));
+    }
+
+    #[test]
+    fn the_first_diagnostics_are_kept_and_the_others_counted() {
         let mut found = DiagnosticCollector::default();
         assert!(found.is_empty());
         for k in (0..30).rev() {
-            found.push(Diagnostic::new(k.to_string(), None).at(Some(k..k + 1)));
+            found.push(Diagnostic::error("design", k.to_string(), None).at(Some(k..k + 1)));
         }
         found.push_with(|| panic!("nobody reads it"));
         assert_eq!(found.len(), 31);
@@ -175,15 +204,15 @@ mod tests {
     }
 
     #[test]
-    fn a_finding_is_told_with_its_place() {
+    fn a_diagnostic_is_printed_with_its_place() {
         let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\n"));
         let list = vec![
-            Diagnostic::new("wrong", Some("write 3".to_owned())).at(Some(10..11)),
-            Diagnostic::new("all of it", None).at(Some(3..3)),
+            Diagnostic::error("design", "wrong", Some("write 3".to_owned())).at(Some(10..11)),
+            Diagnostic::error("design", "all of it", None).at(Some(3..3)),
         ];
         let diagnostics = Diagnostics { source, list, omitted: 2 };
         assert_eq!(diagnostics.to_string(), "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more");
-        let bare = Diagnostics { source: None, list: vec![Diagnostic::new("wrong", None)], omitted: 0 };
+        let bare = Diagnostics::from(Diagnostic::error("design", "wrong", None));
         assert_eq!(bare.to_string(), "wrong");
     }
 }

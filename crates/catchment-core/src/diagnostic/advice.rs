@@ -1,10 +1,11 @@
 //! Advice for an error or a warning, as data, so that each front end can phrase it with its own controls: a
 //! command line with its options, a page with its fields.
 
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Something that helps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Advice {
     /// So many cells per axis would fit.
     AtMostResolution(usize),
@@ -30,6 +31,10 @@ pub enum Advice {
     OwnFrames,
     /// Sampled poses, followed exactly.
     Samples,
+    /// A look at the picture of the pair, and a statement how the parts lie.
+    StateLayout,
+    /// Advice that every front end words alike.
+    Words(String),
 }
 
 impl fmt::Display for Advice {
@@ -47,7 +52,15 @@ impl fmt::Display for Advice {
             Self::MoreMemory => f.write_str("allow more memory"),
             Self::OwnFrames => f.write_str("take the parts as drawn in frames of their own"),
             Self::Samples => f.write_str("follow random poses exactly"),
+            Self::StateLayout => f.write_str("look at the picture, or state how the parts lie"),
+            Self::Words(words) => f.write_str(words),
         }
+    }
+}
+
+impl Serialize for Advice {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
