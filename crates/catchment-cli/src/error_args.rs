@@ -85,8 +85,8 @@ pub(crate) fn robots_of(path: &Path, design: &Design) -> Result<Vec<Robot>, Fail
     let mut table = |name: &str| {
         let place = folder.join(name);
         let read = File::open(&place).map_err(TextError::from).and_then(read_text);
-        let told = |error: TextError| format!("cannot read {}: {error}", shown(&place));
-        read.map(|text| SourceText::new(&place, text)).map_err(told)
+        let unreadable = |error: TextError| format!("cannot read {}: {error}", shown(&place));
+        read.map(|text| SourceText::new(&place, text)).map_err(unreadable)
     };
     Ok(read_robots(&source, design, &mut table)?)
 }

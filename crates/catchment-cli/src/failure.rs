@@ -61,8 +61,8 @@ impl Failure {
 
     /// What it says, without colours: for a page.
     pub(crate) fn text(&self) -> String {
-        let told: Vec<String> = self.reports.iter().map(ToString::to_string).collect();
-        told.join("\n")
+        let words: Vec<String> = self.reports.iter().map(ToString::to_string).collect();
+        words.join("\n")
     }
 
     /// Prints it on stderr and says how the command ended.

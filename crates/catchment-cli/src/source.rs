@@ -226,11 +226,11 @@ mod tests {
     #[test]
     fn a_long_text_is_shown_by_the_lines_around() {
         let text = "a = 1\n".repeat(20_000);
-        let told = shown(&text, 6 * 10_000..6 * 10_000 + 1);
+        let words = shown(&text, 6 * 10_000..6 * 10_000 + 1);
         for line in ["d.toml:10001:1", "10000 │ a = 1", "10001 │ a = 1", "10002 │ a = 1"] {
-            assert!(told.contains(line), "{told}");
+            assert!(words.contains(line), "{words}");
         }
-        assert!(!told.contains("10003") && !told.contains("9999 "), "{told}");
+        assert!(!words.contains("10003") && !words.contains("9999 "), "{words}");
         let few = "a\nb\nc\nd";
         for (at, lines) in [(0, "a\nb\n"), (2, "a\nb\nc\n"), (4, "b\nc\nd"), (6, "c\nd"), (7, "c\nd")] {
             assert_eq!(&few[around(few, at)], lines, "{at}");

@@ -226,8 +226,8 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         ConnectorSpec::Own(own) => {
             for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
                 row(name, &half(spec));
-                if let Some(told) = spec.meshing_in_words(design) {
-                    row("", &told);
+                if let Some(words) = spec.meshing_in_words(design) {
+                    row("", &words);
                 }
                 if let Some(done) = spec.repairs_in_words(design) {
                     row("", &done);
@@ -398,8 +398,8 @@ fn parts_of(parts: &[PartSpec]) -> String {
             None => kinds.push((kind, 1)),
         }
     }
-    let told = |(kind, count): (String, usize)| if count == 1 { kind } else { format!("{count} × {kind}") };
-    kinds.into_iter().map(told).collect::<Vec<_>>().join(", ")
+    let words = |(kind, count): (String, usize)| if count == 1 { kind } else { format!("{count} × {kind}") };
+    kinds.into_iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
 /// Largest distance between round surfaces of a half and their facets, in D.

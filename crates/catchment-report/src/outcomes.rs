@@ -289,10 +289,10 @@ impl<'a> OutcomesReport<'a> {
         let carried = self.table.carried();
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
-        let mut told = self.reported().peekable();
+        let mut rows_left = self.reported().peekable();
         let mut endings = EndContacts::new(self.problem, self.method);
         let poses = self.table.rows().zip(self.table.errors()).enumerate();
-        let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
+        let poses = poses.filter(|(number, _)| rows_left.next_if_eq(number).is_some()).zip(self.ends);
         let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| {
             let contacts = endings.of(end);
             Row {

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_told_to_people_and_programs() {
+    fn a_path_is_reported_to_people_and_programs() {
         let touch = Touch { point: DVec3::X, normal: DVec3::Z };
         let waypoint = |x: f64, touches: Vec<Touch>| {
             let error = PoseError { x, ..PoseError::default() };

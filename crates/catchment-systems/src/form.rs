@@ -469,16 +469,19 @@ mod tests {
     }
 
     #[test]
-    fn everything_wrong_is_told_at_once_in_order() {
+    fn everything_wrong_is_reported_at_once_in_order() {
         let text = "[a]\nlength = '3 D'\nangle = '4 mm'\nkind = 'rond'\nopn = true\ncount = 9\n[[step]]\n";
-        let told = refusals(text);
-        let starts = told.lines().map(|line| line.split(' ').next().unwrap()).collect::<Vec<_>>();
+        let words = refusals(text);
+        let starts = words.lines().map(|line| line.split(' ').next().unwrap()).collect::<Vec<_>>();
         assert_eq!(
             starts,
             ["f.toml:2:10:", "f.toml:3:9:", "f.toml:4:8:", "f.toml:5:1:", "f.toml:6:9:", "f.toml:7:1:"]
         );
-        assert!(told.contains("did you mean \"round\"?") && told.contains("did you mean `open`?"), "{told}");
-        assert!(told.contains("`step[0].time` is missing: a number from 0 to 10"), "{told}");
+        assert!(
+            words.contains("did you mean \"round\"?") && words.contains("did you mean `open`?"),
+            "{words}"
+        );
+        assert!(words.contains("`step[0].time` is missing: a number from 0 to 10"), "{words}");
         assert!(!refusals("[a]\ncount = = 2").contains("should be"), "an echo of a syntax error");
         assert!(refusals("a = 3").contains("`a` should be a table, not integer"));
         assert!(refusals("[a]\ncount = 1\nlength = inf").contains("`a.length`: "));

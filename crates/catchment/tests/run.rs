@@ -36,7 +36,7 @@ fn run(method: &str, cells: usize, samples: usize) -> Run {
 }
 
 /// The report without what differs between equal runs.
-fn told(answer: &Answer) -> Value {
+fn printed(answer: &Answer) -> Value {
     let mut report = serde_json::to_value(Report::of_answer(answer)).unwrap();
     report["timing"] = Value::Null;
     report
@@ -109,8 +109,8 @@ fn a_run_is_data() {
     assert_eq!(serde_json::from_str::<Run>("{}").unwrap(), Run::default());
     let problem = planar();
     assert_eq!(
-        told(&back.on(&problem, &Exec::new()).unwrap()),
-        told(&full.on(&problem, &Exec::new()).unwrap())
+        printed(&back.on(&problem, &Exec::new()).unwrap()),
+        printed(&full.on(&problem, &Exec::new()).unwrap())
     );
 }
 
@@ -118,7 +118,7 @@ fn a_run_is_data() {
 fn parts_of_a_run_in_five_dimensions_give_the_bits_of_the_whole() {
     let problem = problem(Family::Pyramid, DofSet::ALL);
     let whole = run("descent", 3, 60);
-    let expected = told(&whole.on(&problem, &Exec::new()).unwrap());
+    let expected = printed(&whole.on(&problem, &Exec::new()).unwrap());
     for of in [1, 2, 7] {
         let mut parts: Vec<PartAnswer> = (0..of)
             .map(|number| whole.part(&problem, RunPart { number, of }, &Exec::new()).unwrap())
@@ -126,7 +126,7 @@ fn parts_of_a_run_in_five_dimensions_give_the_bits_of_the_whole() {
             .map(|part| serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap())
             .collect();
         parts.reverse();
-        assert_eq!(told(&whole.merge(&problem, parts, &Exec::new()).unwrap()), expected, "{of} parts");
+        assert_eq!(printed(&whole.merge(&problem, parts, &Exec::new()).unwrap()), expected, "{of} parts");
     }
 }
 
@@ -143,7 +143,7 @@ fn parts_of_a_random_stream_give_the_bits_of_the_whole() {
                 (0..of).map(|number| whole.part(&problem, RunPart { number, of }, &Exec::new()).unwrap());
             let merged = whole.merge(&problem, parts.collect(), &Exec::new()).unwrap();
             assert_eq!(merged.acceptance.outcomes, answer.acceptance.outcomes);
-            assert_eq!(told(&merged), told(&answer), "{method}, {of} parts");
+            assert_eq!(printed(&merged), printed(&answer), "{method}, {of} parts");
         }
     }
 }

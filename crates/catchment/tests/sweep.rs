@@ -190,7 +190,7 @@ fn what_does_not_fit_side_by_side_is_computed_alone() {
 }
 
 #[test]
-fn what_cannot_be_built_is_told_and_stops_nothing() {
+fn what_cannot_be_built_is_reported_and_stops_nothing() {
     let text = family("pyramid", "['x', 'yaw']");
     let plan = plan(&text, &["family=pyramid,cone"], "5", 10).unwrap();
     let base = plan.base().clone();

@@ -284,11 +284,11 @@ fn summary(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
         "moving {moving} (pose errors and the centre of rotation are those of this half; if the other half moves, {other})"
     );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
-    let told = rows.iter().enumerate().map(|(k, one)| {
+    let ranking = rows.iter().enumerate().map(|(k, one)| {
         format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.in_words(&rows, unit))
     });
     let notes: Vec<Diagnostic> = found.notes.iter().map(|note| note.worded(flags)).collect();
-    [head, halves].into_iter().chain(told).chain(lines(&notes)).collect()
+    [head, halves].into_iter().chain(ranking).chain(lines(&notes)).collect()
 }
 
 /// A refusal in the words of the command line.

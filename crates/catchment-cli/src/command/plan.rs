@@ -213,15 +213,17 @@ impl PatternArgs {
                 let lever = needed("--lever", &self.lever, why)?;
                 let pitch =
                     needed("--pitch", &self.pitch, "angles of the joint, such as \"0..45:2.25 deg\"")?;
-                let told = |option: &str, text: &str, refusal: Diagnostics| {
+                let refused = |option: &str, text: &str, refusal: Diagnostics| {
                     Failure::of_option(option, text, refusal)
                 };
                 Ok(Pattern::Arc {
                     lever: parse_length(&lever, design)
-                        .map_err(|refusal| told("--lever", &lever, refusal))?,
-                    pitch: parse_angles(&pitch).map_err(|refusal| told("--pitch", &pitch, refusal))?,
+                        .map_err(|refusal| refused("--lever", &lever, refusal))?,
+                    pitch: parse_angles(&pitch).map_err(|refusal| refused("--pitch", &pitch, refusal))?,
                     yaw: match &self.yaw {
-                        Some(text) => parse_angles(text).map_err(|refusal| told("--yaw", text, refusal))?,
+                        Some(text) => {
+                            parse_angles(text).map_err(|refusal| refused("--yaw", text, refusal))?
+                        }
                         None => vec![0.0],
                     },
                 })

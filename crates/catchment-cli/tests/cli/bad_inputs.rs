@@ -129,9 +129,9 @@ fn every_bad_input_of_the_catalogue_is_refused_as_it_says() {
     assert!(cases.len() >= CASES, "{} cases", cases.len());
     let from = tempfile::tempdir().unwrap();
     fs::write(from.path().join("v.toml"), V_FACE).unwrap();
-    let told =
+    let printed =
         run(from.path(), &["run", "v.toml", "--method", "flood", "--resolution", "20", "-o", "a.zarr"]);
-    assert!(told.starts_with("exit 0"), "{told}");
+    assert!(printed.starts_with("exit 0"), "{printed}");
     let stored = contents(from.path());
     let started = Instant::now();
     let faults: Vec<String> = cases.iter().flat_map(|case| faults(case, &stored, from.path())).collect();

@@ -60,11 +60,13 @@ fn every_form_has_every_row() {
 fn one_system_is_shown_with_where_each_number_comes_from() {
     let folder = tempfile::tempdir().unwrap();
     insta::assert_snapshot!("catalog_show_dragon", run(folder.path(), &["catalog", "show", "DRAGON"]));
-    let told = stdout(folder.path(), &["catalog", "show", "PolyBot"]);
-    assert!(told.starts_with("Polybot G3: tables 1.1 and 2.1 (as Polybot)"), "{told}");
+    let printout = stdout(folder.path(), &["catalog", "show", "PolyBot"]);
+    assert!(printout.starts_with("Polybot G3: tables 1.1 and 2.1 (as Polybot)"), "{printout}");
     assert!(
-        told.contains("0.00503 D²") && told.contains("0.005027 D²") && told.contains("[R] 4 pairs"),
-        "{told}"
+        printout.contains("0.00503 D²")
+            && printout.contains("0.005027 D²")
+            && printout.contains("[R] 4 pairs"),
+        "{printout}"
     );
     let report = json(folder.path(), &["catalog", "show", "x-face", "--json"]);
     assert_eq!((report["kind"].as_str(), report["zraa_d2"].as_f64()), (Some("catalog-system"), Some(2.0)));
@@ -97,7 +99,7 @@ fn written_designs_have_the_published_areas() {
 }
 
 #[test]
-fn the_square_in_a_region_is_told_and_drawn() {
+fn the_square_in_a_region_is_reported_and_drawn() {
     let edge = |design: &str, more: &[&str]| {
         json(&designs(), &[&["zraa", design, "--json"], more].concat())["onaa_d"].as_f64().unwrap()
     };
@@ -108,8 +110,11 @@ fn the_square_in_a_region_is_told_and_drawn() {
     }
     let folder = tempfile::tempdir().unwrap();
     let design = designs().join("x-face-3d.toml");
-    let told = run(folder.path(), &["zraa", design.to_str().unwrap(), "-o", "region.svg"]);
-    assert!(told.contains("  onaa           1.0000000 D\n") && told.contains("around zero"), "{told}");
+    let printout = run(folder.path(), &["zraa", design.to_str().unwrap(), "-o", "region.svg"]);
+    assert!(
+        printout.contains("  onaa           1.0000000 D\n") && printout.contains("around zero"),
+        "{printout}"
+    );
     let svg = fs::read_to_string(folder.path().join("region.svg")).unwrap();
     assert!(svg.contains("ONAA 1.000 D") && svg.contains("stroke-dasharray=\"6 3\""));
 }
@@ -123,11 +128,11 @@ fn a_design_is_classified_and_appended() {
     assert_eq!(report["gendering"], "Gendered");
     assert!((report["longest_d"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{report}");
     let home = home();
-    let told = stdout(home.path(), &["classify", "v.toml"]);
-    assert!(told.contains("length has no ratio") && told.contains("Gendered"), "{told}");
+    let printout = stdout(home.path(), &["classify", "v.toml"]);
+    assert!(printout.contains("length has no ratio") && printout.contains("Gendered"), "{printout}");
     // One translation is locked: what is corrected is an interval, and no square.
-    assert!(told.contains("ONAA           1 D, length of the corrected interval\n"), "{told}");
-    assert!(!told.contains("square"), "{told}");
+    assert!(printout.contains("ONAA           1 D, length of the corrected interval\n"), "{printout}");
+    assert!(!printout.contains("square"), "{printout}");
     let appended = json(&designs, &["catalog", "--append", "x-face-3d.toml", "--json"]);
     let rows: Vec<&serde_json::Value> =
         appended["systems"].as_array().unwrap().iter().filter(|row| row["attributes"].is_object()).collect();
@@ -141,8 +146,8 @@ fn a_design_is_classified_and_appended() {
 #[test]
 fn both_figures_are_written() {
     let folder = tempfile::tempdir().unwrap();
-    let told = run(folder.path(), &["catalog", "-o", "a.svg", "--where", "degree=High"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("9 systems"), "{told}");
+    let printout = run(folder.path(), &["catalog", "-o", "a.svg", "--where", "degree=High"]);
+    assert!(printout.starts_with("exit 0\n") && printout.contains("9 systems"), "{printout}");
     let svg = fs::read_to_string(folder.path().join("a.svg")).unwrap();
     assert!(svg.contains("All published areas") && svg.contains("SINGO Connector"));
     assert!(run(folder.path(), &["catalog", "--figure", "4.2", "-o", "b.png"]).starts_with("exit 0\n"));
@@ -163,8 +168,8 @@ fn a_name_cannot_steer_the_terminal() {
         &[&append[..], &["--markdown"]].concat(),
         &[&append[..], &["-o", "evil.svg"]].concat(),
     ] {
-        let told = run(home.path(), args);
+        let printout = run(home.path(), args);
         let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
-        assert!(told.starts_with("exit 0\n") && !told.contains(steers), "{args:?}: {told:?}");
+        assert!(printout.starts_with("exit 0\n") && !printout.contains(steers), "{args:?}: {printout:?}");
     }
 }

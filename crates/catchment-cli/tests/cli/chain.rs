@@ -133,14 +133,18 @@ fn requirements_decide_the_exit_code() {
     assert_eq!(with("probability>=0.7"), Some(0));
     assert_eq!(with("probability>=0.99"), Some(1));
     assert_eq!(with("probabilty>=0.99"), Some(2));
-    let told = run(&systems, &["chain", "chain.toml", "--chains", "200", "--require", "probability>=0.99"]);
-    assert!(told.contains("docks") && told.contains("not met: probability >= 0.99 (it is 0."), "{told}");
+    let printed =
+        run(&systems, &["chain", "chain.toml", "--chains", "200", "--require", "probability>=0.99"]);
+    assert!(
+        printed.contains("docks") && printed.contains("not met: probability >= 0.99 (it is 0."),
+        "{printed}"
+    );
     let bare = home();
     fs::write(bare.path().join("c.toml"), "[chain]\nmodules = 4\n").unwrap();
-    let told = run(bare.path(), &["chain", "c.toml", "--require", "probability>=0.99"]);
+    let printed = run(bare.path(), &["chain", "c.toml", "--require", "probability>=0.99"]);
     assert!(
-        told.starts_with("exit 2\n--- stdout\n--- stderr") && told.contains("needs a [connector]"),
-        "{told}"
+        printed.starts_with("exit 2\n--- stdout\n--- stderr") && printed.contains("needs a [connector]"),
+        "{printed}"
     );
 }
 
@@ -187,14 +191,14 @@ fn files_hold_poses_chains_and_pictures() {
     assert!(write("lengths.png", &["--modules", "2..4"]).starts_with(b"\x89PNG"));
     let stored: Value = serde_json::from_slice(&write("report.json", &[])).unwrap();
     assert_eq!(stored["kind"], "chain");
-    let told = run(home.path(), &["chain", "c.toml", "-o", "steps.stl"]);
+    let printed = run(home.path(), &["chain", "c.toml", "-o", "steps.stl"]);
     assert!(
-        told.starts_with("exit 2")
-            && told.contains("let its name end in .json, .csv, .md, .html, .txt, .png, .svg"),
-        "{told}"
+        printed.starts_with("exit 2")
+            && printed.contains("let its name end in .json, .csv, .md, .html, .txt, .png, .svg"),
+        "{printed}"
     );
-    let told = run(home.path(), &["chain", "c.toml", "-o", "steps.svg"]);
-    assert!(told.starts_with("exit 2") && told.contains("--force replaces it"), "{told}");
+    let printed = run(home.path(), &["chain", "c.toml", "-o", "steps.svg"]);
+    assert!(printed.starts_with("exit 2") && printed.contains("--force replaces it"), "{printed}");
 }
 
 #[test]
@@ -204,29 +208,30 @@ fn collisions_are_refused_at_their_step() {
     };
     let steps: String = (2..=5).map(|joint| step(joint - 2, joint)).collect();
     let home = with(&format!("[chain]\nmodules = 6\n{steps}"));
-    let told = run(home.path(), &["chain", "c.toml", "-o", "out.svg"]);
+    let printed = run(home.path(), &["chain", "c.toml", "-o", "out.svg"]);
     // The third step, at line 11.
-    assert!(told.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{told}");
+    assert!(printed.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{printed}");
     assert!(
-        told.contains("at 2 s module 5 is sent into the cell of module 1") && told.contains("c.toml:11"),
-        "{told}"
+        printed.contains("at 2 s module 5 is sent into the cell of module 1")
+            && printed.contains("c.toml:11"),
+        "{printed}"
     );
     assert_eq!(entries(home.path()), ["c.toml", "v.toml"]);
     // A fold of 130° lays a module against its neighbour: no cell is shared, the sweep collides.
     let home = with("[chain]\nmodules = 6\n[[step]]\ntime = 1\njoint = 3\ncommand = \"130 deg\"\n");
-    let told = run(home.path(), &["chain", "c.toml"]);
-    assert!(told.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{told}");
-    assert!(told.contains("at 1 s module 4 hits module 2") && told.contains("c.toml:3"), "{told}");
+    let printed = run(home.path(), &["chain", "c.toml"]);
+    assert!(printed.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{printed}");
+    assert!(printed.contains("at 1 s module 4 hits module 2") && printed.contains("c.toml:3"), "{printed}");
 }
 
 #[test]
 fn every_example_is_answered() {
     for name in ["chain.toml", "p-sequence.toml", "block.toml", "o-ring.toml"] {
-        let told = run(&systems(), &["chain", name, "--chains", "20"]);
-        let (_, stderr) = told.split_once("--- stderr\n").unwrap();
+        let printed = run(&systems(), &["chain", name, "--chains", "20"]);
+        let (_, stderr) = printed.split_once("--- stderr\n").unwrap();
         let is_warning = |line: &str| line.starts_with("warning: ") || line.starts_with("         ");
-        assert!(told.starts_with("exit 0\n") && stderr.lines().all(is_warning), "{told}");
-        let widest = told.lines().map(|line| line.chars().count()).max().unwrap();
-        assert!(widest <= 80, "{widest}: {told}");
+        assert!(printed.starts_with("exit 0\n") && stderr.lines().all(is_warning), "{printed}");
+        let widest = printed.lines().map(|line| line.chars().count()).max().unwrap();
+        assert!(widest <= 80, "{widest}: {printed}");
     }
 }

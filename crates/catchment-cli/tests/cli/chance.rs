@@ -32,9 +32,9 @@ fn it_tells_the_closed_form_in_millimetres() {
     );
     assert_eq!(report["declared"][1]["circumstance"], "drift_x");
     assert_eq!(report["declared"][1]["law"]["to"], 4.0);
-    let told = run(home.path(), &[&["chance", "v.toml", "--free", "x"], &args[..]].concat());
-    assert!(told.contains("x 15.000 mm") && told.contains("0 … 200 mm/s, uniform"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let printed = run(home.path(), &[&["chance", "v.toml", "--free", "x"], &args[..]].concat());
+    assert!(printed.contains("x 15.000 mm") && printed.contains("0 … 200 mm/s, uniform"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
 }
 
@@ -87,13 +87,16 @@ fn every_file_is_written_and_requirements_are_judged() {
 fn the_preset_says_what_stays_unknown() {
     let home = home();
     let args = ["chance", "v.toml", "--preset", "gazebo-2014", "--pose", "x=0", "--trials", "2"];
-    let told = run(home.path(), &args);
-    assert!(told.contains("gazebo-2014 leaves open") && told.contains("the time step: 1 ms"), "{told}");
-    assert!(told.contains("by gravity of 137"), "{told}");
+    let printed = run(home.path(), &args);
+    assert!(
+        printed.contains("gazebo-2014 leaves open") && printed.contains("the time step: 1 ms"),
+        "{printed}"
+    );
+    assert!(printed.contains("by gravity of 137"), "{printed}");
 }
 
 #[test]
-fn the_way_of_a_trial_is_told_and_drawn() {
+fn the_way_of_a_trial_is_reported_and_drawn() {
     let home = home();
     let args = [
         "trace",
@@ -107,12 +110,12 @@ fn the_way_of_a_trial_is_told_and_drawn() {
         "--speed",
         "2",
     ];
-    let told = run(home.path(), &[&args[..], &["-o", "t.svg"]].concat());
+    let printed = run(home.path(), &[&args[..], &["-o", "t.svg"]].concat());
     assert!(
-        told.contains("time [s]")
-            && told.contains("  outcome        docked\n")
-            && told.ends_with("--- stderr\nnext: catchment rests v.toml --jams\n"),
-        "{told}"
+        printed.contains("time [s]")
+            && printed.contains("  outcome        docked\n")
+            && printed.ends_with("--- stderr\nnext: catchment rests v.toml --jams\n"),
+        "{printed}"
     );
     assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("docked"));
     let report = json(home.path(), &[&args[..], &["--json"]].concat());

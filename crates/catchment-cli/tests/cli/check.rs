@@ -97,8 +97,8 @@ fn halves_that_do_not_mate_are_drawn() {
         (text.replace("24]", "10]"), "the seat leaves x free: 4 mm off", "mated, cut along the approach"),
     ] {
         fs::write(dir.path().join("design.toml"), text).unwrap();
-        let told = run(dir.path(), &["check", "design.toml", "-o", "a.svg", "--force"]);
-        assert!(told.starts_with("exit 4\n") && told.contains(said), "{told}");
+        let printed = run(dir.path(), &["check", "design.toml", "-o", "a.svg", "--force"]);
+        assert!(printed.starts_with("exit 4\n") && printed.contains(said), "{printed}");
         assert!(fs::read_to_string(dir.path().join("a.svg")).unwrap().contains(words));
     }
 }
@@ -141,13 +141,13 @@ fn changes_obey_the_rules_of_the_file() {
 /// The example of a kinematic coupling, by its closed form: a hexagon of area 2 √3 h², h = 5 mm.
 #[test]
 fn balls_in_grooves_are_checked_and_answered() {
-    let told = run(&designs(), &["check", "kelvin-balls.toml"]);
-    assert!(told.starts_with("exit 0"), "{told}");
-    assert!(told.contains("fixed half        cylinder, 3 × profile\n"), "{told}");
-    assert!(told.contains("moving half       cylinder, 3 × ball\n"), "{told}");
-    assert!(told.contains("made of facets, at most 0.001 D = 0.06 mm inside the surface\n"), "{told}");
-    let told = run(&designs(), &["zraa", "kelvin-balls.toml"]);
-    assert!(told.contains("= 86.602540 mm²"), "{told}");
+    let printed = run(&designs(), &["check", "kelvin-balls.toml"]);
+    assert!(printed.starts_with("exit 0"), "{printed}");
+    assert!(printed.contains("fixed half        cylinder, 3 × profile\n"), "{printed}");
+    assert!(printed.contains("moving half       cylinder, 3 × ball\n"), "{printed}");
+    assert!(printed.contains("made of facets, at most 0.001 D = 0.06 mm inside the surface\n"), "{printed}");
+    let printed = run(&designs(), &["zraa", "kelvin-balls.toml"]);
+    assert!(printed.contains("= 86.602540 mm²"), "{printed}");
 }
 
 /// A drawing, a file of two bodies that overlap, and a primitive: one half.
@@ -180,18 +180,18 @@ fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
                   [[connector.moving.parts]]\nbox = [30, 30, 5]\nat = [0, 0, 21]\n\
                   [alignment]\nfree = [\"roll\"]\n";
     write("d.toml", design);
-    let told = json(dir.path(), &["check", "d.toml", "--json"]);
-    let parts = &told["design"]["connector"]["own"]["moving"]["parts"];
-    assert!(parts[0]["shape"]["mesh"]["content"]["repairs"]["united"].as_u64() > Some(0), "{told:#}");
+    let printed = json(dir.path(), &["check", "d.toml", "--json"]);
+    let parts = &printed["design"]["connector"]["own"]["moving"]["parts"];
+    assert!(parts[0]["shape"]["mesh"]["content"]["repairs"]["united"].as_u64() > Some(0), "{printed:#}");
     assert_eq!(
-        told["design"]["connector"]["own"]["fixed"]["parts"][0]["shape"]["profile"]["outline"]["file"]["unit"],
+        printed["design"]["connector"]["own"]["fixed"]["parts"][0]["shape"]["profile"]["outline"]["file"]["unit"],
         "in-file"
     );
-    let told = run(dir.path(), &["check", "d.toml"]);
-    assert!(told.contains("mesh two.stl, ball, box\n") && told.contains("two.stl: "), "{told}");
+    let printed = run(dir.path(), &["check", "d.toml"]);
+    assert!(printed.contains("mesh two.stl, ball, box\n") && printed.contains("two.stl: "), "{printed}");
     assert!(
-        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("resolved; its shape is unchanged"),
-        "{told}"
+        printed.split_whitespace().collect::<Vec<_>>().join(" ").contains("resolved; its shape is unchanged"),
+        "{printed}"
     );
-    assert!(told.contains("fixed half        profile plate.svg\n"), "{told}");
+    assert!(printed.contains("fixed half        profile plate.svg\n"), "{printed}");
 }

@@ -17,8 +17,11 @@ fn two_methods_of_a_design() {
     assert!(
         c["jaccard"].as_f64().unwrap() > 0.8 && c["distances"]["cells"]["median"].as_f64().unwrap() >= 1.0
     );
-    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
-    assert!(told.contains("wrote out: report.json, difference.csv, difference as PNG and SVG"), "{told}");
+    let printed = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    assert!(
+        printed.contains("wrote out: report.json, difference.csv, difference as PNG and SVG"),
+        "{printed}"
+    );
     assert_eq!(
         written(&home.path().join("out")),
         ["difference.csv", "difference.png", "difference.svg", "report.json"]
@@ -49,9 +52,9 @@ fn stored_results_are_compared_with_each_other_and_with_designs() {
     assert!(jaccard(&["coarse.zarr", "fine.zarr"]) > 0.5);
     insta::assert_snapshot!("compare_other_cells", run(folder, &["compare", "coarse.zarr", "other.zarr"]));
     let refused = |code: &str, args: &[&str]| {
-        let told = run(folder, &[&["compare"], args].concat());
-        assert!(told.starts_with(code), "{told}");
-        told
+        let printed = run(folder, &[&["compare"], args].concat());
+        assert!(printed.starts_with(code), "{printed}");
+        printed
     };
     fs::create_dir(folder.join("empty")).unwrap();
     assert!(refused("exit 4\n", &["empty", "v.toml"]).contains("it holds no zarr.json"));
@@ -75,13 +78,16 @@ fn more_errors_are_compared_in_slices_and_one_has_no_picture() {
     let design = designs().join("pyramid.toml");
     let design = design.to_str().unwrap();
     let args = ["compare", design, "--methods", "transport,flood", "--resolution", "5", "-o", "out"];
-    let told = run(home.path(), &args);
-    assert!(told.starts_with("exit 0\n") && told.contains("5 × 5 × 5 × 5 × 5 = 3 125 poses"), "{told}");
+    let printed = run(home.path(), &args);
+    assert!(
+        printed.starts_with("exit 0\n") && printed.contains("5 × 5 × 5 × 5 × 5 = 3 125 poses"),
+        "{printed}"
+    );
     assert!(written(&home.path().join("out")).contains(&"difference.png".to_owned()));
     fs::write(home.path().join("x.toml"), V_FACE.to_owned() + "free = [\"x\"]\n").unwrap();
     let args = ["compare", "x.toml", "--methods", "flood,descent", "--resolution", "9", "-o", "line"];
-    let told = run(home.path(), &args);
-    assert!(told.contains("no picture: a map needs two free errors"), "{told}");
+    let printed = run(home.path(), &args);
+    assert!(printed.contains("no picture: a map needs two free errors"), "{printed}");
     assert_eq!(written(&home.path().join("line")), ["difference.csv", "report.json"]);
 }
 
@@ -100,7 +106,7 @@ fn every_method_that_applies_stands_beside_the_others() {
         "--time-limit",
         "10 min",
     ];
-    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    let printed = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     let report = fs::read(home.path().join("out/report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
     let methods = report["methods"].as_array().unwrap();
@@ -115,8 +121,9 @@ fn every_method_that_applies_stands_beside_the_others() {
         }
     }
     assert!(
-        told.contains("Jaccard: accepted by both") && told.contains("wrote out: report.json, methods.csv"),
-        "{told}"
+        printed.contains("Jaccard: accepted by both")
+            && printed.contains("wrote out: report.json, methods.csv"),
+        "{printed}"
     );
     assert_eq!(
         written(&home.path().join("out")),
@@ -124,26 +131,33 @@ fn every_method_that_applies_stands_beside_the_others() {
     );
     // What does not apply, and what takes too long, is named with the reason.
     let hardly = ["run", "v.toml", "--method", "all", "--time-limit", "0.001 ms", "--cor", "0.5"];
-    let told = run(home.path(), &hardly);
+    let printed = run(home.path(), &hardly);
     assert!(
-        told.contains("without kinematic: ") && told.contains("center_of_rotation must not be"),
-        "{told}"
+        printed.contains("without kinematic: ") && printed.contains("center_of_rotation must not be"),
+        "{printed}"
     );
     assert!(
-        told.starts_with("exit 0\n") && told.contains("without descent: it takes longer than the 0.000001 s"),
-        "{told}"
+        printed.starts_with("exit 0\n")
+            && printed.contains("without descent: it takes longer than the 0.000001 s"),
+        "{printed}"
     );
     for option in [["--require", "onaa.edge>0"], ["--depth-tolerance", "0.1"], ["--error-sigma", "x=0.1"]] {
-        let told = run(home.path(), &[&["run", "v.toml", "--method", "all"], &option[..]].concat());
-        assert!(told.starts_with("exit 2\n") && told.contains("about the result of one method"), "{told}");
+        let printed = run(home.path(), &[&["run", "v.toml", "--method", "all"], &option[..]].concat());
+        assert!(
+            printed.starts_with("exit 2\n") && printed.contains("about the result of one method"),
+            "{printed}"
+        );
     }
 }
 
 #[test]
 fn the_kinematic_method_decides_planar_families_alone() {
     let home = home();
-    let told = run(home.path(), &["run", "v.toml", "--method", "kinematic", "--resolution", "40"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("kinematic, of a grid of 40 × 40"), "{told}");
+    let printed = run(home.path(), &["run", "v.toml", "--method", "kinematic", "--resolution", "40"]);
+    assert!(
+        printed.starts_with("exit 0\n") && printed.contains("kinematic, of a grid of 40 × 40"),
+        "{printed}"
+    );
     let design = designs().join("pyramid.toml");
     fs::copy(design, home.path().join("pyramid.toml")).unwrap();
     insta::assert_snapshot!(

@@ -46,23 +46,29 @@ fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
             );
         }
     }
-    let told = run(home.path(), &["compose", "disc.toml", "disc.toml"]);
+    let printed = run(home.path(), &["compose", "disc.toml", "disc.toml"]);
     assert!(
-        told.contains("overlap         largest 78") && !told.contains("overlap         at most"),
-        "{told}"
+        printed.contains("overlap         largest 78") && !printed.contains("overlap         at most"),
+        "{printed}"
     );
 }
 
 #[test]
-fn hook_and_loop_are_told_drawn_and_read_again() {
+fn hook_and_loop_are_reported_drawn_and_read_again() {
     let home = home();
     for name in ["hook.toml", "loop.toml", "boat.toml"] {
         fs::copy(designs().join("systems").join(name), home.path().join(name)).unwrap();
     }
     let both = ["compose", "hook.toml", "loop.toml", "--keep-out", "boat.toml,boat.toml"];
-    let told = run(home.path(), &both);
-    assert!(told.starts_with("exit 0\n") && told.contains("hook and loop: where they meet"), "{told}");
-    assert!(told.contains("largest square") && told.lines().all(|l| l.chars().count() <= 80), "{told}");
+    let printed = run(home.path(), &both);
+    assert!(
+        printed.starts_with("exit 0\n") && printed.contains("hook and loop: where they meet"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("largest square") && printed.lines().all(|l| l.chars().count() <= 80),
+        "{printed}"
+    );
     let with = |more: &[&'static str]| -> Vec<&'static str> { [&both[..], more].concat() };
     let found = json(home.path(), &with(&["--heading", "-20..20 deg", "--headings", "5", "--json"]));
     assert_eq!(found["slices"].as_array().unwrap().len(), 5);

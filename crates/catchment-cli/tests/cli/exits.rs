@@ -41,8 +41,8 @@ fn every_way_to_end_has_a_code_of_its_own() {
         (5, "hold v.toml --pose x=0.999".to_owned()),
         (5, "trace v.toml --pose x=5 -o t.glb".to_owned()),
     ] {
-        let told = run(home.path(), &line.split(' ').collect::<Vec<_>>());
-        assert!(told.starts_with(&format!("exit {code}\n")), "{line}: {told}");
+        let printed = run(home.path(), &line.split(' ').collect::<Vec<_>>());
+        assert!(printed.starts_with(&format!("exit {code}\n")), "{line}: {printed}");
     }
     let help = run(home.path(), &["--help"]);
     let codes = help.split("Exit codes:").nth(1).unwrap();

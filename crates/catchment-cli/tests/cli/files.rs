@@ -7,13 +7,13 @@ use std::path::Path;
 const FAST: [&str; 4] = ["--resolution", "6", "--samples", "0"];
 
 fn refuses(home: &Path, args: &[&str], why: &str) {
-    let told = run(home, args).replace("\n  │ ", " ");
-    assert!(told.starts_with("exit 2\n") && told.contains(why), "{args:?}: {told}");
+    let printed = run(home, args).replace("\n  │ ", " ");
+    assert!(printed.starts_with("exit 2\n") && printed.contains(why), "{args:?}: {printed}");
 }
 
 fn does(home: &Path, args: &[&str]) {
-    let told = run(home, args);
-    assert!(told.starts_with("exit 0\n"), "{args:?}: {told}");
+    let printed = run(home, args);
+    assert!(printed.starts_with("exit 0\n"), "{args:?}: {printed}");
 }
 
 #[test]

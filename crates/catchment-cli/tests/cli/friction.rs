@@ -15,17 +15,20 @@ fn home() -> tempfile::TempDir {
 #[test]
 fn a_facet_holds_everything_from_its_slope_on() {
     let home = home();
-    let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.1,0.3"]);
+    let printed = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.1,0.3"]);
     assert!(
-        told.starts_with("exit 0\n") && told.contains("90 %           0.199 (95 % CI 0.199 … 0.199)"),
-        "{told}"
+        printed.starts_with("exit 0\n") && printed.contains("90 %           0.199 (95 % CI 0.199 … 0.199)"),
+        "{printed}"
     );
-    assert!(told.contains("contacts of the first 20 poses lost as μ rises"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    assert!(printed.contains("contacts of the first 20 poses lost as μ rises"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     // A little above the slope all that is lost is hardly held, and that is said.
-    assert!(!told.contains("dock at 0.9 of it"), "{told}");
-    let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
-    assert!(told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock at 0.9 of it"), "{told}");
+    assert!(!printed.contains("dock at 0.9 of it"), "{printed}");
+    let printed = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
+    assert!(
+        printed.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock at 0.9 of it"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -39,8 +42,8 @@ fn threads_change_nothing_and_files_are_whole() {
     };
     assert_eq!(with("1"), with("2"));
     for (file, begins) in [("f.svg", "<svg"), ("f.csv", "friction,motions,aligned,"), ("f.json", "{\n")] {
-        let told = run(home.path(), &["friction", "v.toml", "--motions", "50", "-o", file]);
-        assert!(told.starts_with("exit 0\n"), "{told}");
+        let printed = run(home.path(), &["friction", "v.toml", "--motions", "50", "-o", file]);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
         assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
     }
 }

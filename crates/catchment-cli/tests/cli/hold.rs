@@ -15,10 +15,11 @@ fn home() -> tempfile::TempDir {
 #[test]
 fn it_tells_the_closed_form_in_newtons() {
     let home = home();
-    let told = run(home.path(), &["hold", "v.toml", "--free", "x", "--preload", "40", "--friction", "0.1"]);
+    let printed =
+        run(home.path(), &["hold", "v.toml", "--free", "x", "--preload", "40", "--friction", "0.1"]);
     // 40 N · tan(arctan 2 + arctan 0.1) = 40 · 2.1/0.8.
-    assert!(told.contains("80.00") && told.contains("105.0"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    assert!(printed.contains("80.00") && printed.contains("105.0"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     let report = json(home.path(), &["hold", "v.toml", "--free", "x", "--json"]);
     assert!((report["least_force"].as_f64().unwrap() - 2.0).abs() < 1e-5);
     assert_eq!(report["least_torque"], Value::Null);
@@ -36,8 +37,8 @@ fn threads_change_nothing_and_files_are_whole() {
     assert_eq!(with("1"), with("2"));
     assert_eq!(with("1"), with("4"));
     for (file, begins) in [("h.svg", "<svg"), ("h.csv", "load,direction_rad,"), ("h.json", "{\n")] {
-        let told = run(home.path(), &["hold", "v.toml", "-o", file]);
-        assert!(told.starts_with("exit 0\n"), "{told}");
+        let printed = run(home.path(), &["hold", "v.toml", "-o", file]);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
         assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
     }
     // Two sides and two torques.

@@ -10,9 +10,9 @@ const PYRAMID: &str = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \
 fn a_pyramid_comes_back_and_accepts_what_it_accepted() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
-    let told = run(home.path(), &["invert", "p.toml", "-o", "q.toml"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("reached everywhere"), "{told}");
-    assert!(told.contains("100.00 % of the plan"), "{told}");
+    let printed = run(home.path(), &["invert", "p.toml", "-o", "q.toml"]);
+    assert!(printed.starts_with("exit 0\n") && printed.contains("reached everywhere"), "{printed}");
+    assert!(printed.contains("100.00 % of the plan"), "{printed}");
     let area = |design: &str| json(home.path(), &["zraa", design, "--json"])["area_d2"].as_f64().unwrap();
     assert!((area("p.toml") - area("q.toml")).abs() < 1e-8, "{} {}", area("p.toml"), area("q.toml"));
     let ran = run(home.path(), &["run", "q.toml", "--method", "flood", "--resolution", "12", "--quiet"]);
@@ -88,9 +88,9 @@ fn a_foreign_mesh_gives_a_half_that_the_program_takes() {
         side(1.0)
     );
     fs::write(home.path().join("d.toml"), design).unwrap();
-    let told = json(home.path(), &["invert", "d.toml", "-o", "new.toml", "--json"]);
-    assert_eq!(told["attained"], true, "{told}");
-    assert!(told["narrowest_d"].as_f64().unwrap() > 1e-6, "{}", told["narrowest_d"]);
+    let printed = json(home.path(), &["invert", "d.toml", "-o", "new.toml", "--json"]);
+    assert_eq!(printed["attained"], true, "{printed}");
+    assert!(printed["narrowest_d"].as_f64().unwrap() > 1e-6, "{}", printed["narrowest_d"]);
     let checked = run(home.path(), &["check", "new.toml"]);
     assert!(checked.starts_with("exit 0\n"), "{checked}");
     let ran = run(home.path(), &["run", "new.toml", "--method", "flood", "--resolution", "8", "--quiet"]);
@@ -112,9 +112,9 @@ fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
     // Half of 10° and half of 20°.
     assert!((between["turn_rad"].as_f64().unwrap() - 15f64.to_radians()).abs() < 1e-9, "{between}");
     assert_eq!(between["midway"], 2);
-    let told = run(home.path(), &["invert", "p.toml", "--pitch", "-10..10 deg/3"]);
-    assert!(told.contains("pitch -10.00°, 0°, 10.00°: 2 rotations"), "{told}");
-    assert!(told.contains("nowhere higher than wanted at 2 rotations midway"), "{told}");
+    let printed = run(home.path(), &["invert", "p.toml", "--pitch", "-10..10 deg/3"]);
+    assert!(printed.contains("pitch -10.00°, 0°, 10.00°: 2 rotations"), "{printed}");
+    assert!(printed.contains("nowhere higher than wanted at 2 rotations midway"), "{printed}");
     // One place is told once.
     let places: Vec<&serde_json::Value> =
         found["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();

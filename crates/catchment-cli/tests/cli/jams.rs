@@ -27,9 +27,9 @@ fn two_mirrored_rests_are_one_jam_and_shares_add_up() {
     let in_jams: f64 = jams.iter().map(|jam| share(&jam["of_box"])).sum();
     assert!((in_jams - share(&report["outcomes"]["jammed"])).abs() < 1e-12);
     assert_eq!(jams[0]["places"], 2);
-    let told = run(home.path(), &["jams", "v.toml", "--motions", "1000"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("at 2 symmetric places"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let printed = run(home.path(), &["jams", "v.toml", "--motions", "1000"]);
+    assert!(printed.starts_with("exit 0\n") && printed.contains("at 2 symmetric places"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
 }
 
 #[test]
@@ -44,8 +44,8 @@ fn threads_change_nothing_and_files_are_whole() {
     assert_eq!(with("1"), with("2"));
     assert_eq!(with("1"), with("4"));
     for (file, begins) in [("j.svg", "<svg"), ("j.csv", "jam,count,share,"), ("j.json", "{\n")] {
-        let told = run(home.path(), &["jams", "v.toml", "--motions", "200", "-o", file]);
-        assert!(told.starts_with("exit 0\n"), "{told}");
+        let printed = run(home.path(), &["jams", "v.toml", "--motions", "200", "-o", file]);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
         assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
     }
     let csv = fs::read_to_string(home.path().join("j.csv")).unwrap();
@@ -107,12 +107,12 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     let home = home();
     fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
     let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "-o", "jams.json"];
-    let told = run(home.path(), &args);
-    assert!(told.contains("  neighbours     held by friction alone;"), "{told}");
-    assert!(!told.contains("ridge") && told.contains("  friction       may stick from"), "{told}");
-    let words: Vec<&str> = told.split_whitespace().collect();
-    assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let printed = run(home.path(), &args);
+    assert!(printed.contains("  neighbours     held by friction alone;"), "{printed}");
+    assert!(!printed.contains("ridge") && printed.contains("  friction       may stick from"), "{printed}");
+    let words: Vec<&str> = printed.split_whitespace().collect();
+    assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     let report = fs::read(home.path().join("jams.json")).unwrap();
     let report: Value = serde_json::from_slice(&report).unwrap();
     let jams = report["jams"].as_array().unwrap();
@@ -137,11 +137,11 @@ fn a_run_tells_of_jams_what_the_command_does() {
     let asked = ["run", "v.toml", "--resolution", "9", "--seed", "7", "--error-sigma", "x=10 mm", "--jams"];
     let found = json(home.path(), &[&asked[..], &["--json", "-o", "out"]].concat());
     let alone = json(home.path(), &["jams", "v.toml", "--seed", "7", "--error-sigma", "x=10 mm", "--json"]);
-    let told = found["jams"].as_object().unwrap();
-    for (key, value) in told {
+    let printed = found["jams"].as_object().unwrap();
+    for (key, value) in printed {
         assert_eq!(*value, alone[key], "{key}");
     }
-    assert!(told["jams"][0]["of_box"]["count"].as_u64().unwrap() > 100);
+    assert!(printed["jams"][0]["of_box"]["count"].as_u64().unwrap() > 100);
     assert!(home.path().join("out/jams.png").exists());
     let text = run(home.path(), &asked);
     assert!(text.contains("\n  jam 1 ") && text.contains("of the fixed one"), "{text}");

@@ -210,7 +210,7 @@ fn wait_for_handler(pid: u32) {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn every_request_to_end_is_heard_and_told() {
+fn every_request_to_end_is_heard_and_reported() {
     for (signal, twice, code) in [
         ("-INT", false, 130),
         ("-TERM", false, 143),

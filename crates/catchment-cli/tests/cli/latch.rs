@@ -29,10 +29,12 @@ fn the_defaults_are_the_dissertations_part() {
     near("/outline/end_deg", 75.7, 0.05);
     assert!(report["rules"].as_array().unwrap().iter().all(|rule| rule["verdict"] == "holds"));
     assert_eq!(entries(home.path()), ["l.toml"]);
-    let told = run(home.path(), &["latch", "l.toml"]);
+    let printout = run(home.path(), &["latch", "l.toml"]);
     assert!(
-        told.starts_with("exit 0") && told.contains("5.0006 N·m/rad") && told.ends_with("--- stderr\n"),
-        "{told}"
+        printout.starts_with("exit 0")
+            && printout.contains("5.0006 N·m/rad")
+            && printout.ends_with("--- stderr\n"),
+        "{printout}"
     );
 }
 
@@ -61,8 +63,8 @@ fn a_folder_has_every_sheet_and_picture_and_the_same_bytes_each_time() {
     // The same command again replaces its own folder, and nobody else's.
     assert!(catchment(home.path()).args(args("a")).status().unwrap().success());
     fs::write(home.path().join("a/mine.txt"), "mine").unwrap();
-    let told = run(home.path(), &["latch", design.to_str().unwrap(), "-o", "a"]);
-    assert!(told.starts_with("exit 2"), "{told}");
+    let printout = run(home.path(), &["latch", design.to_str().unwrap(), "-o", "a"]);
+    assert!(printout.starts_with("exit 2"), "{printout}");
     assert!(home.path().join("a/mine.txt").exists());
 }
 
@@ -86,10 +88,10 @@ fn the_table_stands_beside_the_model() {
         assert!((ratio - printed).abs() <= 0.0501, "{row}");
     }
     assert!((table["neck_line_n_per_mm"].as_f64().unwrap() - 213.6).abs() < 0.05);
-    let told = run(home.path(), &["latch", "--table", "-o", "t.csv"]);
+    let printout = run(home.path(), &["latch", "--table", "-o", "t.csv"]);
     assert!(
-        told.contains("213.6 N/mm") && told.contains("six designs were tested; the table has nine"),
-        "{told}"
+        printout.contains("213.6 N/mm") && printout.contains("six designs were tested; the table has nine"),
+        "{printout}"
     );
     let csv = fs::read_to_string(home.path().join("t.csv")).unwrap();
     assert_eq!(csv.lines().count(), 10);
@@ -101,21 +103,21 @@ fn the_table_stands_beside_the_model() {
 #[test]
 fn an_overhang_that_failed_is_warned_of() {
     let home = home("[latch]\noverhang = 1.27\n");
-    let told = run(home.path(), &["latch", "l.toml"]);
-    let (stdout, stderr) = told.split_once("--- stderr\n").unwrap();
+    let printout = run(home.path(), &["latch", "l.toml"]);
+    let (stdout, stderr) = printout.split_once("--- stderr\n").unwrap();
     let warnings = stderr.strip_prefix("warning: ").unwrap();
     let warnings = warnings.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(told.starts_with("exit 0") && warnings.contains("less than 1 mm"), "{told}");
-    assert!(!stdout.contains("warning: "), "{told}");
+    assert!(printout.starts_with("exit 0") && warnings.contains("less than 1 mm"), "{printout}");
+    assert!(!stdout.contains("warning: "), "{printout}");
 }
 
 #[test]
 fn a_design_may_come_from_a_pipe_but_needs_to_come() {
     let home = tempfile::tempdir().unwrap();
-    let told = run(home.path(), &["latch"]);
-    assert!(told.starts_with("exit 2") && told.contains("<DESIGN>"), "{told}");
-    let told = run(home.path(), &["latch", "no.toml"]);
-    assert!(told.starts_with("exit 3") && told.contains("cannot read no.toml"), "{told}");
+    let printout = run(home.path(), &["latch"]);
+    assert!(printout.starts_with("exit 2") && printout.contains("<DESIGN>"), "{printout}");
+    let printout = run(home.path(), &["latch", "no.toml"]);
+    assert!(printout.starts_with("exit 3") && printout.contains("cannot read no.toml"), "{printout}");
     assert_eq!(entries(home.path()).len(), 0);
     assert!(Path::new(&designs().join("systems/latch.toml")).exists());
 }

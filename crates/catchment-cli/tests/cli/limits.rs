@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// Runs the program under a limit; it must end with exit code 2 and say all of this.
 fn is_refused(home: &Path, limit: &str, args: &str, says: &[&str]) {
     let output = limited(home, limit, args);
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(5), "{args}: {said}");
     assert!(says.iter().all(|text| said.contains(text)), "{args}: {said}");
 }
@@ -29,7 +29,7 @@ fn limited(folder: &Path, limits: &str, args: &str) -> Output {
         .unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -52,7 +52,7 @@ fn a_small_address_space_ends_with_an_answer_or_a_message() {
     for kib in [1_500_000, 400_000, 200_000, 100_000] {
         for args in commands {
             let output = limited(dir, &format!("ulimit -v {kib}"), args);
-            let said = told(&output);
+            let said = printed(&output);
             let refused =
                 output.status.code() == Some(5) && !said.is_empty() && !said.contains("a bug of the program");
             assert!(output.status.success() || refused, "{args} in {kib} KiB: {}: {said}", output.status);
@@ -98,7 +98,7 @@ fn the_budget_counts_pictures() {
     }
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
     let output = limited(home.path(), "true", "run v.toml --method flood --resolution 2000 --memory 100MB");
-    assert!(output.status.success(), "{}", told(&output));
+    assert!(output.status.success(), "{}", printed(&output));
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn a_process_limit_takes_threads_and_changes_no_result() {
         } else {
             limited(dir, &limit, args)
         };
-        let said = told(&bound);
+        let said = printed(&bound);
         match bound.status.code() {
             Some(0) => assert_eq!(body(&bound), body(&free)),
             // Nobody may be forbidden to run what lies here.
@@ -141,7 +141,7 @@ fn a_process_limit_takes_threads_and_changes_no_result() {
 fn threads_that_cannot_be_had_are_named() {
     let home = home();
     let output = limited(home.path(), "ulimit -v 400000", "run v.toml --threads 1024");
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(5), "{said}");
     assert!(said.contains("the system does not start 1024 threads"), "{said}");
 }
@@ -152,7 +152,7 @@ fn threads_that_the_environment_asks_for_in_vain_are_refused() {
     let home = home();
     let run = |value: &str, args: &[&str]| {
         let output = catchment(home.path()).env("RAYON_NUM_THREADS", value).args(args).output().unwrap();
-        (output.status.code(), told(&output).split_whitespace().collect::<Vec<_>>().join(" "))
+        (output.status.code(), printed(&output).split_whitespace().collect::<Vec<_>>().join(" "))
     };
     let fast = ["run", "v.toml", "--method", "flood", "--resolution", "6"];
     for value in ["1000000000", "1025", "-3", "many"] {
@@ -181,7 +181,7 @@ fn a_process_without_descriptors_leaves_nothing_behind() {
             "schema -o s.json --force",
         ] {
             let output = limited(home.path(), &format!("ulimit -n {most}"), args);
-            let said = told(&output);
+            let said = printed(&output);
             assert!(
                 matches!(output.status.code(), Some(0 | 3 | 5)),
                 "{most}, {args}: {}: {said}",
@@ -201,7 +201,7 @@ fn help_that_cannot_be_written_says_so() {
     let home = home();
     for args in ["--help", "--version", "run --help", "check v.toml", "schema", "completions bash", "man"] {
         let output = limited(home.path(), "true", &format!("{args} > /dev/full"));
-        let said = told(&output);
+        let said = printed(&output);
         assert_eq!(output.status.code(), Some(5), "{args}: {said}");
         assert!(said.contains("cannot write to stdout"), "{args}: {said}");
     }
@@ -236,7 +236,7 @@ fn a_mesh_in_which_everything_crosses_is_refused_at_its_first_crossings() {
     fs::write(dir.join("d.toml"), design).unwrap();
     let started = Instant::now();
     let output = limited(dir, "ulimit -v 1000000", "check d.toml");
-    let said = told(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = printed(&output).split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(said.contains("cross near") && said.contains("triangles were not looked at"), "{said}");
     assert!(started.elapsed() < Duration::from_secs(10) && said.len() < 4000, "{:?}", started.elapsed());
@@ -252,7 +252,7 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
     fs::write(home.path().join("q.csv"), names + "x\n").unwrap();
     let started = Instant::now();
     let output = catchment(home.path()).args(["outcome", "v.toml", "--poses", "q.csv"]).output().unwrap();
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(said.contains("q.csv, line 1, column 1: 1000001 columns"), "{said}");
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
@@ -303,7 +303,8 @@ fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory()
     ] {
         let started = Instant::now();
         let output = limited(home.path(), "ulimit -v 500000", args);
-        let said = told(&output).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        let said =
+            printed(&output).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
         assert_eq!(output.status.code(), Some(4), "{args}: {said}");
         assert!(said.contains(says) && said.len() < 20_000, "{args}: {said}");
         assert!(started.elapsed() < Duration::from_secs(10), "{args}: {:?}", started.elapsed());
@@ -353,7 +354,7 @@ fn who_waits_for_a_pipe_listens() {
         assert!(matches!(code, None | Some(143)), "{args:?}: {code:?}");
     }
     let output = limited(dir, "true", "check <(cat v.toml)");
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
 }
 
 #[test]
@@ -367,7 +368,7 @@ fn names_that_every_row_would_repeat_are_counted() {
     let row = "3".to_owned() + &",".repeat(900) + "\n";
     fs::write(home.path().join("q.csv"), format!("x{names}\n") + &row.repeat(5000)).unwrap();
     let output = limited(home.path(), "ulimit -v 1500000", "outcome v.toml --poses q.csv --json");
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(5), "{said}");
     assert!(said.contains("the answer for every pose needs") && said.contains("try fewer poses"), "{said}");
 }
@@ -380,14 +381,14 @@ fn what_is_no_file_is_not_waited_for() {
     let made = Command::new("mkfifo").arg(dir.join("e.zarr/zarr.json")).status().unwrap();
     assert!(made.success());
     let output = limited(dir, "true", "compare e.zarr v.toml");
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(said.contains("it is no regular file"), "{said}");
     // Longer than any report: not one byte of it is on the disk.
     fs::remove_file(dir.join("e.zarr/zarr.json")).unwrap();
     fs::File::create(dir.join("e.zarr/zarr.json")).unwrap().set_len(3 << 30).unwrap();
     let output = limited(dir, "ulimit -v 1000000", "compare e.zarr v.toml");
-    let said = told(&output);
+    let said = printed(&output);
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(said.contains("longer than"), "{said}");
 }
@@ -407,7 +408,7 @@ fn extreme_but_allowed_alignments_end() {
     ] {
         let started = Instant::now();
         let output = limited(home.path(), "true", args);
-        let said = told(&output);
+        let said = printed(&output);
         assert!(matches!(output.status.code(), Some(0 | 4)), "{args}: {}: {said}", output.status);
         assert!(started.elapsed() < Duration::from_mins(1), "{args}: {:?}", started.elapsed());
     }

@@ -163,7 +163,7 @@ fn spoil(bytes: &mut Vec<u8>) {
 }
 
 #[test]
-fn a_spoilt_mesh_is_repaired_and_told() {
+fn a_spoilt_mesh_is_repaired_and_reported() {
     let (sound, spoilt) = (folder(|_| ()), folder(plug(spoil)));
     let done = "1 triangle without area removed, 1 duplicate triangle removed, 1 triangle flipped; its shape is unchanged";
     let said = run(spoilt.path(), &["check", "design.toml"]);

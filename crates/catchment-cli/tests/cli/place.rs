@@ -21,16 +21,16 @@ const PARTS: [&str; 4] = ["place", "parts/socket.stl", "parts/plug.stl", "--unit
 /// The heights of the proposed design, from the outcomes of one list of errors.
 fn outcomes(folder: &Path, design: &str) -> String {
     fs::write(folder.join("poses.csv"), "x_mm,y_mm,pitch_deg\n3,1,0\n-5,4,0\n0,0,8\n40,0,0\n").unwrap();
-    let told = run(folder, &["outcome", design, "--poses", "poses.csv"]);
-    assert!(told.starts_with("exit 0"), "{told}");
-    told
+    let printed = run(folder, &["outcome", design, "--poses", "poses.csv"]);
+    assert!(printed.starts_with("exit 0"), "{printed}");
+    printed
 }
 
 #[test]
 fn two_files_become_a_design_that_answers() {
     let home = home();
-    let told = run(home.path(), &[&PARTS[..], &["-o", "design.toml", "--figure", "pair.svg"]].concat());
-    insta::assert_snapshot!("place_pyramid", told);
+    let printed = run(home.path(), &[&PARTS[..], &["-o", "design.toml", "--figure", "pair.svg"]].concat());
+    insta::assert_snapshot!("place_pyramid", printed);
     insta::assert_snapshot!(
         "place_pyramid_design",
         fs::read_to_string(home.path().join("design.toml")).unwrap()
@@ -45,8 +45,9 @@ fn two_files_become_a_design_that_answers() {
     let text =
         text.replace("meshes/", "parts/").replace("center_of_rotation = 0.5", "center_of_rotation = 0.0");
     fs::write(home.path().join("true.toml"), text).unwrap();
-    let words = |told: &str| {
-        told.lines()
+    let words = |printed: &str| {
+        printed
+            .lines()
             .flat_map(|line| line.split(','))
             .filter(|word| ["aligned", "jammed", "missed", "undecided"].contains(word))
             .map(ToOwned::to_owned)
@@ -61,8 +62,8 @@ fn an_assembly_is_recognised_and_paths_lead_from_the_design() {
     let home = home();
     fs::create_dir(home.path().join("designs")).unwrap();
     let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
-    let told = run(home.path(), &[&parts[..], &["-o", "designs/pair.toml"]].concat());
-    insta::assert_snapshot!("place_assembly", told);
+    let printed = run(home.path(), &[&parts[..], &["-o", "designs/pair.toml"]].concat());
+    insta::assert_snapshot!("place_assembly", printed);
     let text = fs::read_to_string(home.path().join("designs/pair.toml")).unwrap();
     assert!(text.contains("mesh = \"../parts/assembled-socket.obj\""), "{text}");
     assert!(text.contains("approach = \"+y\"") && text.contains("drawn = \"assembled\""), "{text}");
@@ -85,16 +86,17 @@ fn a_design_is_replaced_only_when_asked() {
 }
 
 #[test]
-fn parts_that_do_not_dock_are_told_and_nothing_is_written() {
+fn parts_that_do_not_dock_are_reported_and_nothing_is_written() {
     let home = home();
     let parts = ["place", "parts/socket.stl", "parts/socket.stl", "--unit", "mm", "--facing-fixed=-z"];
     let output =
         catchment(home.path()).args(parts).args(["-o", "d.toml", "--figure", "d.png"]).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(5), "{told}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(5), "{printed}");
     assert!(
-        told.contains("no docking direction along the axes was found") && told.contains("--facing-moving"),
-        "{told}"
+        printed.contains("no docking direction along the axes was found")
+            && printed.contains("--facing-moving"),
+        "{printed}"
     );
     assert_eq!(entries(home.path()), ["parts"]);
 }
@@ -109,14 +111,14 @@ fn a_bar_that_balances_is_not_proposed_to_tip() {
     let z = 2.0 + 25.0 * 58.0 / 30.0;
     let bar = [[-25.0, z], [25.0, z], [25.0, z + 3.0], [-25.0, z + 3.0]];
     let home = two_parts(&obj(&[(&v, [-10.0, 10.0], deep)]), &obj(&[(&bar, [-5.0, 5.0], deep)]));
-    let told = run(home.path(), &[&ASSEMBLED[..], &["--free", "x,pitch"]].concat());
+    let printed = run(home.path(), &[&ASSEMBLED[..], &["--free", "x,pitch"]].concat());
     assert!(
-        told.starts_with("exit 5") && told.contains("does not hold") && told.contains(" mm deeper"),
-        "{told}"
+        printed.starts_with("exit 5") && printed.contains("does not hold") && printed.contains(" mm deeper"),
+        "{printed}"
     );
     assert_eq!(entries(home.path()), ["fixed.obj", "moving.obj"]);
-    let told = run(home.path(), &ASSEMBLED);
-    if told.starts_with("exit 0") {
+    let printed = run(home.path(), &ASSEMBLED);
+    if printed.starts_with("exit 0") {
         let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
         assert!(text.contains("\nfree = [\"x\"") && !text.contains("\"pitch\""), "{text}");
         assert!(run(home.path(), &["check", "d.toml"]).starts_with("exit 0"));
@@ -138,16 +140,16 @@ fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
     ]
     .concat();
     let home = two_parts(&obj(&fixed), &obj(&[(&keys, [1.0, 12.0], flat)]));
-    let told = run(home.path(), &ASSEMBLED);
-    assert!(told.starts_with("exit 0"), "{told}");
+    let printed = run(home.path(), &ASSEMBLED);
+    assert!(printed.starts_with("exit 0"), "{printed}");
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(text.contains("\nfree = [\"x\", \"y\", ") && !text.contains("yaw"), "{text}");
     assert!(text.contains("all others are locked at 0."), "{text}");
     // A disc without keys lies as deep all round.
     fs::write(home.path().join("moving.obj"), obj(&[(&arc(10.0, 0.0, 350.0, 35), [1.0, 12.0], flat)]))
         .unwrap();
-    let told = run(home.path(), &[&ASSEMBLED[..], &["--force"]].concat());
-    assert!(told.starts_with("exit 0"), "{told}");
+    let printed = run(home.path(), &[&ASSEMBLED[..], &["--force"]].concat());
+    assert!(printed.starts_with("exit 0"), "{printed}");
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(text.contains("dont_care = [\"yaw\"]") && text.contains("seated at any angle"), "{text}");
 }
@@ -162,9 +164,9 @@ fn what_settles_says_how_far() {
     };
     let wedge = [[0., 2.], [25., 27.], [25., 30.], [-25., 30.], [-25., 27.]].map(turn);
     let home = two_parts(&obj(&[(&groove, [-10.0, 10.0], deep)]), &obj(&[(&wedge, [-10.0, 10.0], deep)]));
-    let told = run(home.path(), &ASSEMBLED);
-    assert!(told.starts_with("exit 0") && told.contains("settles 2.5 deg"), "{told}");
-    assert!(told.contains("note: the drawn pose is not a rest"), "{told}");
+    let printed = run(home.path(), &ASSEMBLED);
+    assert!(printed.starts_with("exit 0") && printed.contains("settles 2.5 deg"), "{printed}");
+    assert!(printed.contains("note: the drawn pose is not a rest"), "{printed}");
 }
 
 /// What is read is not written over, by whatever option it was named.
@@ -174,41 +176,46 @@ fn what_belongs_to_a_half_is_not_written_over() {
     let ball = "parts/assembled-plug.ply";
     let bytes = fs::read(home.path().join(ball)).unwrap();
     for with in ["--with-fixed", "--with-moving"] {
-        let told = run(home.path(), &[&PARTS[..], &[with, ball, "-o", ball, "--force"]].concat());
-        assert!(told.starts_with("exit 2") && told.contains("assembled-plug.ply"), "{told}");
+        let printed = run(home.path(), &[&PARTS[..], &[with, ball, "-o", ball, "--force"]].concat());
+        assert!(printed.starts_with("exit 2") && printed.contains("assembled-plug.ply"), "{printed}");
     }
     assert_eq!(fs::read(home.path().join(ball)).unwrap(), bytes);
-    let told = run(home.path(), &[&PARTS[..], &["--with-moving", "parts/none.stl"]].concat());
-    assert!(told.contains("there is no file parts/none.stl") && told.contains("help: "), "{told}");
+    let printed = run(home.path(), &[&PARTS[..], &["--with-moving", "parts/none.stl"]].concat());
+    assert!(printed.contains("there is no file parts/none.stl") && printed.contains("help: "), "{printed}");
 }
 
 /// Files of more triangles than a half may have are placed with fewer, which the design says.
 #[test]
 fn files_are_placed_with_fewer_triangles() {
     let home = home();
-    let told = run(home.path(), &[&PARTS[..], &["-o", "d.toml", "--simplify", "0.02 mm"]].concat());
-    assert!(told.starts_with("exit 0"), "{told}");
+    let printed = run(home.path(), &[&PARTS[..], &["-o", "d.toml", "--simplify", "0.02 mm"]].concat());
+    assert!(printed.starts_with("exit 0"), "{printed}");
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert_eq!(text.matches("\nsimplify = \"0.02 mm\"").count(), 2, "{text}");
     assert!(run(home.path(), &["check", "d.toml"]).starts_with("exit 0"));
     for (wrong, words) in
         [("0.1 D", "D is not known yet"), ("0", "no distance"), ("3 deg", "3 deg"), ("x", "x")]
     {
-        let told = run(home.path(), &[&PARTS[..], &["-o", "e.toml", "--simplify", wrong]].concat());
-        assert!(told.starts_with("exit 2") && told.contains("--simplify") && told.contains(words), "{told}");
+        let printed = run(home.path(), &[&PARTS[..], &["-o", "e.toml", "--simplify", wrong]].concat());
+        assert!(
+            printed.starts_with("exit 2") && printed.contains("--simplify") && printed.contains(words),
+            "{printed}"
+        );
     }
     // Too many: the option is named, and not a key of a design that nobody wrote.
     let mut many = vec![0; 84 + 50 * 200_001];
     many[80..84].copy_from_slice(&200_001u32.to_le_bytes());
     fs::write(home.path().join("many.stl"), many).unwrap();
-    let told = run(home.path(), &["place", "many.stl", "parts/plug.stl", "--unit=mm"]);
+    let printed = run(home.path(), &["place", "many.stl", "parts/plug.stl", "--unit=mm"]);
     assert!(
-        told.starts_with("exit 4") && told.contains("--simplify") && !told.contains("beside the file"),
-        "{told}"
+        printed.starts_with("exit 4")
+            && printed.contains("--simplify")
+            && !printed.contains("beside the file"),
+        "{printed}"
     );
-    let told =
+    let printed =
         run(home.path(), &[&PARTS[..], &["--simplify=0.1 mm", "--with-fixed", "parts/plug.stl"]].concat());
-    assert!(told.starts_with("exit 2") && told.contains("--with-fixed"), "{told}");
+    assert!(printed.starts_with("exit 2") && printed.contains("--with-fixed"), "{printed}");
 }
 
 /// What is drawn on its axis but not sunk slides along the approach; a few millimetres are no doubt, more are.
@@ -217,8 +224,8 @@ fn what_is_drawn_apart_slides_to_first_contact() {
     let fixed = on_a_plate(&socket(10.2));
     for (apart, doubt) in [(0.0, false), (3.8, false), (5.5, false)] {
         let home = two_parts(&fixed, &plug(10.0, [apart, 20.0 + apart]));
-        let told = run(home.path(), &TWO);
-        assert!(told.starts_with("exit 0") && told.contains("in doubt") == doubt, "{apart}\n{told}");
+        let printed = run(home.path(), &TWO);
+        assert!(printed.starts_with("exit 0") && printed.contains("in doubt") == doubt, "{apart}\n{printed}");
         let checked = run(home.path(), &["check", "d.toml"]);
         assert!(checked.starts_with("exit 0"), "{checked}");
     }
@@ -226,9 +233,13 @@ fn what_is_drawn_apart_slides_to_first_contact() {
 
 /// Ways of approach that are blocked say by how much in the unit of the parts.
 #[test]
-fn a_blocked_approach_is_told_in_millimetres() {
+fn a_blocked_approach_is_reported_in_millimetres() {
     let home = home();
     let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
-    let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat()).unbroken();
-    assert!(told.starts_with("exit 5") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
+    let printed =
+        run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat()).unbroken();
+    assert!(
+        printed.starts_with("exit 5") && printed.contains("blocked: ") && printed.contains(" mm above"),
+        "{printed}"
+    );
 }

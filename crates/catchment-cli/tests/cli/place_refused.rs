@@ -8,7 +8,7 @@ use std::fs;
 
 /// An L and its recess, one of them exported mirrored: no turn brings them together.
 #[test]
-fn a_mirrored_part_is_told_as_one() {
+fn a_mirrored_part_is_reported_as_one() {
     let l = [rectangle([-8.0, -2.0], [-10.0, 10.0]), rectangle([-2.0, 8.0], [-10.0, -4.0])];
     // Faces up in its own file, so that it is turned over about x to dock.
     let recess = [
@@ -20,8 +20,8 @@ fn a_mirrored_part_is_told_as_one() {
     ];
     let home = two_parts(&on_a_plate(&l), &on_a_plate(&recess));
     let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
-    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
-    assert!(told.starts_with("exit 0") && !told.contains("mirror"), "{told}");
+    let printout = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
+    assert!(printout.starts_with("exit 0") && !printout.contains("mirror"), "{printout}");
     // Where it tolerates a few millimetres, the error box does not reach to 30.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
@@ -30,10 +30,10 @@ fn a_mirrored_part_is_told_as_one() {
     );
     let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);
     fs::write(home.path().join("moving.obj"), on_a_plate(&mirrored)).unwrap();
-    let told = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");
+    let printout = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");
     assert!(
-        told.starts_with("exit 5") && told.contains("a mirror image of the moving part would dock"),
-        "{told}"
+        printout.starts_with("exit 5") && printout.contains("a mirror image of the moving part would dock"),
+        "{printout}"
     );
     assert!(!home.path().join("m.toml").exists());
 }
@@ -51,11 +51,11 @@ fn a_web_in_the_way_is_pointed_at() {
     let plug = [rectangle([-10.0, 10.0], [-10.0, 10.0])];
     let home = two_parts(&on_a_plate(&[&walls[..], &[web]].concat()), &on_a_plate(&plug));
     let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
-    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat()).replace("\n        ", " ");
+    let printout = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat()).replace("\n        ", " ");
     for words in
         ["something narrow of the fixed part is in the way", "6) mm of the fixed", "about 6 mm deeper"]
     {
-        assert!(told.starts_with("exit 5") && told.contains(words), "{words}\n{told}");
+        assert!(printout.starts_with("exit 5") && printout.contains(words), "{words}\n{printout}");
     }
     // A design that somebody wrote says the same, on the moving half as well.
     for (fixed, moving, whose) in [("fixed", "moving", "fixed"), ("moving", "fixed", "moving")] {
@@ -66,17 +66,19 @@ fn a_web_in_the_way_is_pointed_at() {
             half(moving)
         );
         fs::write(home.path().join("d.toml"), text).unwrap();
-        let told = run(home.path(), &["check", "d.toml"]).replace("\n        ", " ");
+        let printout = run(home.path(), &["check", "d.toml"]).replace("\n        ", " ");
         let words = format!("something narrow of the {whose} part is in the way");
         assert!(
-            told.starts_with("exit 4") && told.contains(&words) && told.contains("deeper, into a seat"),
-            "{told}"
+            printout.starts_with("exit 4")
+                && printout.contains(&words)
+                && printout.contains("deeper, into a seat"),
+            "{printout}"
         );
     }
     // Without the web it docks.
     fs::write(home.path().join("fixed.obj"), on_a_plate(&walls)).unwrap();
-    let told = run(home.path(), &[&parts[..], &["-o", "e.toml"]].concat());
-    assert!(told.starts_with("exit 0") && !told.contains("in the way"), "{told}");
+    let printout = run(home.path(), &[&parts[..], &["-o", "e.toml"]].concat());
+    assert!(printout.starts_with("exit 0") && !printout.contains("in the way"), "{printout}");
 }
 
 /// Parts that are drawn together and do not hold are refused with the cause, not put somewhere else.
@@ -95,9 +97,9 @@ fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
     ];
     for (fixed, moving, words) in cases {
         let home = two_parts(&fixed, &moving);
-        let told = run(home.path(), &TWO).unbroken();
+        let printout = run(home.path(), &TWO).unbroken();
         for words in words {
-            assert!(told.starts_with("exit 5") && told.contains(words), "{words}\n{told}");
+            assert!(printout.starts_with("exit 5") && printout.contains(words), "{words}\n{printout}");
         }
         assert!(!home.path().join("d.toml").exists());
     }
@@ -105,7 +107,7 @@ fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
 
 /// A lid exactly as large as its recess has no play: so much is said. A tenth of a millimetre lets it in.
 #[test]
-fn a_lid_as_large_as_its_recess_is_told() {
+fn a_lid_as_large_as_its_recess_is_reported() {
     let parts = [
         "place",
         "fixed.obj",
@@ -127,8 +129,8 @@ fn a_lid_as_large_as_its_recess_is_told() {
         );
     }
     let home = two_parts(&on_a_plate(&socket(10.1)), &plug(10.0, [40.0, 60.0]));
-    let told = run(home.path(), &parts);
-    assert!(told.starts_with("exit 0"), "{told}");
+    let printout = run(home.path(), &parts);
+    assert!(printout.starts_with("exit 0"), "{printout}");
 }
 
 /// Mistakes in the files that leave no seat: each is named, with what to do.
@@ -136,31 +138,40 @@ fn a_lid_as_large_as_its_recess_is_told() {
 fn mistakes_in_the_files_are_named() {
     let refused = |fixed: &str, moving: &str, more: &[&str]| {
         let home = two_parts(fixed, moving);
-        let told = run(home.path(), &[&TWO[..], more].concat()).unbroken();
-        assert!(told.starts_with("exit 5"), "{told}");
-        told
+        let printout = run(home.path(), &[&TWO[..], more].concat()).unbroken();
+        assert!(printout.starts_with("exit 5"), "{printout}");
+        printout
     };
     let plate = on_a_plate(&[]);
     // The same part twice, in a file and in a copy of it.
-    let told = refused(&plate, &plate, &[]);
-    assert!(told.contains("both files hold the same part: name the file of the other half"), "{told}");
+    let printout = refused(&plate, &plate, &[]);
+    assert!(
+        printout.contains("both files hold the same part: name the file of the other half"),
+        "{printout}"
+    );
     let home = two_parts(&plate, &plate);
-    let told = run(home.path(), &["place", "fixed.obj", "fixed.obj", "--unit=mm"]).unbroken();
-    assert!(told.starts_with("exit 5") && told.contains("both halves are the same file"), "{told}");
+    let printout = run(home.path(), &["place", "fixed.obj", "fixed.obj", "--unit=mm"]).unbroken();
+    assert!(
+        printout.starts_with("exit 5") && printout.contains("both halves are the same file"),
+        "{printout}"
+    );
     // Both halves in one file.
     let two = obj(&[
         (&rectangle([-15.0, 15.0], [-15.0, 15.0]), [-5.0, 0.0], flat),
         (&rectangle([-9.0, 9.0], [-9.0, 9.0]), [30.0, 40.0], flat),
     ]);
-    let told = refused(&two, &plug(7.0, [0.0, 8.0]), &["--drawn=facing"]);
+    let printout = refused(&two, &plug(7.0, [0.0, 8.0]), &["--drawn=facing"]);
     assert!(
-        told.contains("the file of the fixed half holds 2 separate bodies: if both halves are in it, give that file alone"),
-        "{told}"
+        printout.contains("the file of the fixed half holds 2 separate bodies: if both halves are in it, give that file alone"),
+        "{printout}"
     );
     // Alone it must hold two.
     let home = two_parts(&plug(7.0, [0.0, 8.0]), "");
-    let told = run(home.path(), &["place", "fixed.obj", "--unit=mm"]).unbroken();
-    assert!(told.starts_with("exit 4") && told.contains("there is no body 2: the file holds 1"), "{told}");
+    let printout = run(home.path(), &["place", "fixed.obj", "--unit=mm"]).unbroken();
+    assert!(
+        printout.starts_with("exit 4") && printout.contains("there is no body 2: the file holds 1"),
+        "{printout}"
+    );
 }
 
 /// Inches that are read as millimetres make parts of a few millimetres.
@@ -170,26 +181,26 @@ fn parts_of_a_few_millimetres_may_be_in_inches() {
         &scaled(&on_a_plate(&socket(10.2)), 1.0 / 25.4),
         &scaled(&plug(10.0, [0.0, 20.0]), 1.0 / 25.4),
     );
-    let told = run(home.path(), &TWO).unbroken();
-    assert!(told.contains("is the file in inches? Then it is "), "{told}");
+    let printout = run(home.path(), &TWO).unbroken();
+    assert!(printout.contains("is the file in inches? Then it is "), "{printout}");
 }
 
 /// Lengths of parts of millimetres are told in mm where their files are in metres.
 #[test]
-fn metres_are_told_in_millimetres() {
+fn metres_are_reported_in_millimetres() {
     let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
-    let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
+    let printout = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
     assert!(
-        told.starts_with("exit 0")
-            && told.contains("6 mm deep along the approach, ±0.")
-            && told.contains(" mm of sideways play at half depth"),
-        "{told}"
+        printout.starts_with("exit 0")
+            && printout.contains("6 mm deep along the approach, ±0.")
+            && printout.contains(" mm of sideways play at half depth"),
+        "{printout}"
     );
 }
 
 /// What is wrong with both files alike is said once.
 #[test]
-fn step_without_a_python_is_told_once() {
+fn step_without_a_python_is_reported_once() {
     let home = tempfile::tempdir().unwrap();
     for name in ["a.step", "b.step"] {
         fs::write(
@@ -203,7 +214,7 @@ fn step_without_a_python_is_told_once() {
         .env("CATCHMENT_PYTHON", home.path().join("no-python"))
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{told}");
-    assert_eq!(told.matches("CATCHMENT_PYTHON").count(), 1, "{told}");
+    let printout = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{printout}");
+    assert_eq!(printout.matches("CATCHMENT_PYTHON").count(), 1, "{printout}");
 }

@@ -35,9 +35,9 @@ fn filled(plan: &str, docks_to: f64) -> String {
 }
 
 fn plan(folder: &Path, args: &[&str], file: &str) -> String {
-    let told = run(folder, &[args, &["-o", file]].concat());
-    assert!(told.starts_with("exit 0"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let printed = run(folder, &[args, &["-o", file]].concat());
+    assert!(printed.starts_with("exit 0"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     fs::read_to_string(folder.join(file)).unwrap()
 }
 
@@ -121,8 +121,8 @@ fn threads_and_the_point_of_offsets_change_no_verdict() {
         report["timing"] = Value::Null;
         report
     };
-    let told = quiet(&[&arc[..], &["--threads", "1"]].concat());
-    assert_eq!(told, quiet(&[&arc[..], &["--threads", "2"]].concat()));
+    let printed = quiet(&[&arc[..], &["--threads", "1"]].concat());
+    assert_eq!(printed, quiet(&[&arc[..], &["--threads", "2"]].concat()));
     // At the face centre y is locked and yet not 0; at the joint both offsets are 0.
     let face = plan(home.path(), &arc, "face.csv");
     assert!(face.starts_with("trial,block,line,x_mm,y_mm,pitch_deg,yaw_deg,predicted,"), "{face}");
@@ -150,8 +150,8 @@ fn threads_and_the_point_of_offsets_change_no_verdict() {
         .map(|line| line.split(',').skip(3).take(4).collect::<Vec<_>>().join(",") + "\n")
         .collect();
     fs::write(home.path().join("poses.csv"), poses).unwrap();
-    let told = run(home.path(), &["outcome", "bench-pyramid-arc.toml", "--poses", "poses.csv"]);
-    assert!(told.starts_with("exit 0"), "{told}");
+    let printed = run(home.path(), &["outcome", "bench-pyramid-arc.toml", "--poses", "poses.csv"]);
+    assert!(printed.starts_with("exit 0"), "{printed}");
 }
 
 #[test]

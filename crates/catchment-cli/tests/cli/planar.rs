@@ -20,12 +20,15 @@ fn nilssons_bound_stands_beside_the_exact_answer() {
     }
     assert!(json(&designs(), &["zraa", "x-face.toml", "--json"])["nilsson"].is_null());
     // Lines break anywhere.
-    let told = run(&designs(), &["zraa", "v-face.toml"]).split_whitespace().collect::<Vec<_>>().join(" ");
+    let printed = run(&designs(), &["zraa", "v-face.toml"]).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        told.contains("nilsson D/2 to both sides is the most for one profile, halves of two kinds"),
-        "{told}"
+        printed.contains("nilsson D/2 to both sides is the most for one profile, halves of two kinds"),
+        "{printed}"
     );
-    assert!(told.contains("to +x the minimum at x = 0 slides home short of the maximum at 0.5"), "{told}");
+    assert!(
+        printed.contains("to +x the minimum at x = 0 slides home short of the maximum at 0.5"),
+        "{printed}"
+    );
 }
 
 /// An own profile: a polyline cut into columns, its minimum off the middle.
@@ -69,8 +72,8 @@ fn faces_stand_side_by_side() {
         assert!(with(&["-o", file]).starts_with("exit 0\n"), "{}", with(&["-o", file, "--force"]));
     }
     let svg = fs::read_to_string(dir.path().join("a.svg")).unwrap();
-    for told in ["0.3333 D", "0.5 D", "1 D", "one profile: at most D/3", "one profile: at most D/2"] {
-        assert!(svg.contains(told), "{told}");
+    for printed in ["0.3333 D", "0.5 D", "1 D", "one profile: at most D/3", "one profile: at most D/2"] {
+        assert!(svg.contains(printed), "{printed}");
     }
     assert!(fs::read(dir.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
     let csv = fs::read_to_string(dir.path().join("a.csv")).unwrap();
@@ -104,8 +107,11 @@ fn lever_arms_and_angles_of_a_pose() {
     assert!((at("theta_2") - at("theta_2_aligned")).abs() < 1e-12);
     assert_eq!((&aligned["halt"], &aligned["outcome"]), (&"success".into(), &"aligned".into()));
     for file in ["a.svg", "a.png", "a.csv", "a.json"] {
-        let told = run(dir.path(), &with(&["x=0.2,pitch=10 deg", "-o", file]));
-        assert!(told.starts_with("exit 0\n") && told.contains("alpha_e  normal to vertical"), "{told}");
+        let printed = run(dir.path(), &with(&["x=0.2,pitch=10 deg", "-o", file]));
+        assert!(
+            printed.starts_with("exit 0\n") && printed.contains("alpha_e  normal to vertical"),
+            "{printed}"
+        );
     }
     let svg = fs::read_to_string(dir.path().join("a.svg")).unwrap();
     for word in ["P_M moving", "P_B base", "P_C", "βₚ", "αₑ", "θ₁", "θ₂"] {
@@ -122,19 +128,19 @@ fn a_layer_on_the_wrong_one_is_crossed() {
     let layers = design("x-face-layers.toml");
     fs::write(dir.path().join("p.csv"), "x,y\n0.3,0.1\n0.3,-0.3\n0.3,0.7\n").unwrap();
     let args = ["outcome", &layers, "--poses", "p.csv", "--free", "x,y"];
-    let told = run(dir.path(), &args);
+    let printed = run(dir.path(), &args);
     assert!(
-        told.contains("1 of the jammed is crossed: a layer rests on one that is not its partner"),
-        "{told}"
+        printed.contains("1 of the jammed is crossed: a layer rests on one that is not its partner"),
+        "{printed}"
     );
-    let rows: Vec<&str> = told.lines().filter(|line| line.starts_with("0.3,")).collect();
+    let rows: Vec<&str> = printed.lines().filter(|line| line.starts_with("0.3,")).collect();
     assert!(
-        told.contains(",final_yaw,final_height,contacts,reason\n")
+        printed.contains(",final_yaw,final_height,contacts,reason\n")
             && rows[1].contains("jammed")
             && rows[1].ends_with(",crossed")
     );
-    assert!(rows[0].contains("aligned") && rows[0].ends_with(','), "{told}");
-    assert!(rows[2].contains("missed") && rows[2].ends_with(','), "{told}");
+    assert!(rows[0].contains("aligned") && rows[0].ends_with(','), "{printed}");
+    assert!(rows[2].contains("missed") && rows[2].ends_with(','), "{printed}");
     let report = json(dir.path(), &[&args[..], &["--json"]].concat());
     assert_eq!(report["poses"][1]["reason"], "crossed");
     assert!(report["poses"][0].get("reason").is_none());

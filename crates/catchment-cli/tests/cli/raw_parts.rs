@@ -127,8 +127,8 @@ fn what_is_drawn_in_metres_is_answered_in_millimetres() {
     let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(design.contains("width = 41.5") && design.contains("unit = \"mm\""), "{design}");
     assert!(design.contains("unit = \"m\" # the file itself states no unit"), "{design}");
-    let told = run(home.path(), &["check", "d.toml"]);
-    assert!(told.contains("41.5 mm"), "{told}");
+    let printout = run(home.path(), &["check", "d.toml"]);
+    assert!(printout.contains("41.5 mm"), "{printout}");
 }
 
 /// Both halves in one file, as an assembly is exported: the body with the larger box is the fixed half, and the design takes each by its number.

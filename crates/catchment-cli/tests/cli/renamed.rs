@@ -49,8 +49,8 @@ fn outcome_is_trace_of_a_table() {
     // Both write the table into the file of -o, and print nothing then.
     let home = home();
     for (verb, file) in [("outcome", "a.csv"), ("trace", "b.csv")] {
-        let told = run(home.path(), &[verb, "v.toml", "--poses", "p.csv", "-o", file]);
-        assert!(told.starts_with("exit 0\n--- stdout\n--- stderr\n3 poses: "), "{told}");
+        let printout = run(home.path(), &[verb, "v.toml", "--poses", "p.csv", "-o", file]);
+        assert!(printout.starts_with("exit 0\n--- stdout\n--- stderr\n3 poses: "), "{printout}");
     }
     let read = |file: &str| fs::read_to_string(home.path().join(file)).unwrap();
     assert_eq!(read("a.csv"), read("b.csv"));
@@ -71,11 +71,11 @@ fn what_a_table_of_poses_does_not_have_is_refused() {
         (&["--method", "kinematic"], "of one pose"),
         (&["--force"], "none is to be written"),
     ] {
-        let told = run(home.path(), &[&table[..], more].concat());
-        assert!(!told.starts_with("exit 0") && told.contains(why), "{more:?}: {told}");
+        let printout = run(home.path(), &[&table[..], more].concat());
+        assert!(!printout.starts_with("exit 0") && printout.contains(why), "{more:?}: {printout}");
     }
-    let told = run(home.path(), &["trace", "v.toml"]);
-    assert!(told.contains("<--pose <ERRORS>|--poses <FILE>>"), "{told}");
+    let printout = run(home.path(), &["trace", "v.toml"]);
+    assert!(printout.contains("<--pose <ERRORS>|--poses <FILE>>"), "{printout}");
     assert_eq!(entries(home.path()), ["mm.toml", "p.csv", "v.toml"]);
 }
 
@@ -86,8 +86,8 @@ fn jams_is_rests_with_jams() {
         same(&old, &new);
     }
     let home = home();
-    let told = run(home.path(), &["rests", "v.toml", "--friction", "0.1"]);
-    assert!(told.contains("--jams"), "{told}");
+    let printout = run(home.path(), &["rests", "v.toml", "--friction", "0.1"]);
+    assert!(printout.contains("--jams"), "{printout}");
 }
 
 #[test]

@@ -24,16 +24,16 @@ fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
     assert_eq!(report["rests"][0]["examined"]["immobility"]["order"], "first");
     // D/2 per radian, in a metric of D/2 per radian.
     assert!((report["rests"][0]["examined"]["immobility"]["slope"][0].as_f64().unwrap() - 1.0).abs() < 1e-4);
-    let told = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
+    let printed = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
     assert!(
-        told.starts_with("exit 0\n")
-            && told.contains(
+        printed.starts_with("exit 0\n")
+            && printed.contains(
                 "escape height at most 10.36 mm: raised by this on the easiest path found, it settles in"
             ),
-        "{told}"
+        "{printed}"
     );
-    assert!(told.contains("first-order immobile: any small displacement raises the COR"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    assert!(printed.contains("first-order immobile: any small displacement raises the COR"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
 }
 
 #[test]
@@ -48,8 +48,8 @@ fn threads_change_nothing_and_files_are_whole() {
     assert_eq!(with("1"), with("2"));
     assert_eq!(with("1"), with("4"));
     for (file, begins) in [("r.svg", "<svg"), ("r.csv", "rest,count,share,"), ("r.json", "{\n")] {
-        let told = run(home.path(), &["rests", "cube.toml", "--motions", "200", "-o", file]);
-        assert!(told.starts_with("exit 0\n"), "{told}");
+        let printed = run(home.path(), &["rests", "cube.toml", "--motions", "200", "-o", file]);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
         assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
     }
 }

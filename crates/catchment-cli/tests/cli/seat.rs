@@ -147,12 +147,15 @@ fn a_bar_that_balances_is_not_mated() {
     for settle in ["", "settle = true\n"] {
         let text = BALANCING.replace("width = 50\n", &format!("width = 50\n{settle}"));
         fs::write(home.path().join("peg.toml"), text).unwrap();
-        let told =
+        let printed =
             refused(home.path()).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
         // 0.537 D, tipped by 62.65 degrees.
-        assert!(told.contains("the aligned pose does not hold: a half let go with an error of"), "{told}");
-        assert!(told.contains("comes to rest 26.8") && told.contains("mm deeper, at x "), "{told}");
-        assert!(told.contains("pitch -62.6") || told.contains("pitch 62.6"), "{told}");
+        assert!(
+            printed.contains("the aligned pose does not hold: a half let go with an error of"),
+            "{printed}"
+        );
+        assert!(printed.contains("comes to rest 26.8") && printed.contains("mm deeper, at x "), "{printed}");
+        assert!(printed.contains("pitch -62.6") || printed.contains("pitch 62.6"), "{printed}");
     }
     // Nor does any command that follows motions answer about it.
     fs::write(home.path().join("peg.toml"), BALANCING).unwrap();
@@ -169,10 +172,10 @@ fn a_bar_that_balances_is_not_mated() {
         &["slices", "peg.toml"],
         &["sweep", "peg.toml", "--over", "cor=0,0.1"],
     ] {
-        let told = run(home.path(), args);
-        let words = told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        let printed = run(home.path(), args);
+        let words = printed.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
         // Of a sweep every design is sound by itself; none can be computed.
         let code = if args[0] == "sweep" { "exit 5" } else { "exit 4" };
-        assert!(words.starts_with(code) && words.contains("does not hold"), "{args:?}: {told}");
+        assert!(words.starts_with(code) && words.contains("does not hold"), "{args:?}: {printed}");
     }
 }

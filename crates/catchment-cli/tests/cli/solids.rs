@@ -10,16 +10,16 @@ fn shapes_are_written_as_the_end_of_the_name_says() {
     let home = home();
     let read = |name: &str| fs::read_to_string(home.path().join(name)).unwrap();
     let to = |name: &str, more: &[&str]| {
-        let told = run(home.path(), &[&["solids", "v.toml", "-o", name], more].concat());
-        assert!(told.starts_with("exit 0\n"), "{told}");
-        told
+        let printed = run(home.path(), &[&["solids", "v.toml", "-o", name], more].concat());
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
+        printed
     };
-    let told = to("turned.vtp", &["--free", "x,pitch"]);
+    let printed = to("turned.vtp", &["--free", "x,pitch"]);
     // 16 intervals between slices, 2 pieces of the notch, 2 · 3 bodies for the three corners of the tip.
-    assert!(told.contains("2 fixed, 1 moving") && told.contains("192 convex bodies"), "{told}");
+    assert!(printed.contains("2 fixed, 1 moving") && printed.contains("192 convex bodies"), "{printed}");
     assert!(
-        told.contains("15 slices, 1 strips per D") && told.contains("pitch  -1.571  1.571  rad"),
-        "{told}"
+        printed.contains("15 slices, 1 strips per D") && printed.contains("pitch  -1.571  1.571  rad"),
+        "{printed}"
     );
     let vtp = read("turned.vtp");
     assert!(vtp.starts_with("<?xml version=\"1.0\"?>") && vtp.contains("<VTKFile type=\"PolyData\""));
@@ -36,7 +36,7 @@ fn shapes_are_written_as_the_end_of_the_name_says() {
 }
 
 #[test]
-fn a_shape_is_told_as_json() {
+fn a_shape_is_reported_as_json() {
     let home = home();
     let report = json(home.path(), &["solids", "v.toml", "--free", "x", "--json"]);
     assert_eq!((&report["kind"], &report["shape"]), (&"solids".into(), &"collision".into()));
@@ -60,10 +60,10 @@ fn watersheds_are_counted_before_merging_and_after() {
         assert_eq!(of("dams") > 0.0, method == "meyer");
         let required = ["--require", "watersheds.merged<=3", "--require", "watersheds.first>=2"];
         assert!(run(home.path(), &[&args[..], &required].concat()).starts_with("exit 0\n"));
-        let told = run(home.path(), &[&args[..], &["--verbose"]].concat());
+        let printed = run(home.path(), &[&args[..], &["--verbose"]].concat());
         assert!(
-            told.contains("first labels") && told.contains("of the cells changed basin by merging"),
-            "{told}"
+            printed.contains("first labels") && printed.contains("of the cells changed basin by merging"),
+            "{printed}"
         );
         let out = home.path().join(method);
         let folder = [&args[..], &["-o", out.to_str().unwrap()]].concat();
@@ -96,9 +96,9 @@ fn drop_trials_stand_beside_the_exact_region() {
     }
     let picture = fs::read_to_string(home.path().join("beside.svg")).unwrap();
     assert!(picture.contains("in theory and by trials"));
-    let told =
+    let printed =
         run(home.path(), &["zraa", "v.toml", "--beside", "descent", "--resolution", "50", "-o", "t.csv"]);
-    assert!(told.starts_with("exit 0\n") && told.contains("0.00 %"), "{told}");
+    assert!(printed.starts_with("exit 0\n") && printed.contains("0.00 %"), "{printed}");
     let table = fs::read_to_string(home.path().join("t.csv")).unwrap();
     assert_eq!((table.lines().next(), table.lines().count()), (Some("x,outcome,inside"), 51));
 }
@@ -132,15 +132,15 @@ fn a_set_is_the_same_from_the_run_and_from_its_folder() {
     let home = home();
     let read = |name: &str| fs::read(home.path().join(name)).unwrap();
     let grid = ["run", "v.toml", "--resolution", "8", "--samples", "0"];
-    let told = run(home.path(), &[&grid[..], &["-o", "out"]].concat());
-    assert!(told.starts_with("exit 0\n"), "{told}");
+    let printed = run(home.path(), &[&grid[..], &["-o", "out"]].concat());
+    assert!(printed.starts_with("exit 0\n"), "{printed}");
     for ending in ["vti", "vtp", "csv"] {
         let [straight, later] = ["straight", "later"].map(|name| format!("{name}.{ending}"));
         assert!(run(home.path(), &[&grid[..], &["-o", &straight]].concat()).starts_with("exit 0\n"));
         let export = ["export", "out", "-o", &later];
-        let told = run(home.path(), &export);
-        assert!(told.starts_with("exit 0\n"), "{told}");
-        assert_eq!(told.contains("of 64 cells"), ending != "csv", "{told}");
+        let printed = run(home.path(), &export);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
+        assert_eq!(printed.contains("of 64 cells"), ending != "csv", "{printed}");
         assert_eq!(read(&straight), read(&later), "{ending}");
         assert!(run(home.path(), &export).contains("--force replaces it"));
         assert!(run(home.path(), &[&export[..], &["--force"]].concat()).starts_with("exit 0\n"));

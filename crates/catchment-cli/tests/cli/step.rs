@@ -132,8 +132,8 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
     assert_eq!(step["area_d2"], mesh["area_d2"]);
     assert!(mesh["area_d2"].as_f64().unwrap() > 0.0);
     // What meshed it is told with the design.
-    let told = &step["design"]["connector"]["own"]["moving"]["mesh"]["content"]["meshed"];
-    assert_eq!((&told["by"], &told["reached"]), (&"OCP of a test".into(), &(0.0125 / 50.0).into()));
+    let printed = &step["design"]["connector"]["own"]["moving"]["mesh"]["content"]["meshed"];
+    assert_eq!((&printed["by"], &printed["reached"]), (&"OCP of a test".into(), &(0.0125 / 50.0).into()));
 }
 
 #[cfg(unix)]

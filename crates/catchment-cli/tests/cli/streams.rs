@@ -201,11 +201,14 @@ fn what_exists_is_replaced_by_one_rule() {
         ("latch l.toml".to_owned(), "latch"),
     ] {
         for force in ["", "", " --force"] {
-            let told = run(folder, &words(&format!("{command} -o {place}{force}")));
-            assert!(told.starts_with("exit 0"), "{command}{force}: {told}");
+            let printout = run(folder, &words(&format!("{command} -o {place}{force}")));
+            assert!(printout.starts_with("exit 0"), "{command}{force}: {printout}");
         }
-        let told = run(folder, &words(&format!("{command} -o mine --force")));
-        assert!(told.starts_with("exit 2") && told.contains("not a catchment result"), "{command}: {told}");
+        let printout = run(folder, &words(&format!("{command} -o mine --force")));
+        assert!(
+            printout.starts_with("exit 2") && printout.contains("not a catchment result"),
+            "{command}: {printout}"
+        );
     }
     assert_eq!(fs::read(folder.join("mine/notes.txt")).unwrap(), b"mine");
 }

@@ -32,10 +32,10 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
         args.extend(more);
         run(home.path(), &args)
     };
-    let told = slices(&[]);
+    let printed = slices(&[]);
     assert!(
-        told.starts_with("exit 0\n") && told.contains("estimate") && told.contains("roll-pitch"),
-        "{told}"
+        printed.starts_with("exit 0\n") && printed.contains("estimate") && printed.contains("roll-pitch"),
+        "{printed}"
     );
     let out = home.path().join("out");
     let names = written(&out);
@@ -87,10 +87,10 @@ fn refinement_says_when_it_is_stable() {
     let exact = sequences.iter().find(|s| s["method"] == "descent").unwrap();
     let last = exact["trials"].as_array().unwrap().last().unwrap();
     assert!((last["sum"].as_f64().unwrap() - 2.39).abs() < 0.25, "{last}");
-    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    let printed = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     assert!(
-        told.starts_with("exit 0\n") && told.contains("\n  flood\n") && told.contains("stable\n"),
-        "{told}"
+        printed.starts_with("exit 0\n") && printed.contains("\n  flood\n") && printed.contains("stable\n"),
+        "{printed}"
     );
     assert_eq!(
         written(&home.path().join("out")),
@@ -102,14 +102,14 @@ fn refinement_says_when_it_is_stable() {
 fn what_stops_refinement_is_said() {
     let home = home();
     let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "2 MB"];
-    let told = run(home.path(), &args);
-    assert!(told.starts_with("exit 0\n") && told.contains("stopped, not stable: at"), "{told}");
-    let told = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);
-    assert!(told.contains("stopped, not stable: 15 cells per axis"), "{told}");
+    let printed = run(home.path(), &args);
+    assert!(printed.starts_with("exit 0\n") && printed.contains("stopped, not stable: at"), "{printed}");
+    let printed = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);
+    assert!(printed.contains("stopped, not stable: 15 cells per axis"), "{printed}");
 }
 
 #[test]
-fn slopes_and_spread_are_told_and_written() {
+fn slopes_and_spread_are_reported_and_written() {
     let home = home();
     let args = ["run", "v.toml", "--sensitivity", "--samples", "200"];
     insta::assert_snapshot!("sensitivity_planar", run(home.path(), &args));
@@ -125,8 +125,8 @@ fn slopes_and_spread_are_told_and_written() {
     let names: Vec<&str> =
         report["slopes"].as_array().unwrap().iter().map(|s| s["parameter"].as_str().unwrap()).collect();
     assert_eq!(names, ["rotation_length", "center_of_rotation", "aspect_ratio"]);
-    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
-    assert!(told.contains("wrote out: report.json, sensitivity.csv"), "{told}");
+    let printed = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    assert!(printed.contains("wrote out: report.json, sensitivity.csv"), "{printed}");
     assert_eq!(
         written(&home.path().join("out")),
         ["report.json", "sensitivity.csv", "sensitivity.png", "sensitivity.svg"]
@@ -134,8 +134,8 @@ fn slopes_and_spread_are_told_and_written() {
     // What a run wrote there is not replaced by a study.
     fs::create_dir(home.path().join("thesis")).unwrap();
     fs::write(home.path().join("thesis/overview.png"), "").unwrap();
-    let told = run(home.path(), &["run", "v.toml", "--sensitivity", "-o", "thesis"]);
-    assert!(told.starts_with("exit 2\n") && told.contains("cannot write"), "{told}");
+    let printed = run(home.path(), &["run", "v.toml", "--sensitivity", "-o", "thesis"]);
+    assert!(printed.starts_with("exit 2\n") && printed.contains("cannot write"), "{printed}");
 }
 
 #[test]

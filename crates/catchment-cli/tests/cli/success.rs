@@ -27,14 +27,14 @@ fn it_tells_the_closed_form_in_millimetres() {
     let ends = [0, 1].map(|k| report["success"]["ci95"][k].as_f64().unwrap());
     assert!(ends[0] < 0.9545 && 0.9545 < ends[1], "{ends:?}");
     assert_eq!(report["robots"][0]["errors"]["sigma"]["x"], 0.25);
-    let told = run(
+    let printed = run(
         home.path(),
         &["success", "v.toml", "--free", "x", "--error-sigma", "x=12.5 mm", "--motions", "400"],
     );
-    let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("errors normal errors, standard deviations σ x 12.500 mm"), "{told}");
-    assert!(told.contains("nearest failure") && told.contains("all σ together"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let words = printed.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("errors normal errors, standard deviations σ x 12.500 mm"), "{printed}");
+    assert!(printed.contains("nearest failure") && printed.contains("all σ together"), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
 }
 

@@ -24,8 +24,11 @@ fn every_key_can_be_swept_and_every_figure_is_written() {
     let args =
         ["sweep", "p.toml", "--over", "family=pyramid,cone", "--over", "errors.x=0.2,0.4 D", "--free", "x,y"];
     let quick = ["--resolution", "9", "--samples", "50", "-o", "out", "--error-sigma", "x=0.1"];
-    let told = run(home.path(), &[&args[..], &quick].concat());
-    assert!(told.starts_with("exit 0\n") && told.contains("wrote out: report.json, sweep.csv"), "{told}");
+    let printed = run(home.path(), &[&args[..], &quick].concat());
+    assert!(
+        printed.starts_with("exit 0\n") && printed.contains("wrote out: report.json, sweep.csv"),
+        "{printed}"
+    );
     let out = home.path().join("out");
     let names =
         ["outlines.png", "outlines.svg", "report.json", "sweep.csv", "sweep.png", "sweep.svg", "sweep.zarr"];

@@ -83,11 +83,11 @@ fn an_unknown_table_is_recognised() {
 #[test]
 fn tables_are_written_with_pictures_and_exact_values() {
     let dir = tempfile::tempdir().unwrap();
-    let told = run(dir.path(), &["reproduce", "2.1", "3.3", "-o", "out"]);
-    assert!(told.contains("wrote out: report.json, tables.csv, 2 pictures as PNG and SVG"), "{told}");
+    let printed = run(dir.path(), &["reproduce", "2.1", "3.3", "-o", "out"]);
+    assert!(printed.contains("wrote out: report.json, tables.csv, 2 pictures as PNG and SVG"), "{printed}");
     assert!(
-        told.contains("Held or known, and not computed") && told.contains("measured forces of latches"),
-        "{told}"
+        printed.contains("Held or known, and not computed") && printed.contains("measured forces of latches"),
+        "{printed}"
     );
     let names = written(&dir.path().join("out"));
     assert_eq!(

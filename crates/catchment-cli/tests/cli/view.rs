@@ -19,14 +19,14 @@ fn home() -> tempfile::TempDir {
 #[test]
 fn a_page_of_a_result_is_that_of_its_design() {
     let home = home();
-    let told = run(home.path(), &["run", "v.toml", "--resolution", "8", "-o", "out"]);
-    assert!(told.starts_with("exit 0\n"), "{told}");
+    let printed = run(home.path(), &["run", "v.toml", "--resolution", "8", "-o", "out"]);
+    assert!(printed.starts_with("exit 0\n"), "{printed}");
     for args in [
         &["report", "out", "-o", "stored.html", "--leave-out", "jams,window"][..],
         &["report", "v.toml", "--resolution", "8", "-o", "fresh.html", "--leave-out", "slices,jams,window"],
     ] {
-        let told = run(home.path(), args);
-        assert!(told.starts_with("exit 0\n"), "{told}");
+        let printed = run(home.path(), args);
+        assert!(printed.starts_with("exit 0\n"), "{printed}");
     }
     let [stored, fresh] =
         ["stored.html", "fresh.html"].map(|name| fs::read_to_string(home.path().join(name)).unwrap());
@@ -35,8 +35,8 @@ fn a_page_of_a_result_is_that_of_its_design() {
         stored.len() < 5_000_000 && stored.contains("id=\"motions\"") && !stored.contains("a </script> V")
     );
     // It is not replaced unasked.
-    let told = run(home.path(), &["report", "out", "-o", "stored.html"]);
-    assert!(told.starts_with("exit 2\n") && told.contains("--force replaces it"), "{told}");
+    let printed = run(home.path(), &["report", "out", "-o", "stored.html"]);
+    assert!(printed.starts_with("exit 2\n") && printed.contains("--force replaces it"), "{printed}");
 }
 
 /// What is changed for a page is changed for everything in it.
@@ -44,16 +44,16 @@ fn a_page_of_a_result_is_that_of_its_design() {
 fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
     let home = home();
     let changes = ["--free", "x", "--cor", "0.2", "--friction", "0.1", "--resolution", "40"];
-    let told = run(home.path(), &[&["run", "v.toml", "--jams", "-o", "out"], &changes[..]].concat());
-    assert!(told.starts_with("exit 0\n"), "{told}");
+    let printed = run(home.path(), &[&["run", "v.toml", "--jams", "-o", "out"], &changes[..]].concat());
+    assert!(printed.starts_with("exit 0\n"), "{printed}");
     let fresh = [&["report", "v.toml", "-o", "fresh.html", "--leave-out", "window"], &changes[..]].concat();
-    let told = run(home.path(), &fresh);
-    assert!(told.starts_with("exit 0\n"), "{told}");
+    let printed = run(home.path(), &fresh);
+    assert!(printed.starts_with("exit 0\n"), "{printed}");
     // A stored result has what it holds, and says what it could.
-    let told = run(home.path(), &["report", "out", "-o", "stored.html"]);
+    let printed = run(home.path(), &["report", "out", "-o", "stored.html"]);
     assert!(
-        told.starts_with("exit 0\n") && told.contains("`catchment run` with --window stores more"),
-        "{told}"
+        printed.starts_with("exit 0\n") && printed.contains("`catchment run` with --window stores more"),
+        "{printed}"
     );
     let data = |name: &str| -> serde_json::Value {
         let page = fs::read_to_string(home.path().join(name)).unwrap();
@@ -163,8 +163,8 @@ fn a_running_computation_is_replaced_by_a_newer_one() {
     let home = home();
     let server = Server::over(home.path(), "2000");
     for cells in ["1999", "7"] {
-        let told = server.ask("POST", "run", "", cells);
-        assert!(told.starts_with("HTTP/1.1 202"), "{told}");
+        let printed = server.ask("POST", "run", "", cells);
+        assert!(printed.starts_with("HTTP/1.1 202"), "{printed}");
     }
     server.wait();
     let page = server.ask("GET", "", "", "");

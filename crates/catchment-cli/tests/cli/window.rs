@@ -19,12 +19,12 @@ fn half_width(report: &Value, axis: &str) -> f64 {
 #[test]
 fn it_tells_the_closed_form_in_millimetres_and_draws_nothing() {
     let home = home();
-    let told = run(home.path(), &["window", "v.toml", "--free", "x", "--motions", "2000"]);
-    assert!(told.contains("±24.97"), "{told}");
-    let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    let printed = run(home.path(), &["window", "v.toml", "--free", "x", "--motions", "2000"]);
+    assert!(printed.contains("±24.97"), "{printed}");
+    let words = printed.split_whitespace().collect::<Vec<_>>().join(" ");
     let certificate =
         "0 failures in 2 000 poses sampled in the window: failure rate below 1 in 666 (95 % confidence)";
-    assert!(words.contains(certificate), "{told}");
+    assert!(words.contains(certificate), "{printed}");
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
 }
 
@@ -83,10 +83,10 @@ fn a_run_tells_of_the_window_what_the_command_does() {
     let found: Value =
         serde_json::from_slice(&fs::read(home.path().join("out/report.json")).unwrap()).unwrap();
     let alone = json(home.path(), &["window", "v.toml", "--free", "x", "--seed", "3", "--json"]);
-    let told = found["window"].as_object().unwrap();
+    let printed = found["window"].as_object().unwrap();
     assert_eq!(found["window"]["x"], alone["window"]["x"]);
-    assert!(told.get("roll").is_none());
-    for (key, value) in told.iter().filter(|(key, _)| *key != "x") {
+    assert!(printed.get("roll").is_none());
+    for (key, value) in printed.iter().filter(|(key, _)| *key != "x") {
         assert_eq!(*value, alone[key], "{key}");
     }
     // Read back, it is the same.

@@ -131,9 +131,9 @@ fn names_do_not_steer_the_terminal() {
     let home = home();
     let place = |name: &str| home.path().join(name);
     let quiet = |args: &[&str]| {
-        let told = super::run(home.path(), args);
+        let printout = super::run(home.path(), args);
         let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
-        assert!(told.starts_with("exit 0\n") && !told.contains(steers), "{args:?}: {told:?}");
+        assert!(printout.starts_with("exit 0\n") && !printout.contains(steers), "{args:?}: {printout:?}");
     };
     std::fs::write(place("evil.toml"), "name = \"a\\u202e<&\"\n".to_owned() + super::V_FACE).unwrap();
     std::fs::copy(place("evil.toml"), place("b\u{1b}[2J.toml")).unwrap();

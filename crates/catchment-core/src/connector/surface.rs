@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_out_is_told_apart_from_open() {
+    fn inside_out_is_distinguished_from_open() {
         let (v, mut p) = cube();
         for polygon in &mut p {
             polygon.reverse();

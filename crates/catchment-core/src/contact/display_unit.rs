@@ -46,9 +46,9 @@ impl DisplayUnit {
             .into_iter()
             .zip(error.to_array())
             .filter(|(dof, value)| value.abs() >= NONE[usize::from(dof.is_rotation())]);
-        let told: Vec<String> =
+        let display_unit: Vec<String> =
             parts.map(|(dof, value)| format!("{} {}", dof.name(), self.amount(dof, value))).collect();
-        if told.is_empty() { "no error".to_owned() } else { told.join(", ") }
+        if display_unit.is_empty() { "no error".to_owned() } else { display_unit.join(", ") }
     }
 }
 
@@ -71,11 +71,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_are_told_in_the_unit_and_angles_in_degrees() {
-        let told = DisplayUnit { scale: 50.0, unit: "mm" };
+    fn lengths_are_reported_in_the_unit_and_angles_in_degrees() {
+        let display_unit = DisplayUnit { scale: 50.0, unit: "mm" };
         let error = PoseError { x: 0.2, roll: 1e-9, pitch: -1.0, ..PoseError::default() };
-        assert_eq!(told.error(&error), "x 10 mm, pitch -57.30 deg");
-        assert_eq!(told.error(&PoseError::default()), "no error");
+        assert_eq!(display_unit.error(&error), "x 10 mm, pitch -57.30 deg");
+        assert_eq!(display_unit.error(&PoseError::default()), "no error");
         assert_eq!(DisplayUnit::IN_D.length(-0.012_345_6), "-0.01235 D");
         assert_eq!([number(-0.0), number(1234.56), number(2.5e-4)], ["0", "1235", "0.00025"]);
     }

@@ -205,13 +205,13 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
 }
 
 /// The result in words, with both points as given text.
-pub fn in_words(found: &Obstruction, at: &[String; 2], told: DisplayUnit) -> String {
+pub fn in_words(found: &Obstruction, at: &[String; 2], unit: DisplayUnit) -> String {
     let Obstruction { side, deeper, .. } = found;
     let (whose, [fixed, moving]) = (if *side == HalfRole::Fixed { "fixed" } else { "moving" }, at);
     format!(
         "something narrow of the {whose} part is in the way, touched at {fixed} of the fixed and {moving} of the moving part as drawn: without it \
          they would sink about {} deeper, into a seat",
-        told.length(*deeper)
+        unit.length(*deeper)
     )
 }
 

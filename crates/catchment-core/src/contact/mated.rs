@@ -110,27 +110,27 @@ impl fmt::Display for MatedProblem {
 
 impl MatedProblem {
     /// The problem as a sentence.
-    pub fn in_words(&self, told: DisplayUnit) -> String {
+    pub fn in_words(&self, display: DisplayUnit) -> String {
         match self {
             Self::Collision { overlap } => format!(
                 "in the aligned pose the halves overlap by {} along the approach: check face_height, mount, and that both halves are drawn \
                  facing +z",
-                told.length(*overlap)
+                display.length(*overlap)
             ),
             Self::Gap { gap } => format!(
                 "in the aligned pose the halves are {} apart along the approach: check face_height and that both halves are drawn to the same \
                  scale",
-                told.length(*gap)
+                display.length(*gap)
             ),
             Self::DrawnApart { gap } => format!(
                 "as drawn the halves are {} apart along the approach, which is not docked: draw them docked, check the approach, or draw each \
                  half facing +z in a frame of its own",
-                told.length(*gap)
+                display.length(*gap)
             ),
             Self::DrawnDeeper { overlap } => format!(
                 "as drawn the moving half is {} deeper than it gets by a straight approach: check the approach, whether something is in the \
                  way, and whether the halves overlap",
-                told.length(*overlap)
+                display.length(*overlap)
             ),
             Self::Apart => "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis".to_owned(),
             Self::SideBySide(SideBySide { across, .. }) => format!(
@@ -140,14 +140,14 @@ impl MatedProblem {
             ),
             Self::NotMinimum { error, sinks } => {
                 let sink = if sinks.is_finite() {
-                    format!("sink {} deeper", told.length(*sinks))
+                    format!("sink {} deeper", display.length(*sinks))
                 } else {
                     "pass each other by".to_owned()
                 };
                 format!(
                     "the aligned pose does not hold: with an error of {} the halves {sink}; check the mount, the centre of rotation, or lock \
                      that degree of freedom",
-                    told.error(error)
+                    display.error(error)
                 )
             }
             Self::RunsOff => "let go as drawn, the halves run off: nothing holds them near; draw them closer to how they dock, or check the \
@@ -156,7 +156,7 @@ impl MatedProblem {
             Self::Free { dof, play } => format!(
                 "the seat leaves {} free: {} off the half rests as deep as without any error",
                 dof.name(),
-                told.amount(*dof, *play)
+                display.amount(*dof, *play)
             ),
             Self::Round { half } => {
                 format!("rotation about z changes nothing: the {half} half is round about the approach axis (found)")
@@ -164,20 +164,20 @@ impl MatedProblem {
             Self::LimitCutsPlay { dof, limit, play } => format!(
                 "docked.{} = {} is less than the play of the seat, {}: a half may be seated and not count as docked",
                 dof.name(),
-                told.amount(*dof, *limit),
-                told.amount(*dof, *play)
+                display.amount(*dof, *limit),
+                display.amount(*dof, *play)
             ),
         }
     }
 
     /// Advice.
-    pub(crate) fn help(&self, told: DisplayUnit) -> Option<String> {
+    pub(crate) fn help(&self, display: DisplayUnit) -> Option<String> {
         match self {
             Self::Free { dof, .. } => {
                 let name = dof.name();
                 let ignore =
                     if *dof == Dof::Yaw { ", dont_care = [\"yaw\"] in the place of free if it does not matter" } else { "" };
-                let unit = if dof.is_rotation() { "1 deg".to_owned() } else { told.length(SUCH_AS) };
+                let unit = if dof.is_rotation() { "1 deg".to_owned() } else { display.length(SUCH_AS) };
                 Some(format!(
                     "say how far off still counts as docked: [docked] {name} = \"{unit}\"{ignore}, or lock it: leave {name} \
                      out of free"
@@ -190,7 +190,7 @@ impl MatedProblem {
             Self::LimitCutsPlay { .. } => Some("allow more, or draw a tighter seat".to_owned()),
             Self::SideBySide(SideBySide { across, apart }) => Some(format!(
                 "move the moving half by {} along {}, so that the middles of both lie on each other: translate of a half, at of a part",
-                told.length(*apart),
+                display.length(*apart),
                 direction(-*across)
             )),
             _ => None,
@@ -234,13 +234,13 @@ pub(crate) struct ReleaseResult {
 
 impl LossOfSeat {
     /// The problem as a sentence.
-    pub fn in_words(&self, told: DisplayUnit) -> String {
+    pub fn in_words(&self, display: DisplayUnit) -> String {
         let let_go = match self.from {
             from if from == PoseError::default() => "a half let go without any error".to_owned(),
-            from => format!("a half let go with an error of {}", told.error(&from)),
+            from => format!("a half let go with an error of {}", display.error(&from)),
         };
         let goes = if self.sinks.is_finite() {
-            format!("comes to rest {} deeper, at {}", told.length(self.sinks), told.error(&self.rest))
+            format!("comes to rest {} deeper, at {}", display.length(self.sinks), display.error(&self.rest))
         } else {
             "runs off".to_owned()
         };

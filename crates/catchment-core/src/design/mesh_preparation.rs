@@ -178,14 +178,14 @@ impl HalfSpec {
         match self {
             Self::Mesh(file) => meshing(file, design),
             Self::Parts(parts) => {
-                let told: Vec<String> = parts
+                let text: Vec<String> = parts
                     .iter()
                     .filter_map(|part| {
                         let file = part.shape.file()?;
                         Some(format!("{}: {}", shown(&file.path), meshing(file, design)?))
                     })
                     .collect();
-                (!told.is_empty()).then(|| told.join("; "))
+                (!text.is_empty()).then(|| text.join("; "))
             }
             Self::Pieces(_) | Self::Memory { .. } => None,
         }

@@ -200,9 +200,9 @@ mod tests {
     type Told = Arc<Mutex<Vec<(f64, &'static str)>>>;
 
     fn listening() -> (Exec, Told) {
-        let told = Told::default();
-        let log = Arc::clone(&told);
-        (Exec::new().with_progress(Arc::new(move |f, stage| log.lock().unwrap().push((f, stage)))), told)
+        let reports = Told::default();
+        let log = Arc::clone(&reports);
+        (Exec::new().with_progress(Arc::new(move |f, stage| log.lock().unwrap().push((f, stage)))), reports)
     }
 
     #[test]
@@ -219,32 +219,32 @@ mod tests {
 
     #[test]
     fn a_part_reports_its_span_of_the_whole_and_a_part_of_it_its_own() {
-        let (exec, told) = listening();
+        let (exec, reports) = listening();
         let part = exec.part([0.5, 0.75], "whole");
         part.part([0.0, 0.5], "part").report(0.5, "inner");
         part.report(0.5, "part");
         part.part([0.5, 1.0], "part").report(2.0, "inner");
-        assert_eq!(*told.lock().unwrap(), [(0.5625, "whole"), (0.625, "whole"), (0.75, "whole")]);
+        assert_eq!(*reports.lock().unwrap(), [(0.5625, "whole"), (0.625, "whole"), (0.75, "whole")]);
     }
 
     #[test]
-    fn what_was_overtaken_is_not_told_and_stages_do_not_mix() {
-        let (exec, told) = listening();
+    fn what_was_overtaken_is_not_reported_and_stages_do_not_mix() {
+        let (exec, reports) = listening();
         exec.report(0.5, "a");
         exec.report(0.25, "b");
         exec.part([0.0, 1.0], "a").report(0.4, "b");
         exec.part([0.6, 0.2], "a").report(1.0, "b");
         exec.report(f64::NAN, "a");
         exec.clone().report(0.5, "a");
-        assert_eq!(*told.lock().unwrap(), [(0.5, "a"), (0.25, "b"), (0.5, "a")]);
+        assert_eq!(*reports.lock().unwrap(), [(0.5, "a"), (0.25, "b"), (0.5, "a")]);
         exec.anew().report(0.1, "a");
-        assert_eq!(told.lock().unwrap()[3], (0.1, "a"));
+        assert_eq!(reports.lock().unwrap()[3], (0.1, "a"));
     }
 
     #[test]
     fn progress_never_goes_back_whatever_the_threads_and_parts() {
         const STEPS: usize = 2000;
-        let (exec, told) = listening();
+        let (exec, reports) = listening();
         let outer = exec.part([0.1, 0.9], "whole");
         std::thread::scope(|scope| {
             for thread in 0..4 {
@@ -260,9 +260,9 @@ mod tests {
                 });
             }
         });
-        let told = told.lock().unwrap();
+        let reports = reports.lock().unwrap();
         for stage in ["whole", "descents"] {
-            let of: Vec<f64> = told.iter().filter(|(_, name)| *name == stage).map(|(f, _)| *f).collect();
+            let of: Vec<f64> = reports.iter().filter(|(_, name)| *name == stage).map(|(f, _)| *f).collect();
             assert!(of.len() > STEPS / 2 && of.is_sorted(), "{stage}: {}", of.len());
         }
     }

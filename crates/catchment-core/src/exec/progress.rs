@@ -10,7 +10,7 @@ pub type Progress = Arc<dyn Fn(f64, &'static str) + Send + Sync>;
 struct Run {
     consumer: Progress,
     /// The greatest fraction reported for every stage.
-    told: Mutex<Vec<(&'static str, f64)>>,
+    reports: Mutex<Vec<(&'static str, f64)>>,
 }
 
 /// Target of reports: the run, or a part of one of its stages.
@@ -25,7 +25,7 @@ pub(super) struct Reporter {
 
 impl Reporter {
     pub(super) fn new(consumer: Progress) -> Self {
-        let run = Run { consumer, told: Mutex::new(Vec::new()) };
+        let run = Run { consumer, reports: Mutex::new(Vec::new()) };
         Self { run: Arc::new(run), span: [0.0, 1.0], stage: None }
     }
 
@@ -50,14 +50,14 @@ impl Reporter {
     pub(super) fn report(&self, fraction: f64, stage: &'static str) {
         let (fraction, stage) = (self.at(fraction), self.stage.unwrap_or(stage));
         // Held while the consumer is called, so that it hears in the order of the fractions.
-        let mut told = self.run.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = told.iter().position(|(name, _)| *name == stage);
-        let greatest = known.map_or(0.0, |k| told[k].1);
+        let mut reports = self.run.reports.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = reports.iter().position(|(name, _)| *name == stage);
+        let greatest = known.map_or(0.0, |k| reports[k].1);
         // A fraction of zero items is not a number; it fails this comparison and is not reported.
         if fraction >= greatest {
             match known {
-                Some(k) => told[k].1 = fraction,
-                None => told.push((stage, fraction)),
+                Some(k) => reports[k].1 = fraction,
+                None => reports.push((stage, fraction)),
             }
             (self.run.consumer)(fraction, stage);
         }

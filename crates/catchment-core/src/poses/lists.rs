@@ -72,9 +72,9 @@ pub fn parse_angles(text: &str) -> Result<Vec<f64>, Diagnostics> {
 /// # Errors
 /// The errors of the text.
 pub fn parse_length(text: &str, design: &Design) -> Result<f64, Diagnostics> {
-    let told = |c: DesignDefect| one(text, Diagnostic::error(FAMILY, c.to_string(), c.help()));
-    let quantity: Quantity = text.parse().map_err(told)?;
-    quantity.length_d(&design.scale()).map_err(told)
+    let refusal = |c: DesignDefect| one(text, Diagnostic::error(FAMILY, c.to_string(), c.help()));
+    let quantity: Quantity = text.parse().map_err(refusal)?;
+    quantity.length_d(&design.scale()).map_err(refusal)
 }
 
 fn one(text: &str, fault: Diagnostic) -> Diagnostics {
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_its_place() {
+    fn what_is_wrong_is_reported_in_its_place() {
         let text = "x=1,y=5,yaw=2.5,x=3,pich=2";
         let places: Vec<&str> = parse_counts(text, &design())
             .unwrap_err()

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_wrong_is_told_in_its_place() {
+    fn everything_wrong_is_reported_in_its_place() {
         let text = "trial,x_mm,y_mm,outcome\n1,0,0,aligned\n1,5,0,alined\nx,nan,3,no\n";
         let found = wrong(text);
         let cells: Vec<&str> = found.iter().map(|(cell, _)| cell.as_str()).collect();

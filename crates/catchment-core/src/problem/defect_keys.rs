@@ -35,16 +35,16 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
 /// as advice.
 pub(super) fn of_geometry(
     problems: &[GeometryDefect],
-    told: DisplayUnit,
+    display: DisplayUnit,
 ) -> Vec<(String, String, Option<String>)> {
     problems
         .chunk_by(same_kind)
-        .map(|kind| (key_of(&kind[0]), message(&kind[0], told), likewise(&kind[1..])))
+        .map(|kind| (key_of(&kind[0]), message(&kind[0], display), likewise(&kind[1..])))
         .collect()
 }
 
 /// A problem as a sentence: a size that makes no sense in the unit of the design as well.
-fn message(problem: &GeometryDefect, told: DisplayUnit) -> String {
+fn message(problem: &GeometryDefect, display: DisplayUnit) -> String {
     let text = problem.to_string();
     let (GeometryDefect::Mesh { error, .. }
     | GeometryDefect::Part { error: PartGeometryError::Mesh { error, .. }, .. }
@@ -53,10 +53,10 @@ fn message(problem: &GeometryDefect, told: DisplayUnit) -> String {
         return text;
     };
     match error {
-        MeshProblem::Unit { width } if told != DisplayUnit::IN_D => {
+        MeshProblem::Unit { width } if display != DisplayUnit::IN_D => {
             let size = format!(
                 "the half is {} wide, {} D; a connector's half is about 1 D: check the mesh's unit and the design's width",
-                told.length(*width),
+                display.length(*width),
                 number(*width)
             );
             text.replace(&error.to_string(), &size)

@@ -238,11 +238,11 @@ impl Draft {
 
     /// Rejection for the mated pose; additional advice is attached to the first error.
     pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Diagnostics {
-        let told = DisplayUnit::of(&self.design);
+        let display = DisplayUnit::of(&self.design);
         let diagnostic = |problem: &MatedProblem| {
-            let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
+            let help: Vec<String> = problem.help(display).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.diagnostic("mated-pose", defect_keys::of_mated(problem), problem.in_words(told), help)
+            self.diagnostic("mated-pose", defect_keys::of_mated(problem), problem.in_words(display), help)
         };
         let list = problems.iter().map(diagnostic).collect();
         Diagnostics { list, source: self.source, omitted: 0 }

@@ -40,7 +40,7 @@ pub(super) fn advice(
     if !matches!(design.connector, ConnectorSpec::Own(_)) {
         return None;
     }
-    let told = match problem {
+    let display = match problem {
         MatedProblem::Collision { overlap } | MatedProblem::DrawnDeeper { overlap } => {
             touching(connector, pair, design, Some(*overlap))
         }
@@ -59,7 +59,7 @@ pub(super) fn advice(
         ""
     };
     let settles = settles(pair, design, problem).unwrap_or_default();
-    Some(format!("{told}{mirrored}{settles}"))
+    Some(format!("{display}{mirrored}{settles}"))
 }
 
 /// Remedy for halves drawn slightly too deep, or not deep enough: the rest that they reach.
@@ -106,10 +106,10 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
     let from_face = contact.point - DVec3::new(0.0, 0.0, height + pair.alignment.center_of_rotation);
     let [fixed, moving] = [(HalfRole::Fixed, contact.point), (HalfRole::Moving, from_face)]
         .map(|(side, point)| place(design, connector.origin.drawn(side, point)));
-    let told = DisplayUnit::of(design);
+    let display = DisplayUnit::of(design);
     let off = above.map_or_else(String::new, |above| {
         let way = if above > 0.0 { "above" } else { "below" };
-        format!(", {} {way} where they are drawn", told.length(above.abs()))
+        format!(", {} {way} where they are drawn", display.length(above.abs()))
     });
     Some(format!(
         "lowered without any error they first touch at {fixed} of the fixed and {moving} of the moving part as drawn{off}"

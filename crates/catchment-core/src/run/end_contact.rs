@@ -61,14 +61,14 @@ impl<'a> EndContacts<'a> {
     /// The contacts in the last state of a motion, each pair of features once; empty if it missed.
     pub fn of(&mut self, end: &End) -> Vec<EndContact> {
         let Some(height) = end.height else { return Vec::new() };
-        if let Some((error, z, told)) = &self.last
+        if let Some((error, z, contacts)) = &self.last
             && (*error, *z) == (end.error, height)
         {
-            return told.clone();
+            return contacts.clone();
         }
-        let told = self.at(&end.error, height);
-        self.last = Some((end.error, height, told.clone()));
-        told
+        let contacts = self.at(&end.error, height);
+        self.last = Some((end.error, height, contacts.clone()));
+        contacts
     }
 
     fn at(&mut self, error: &PoseError, height: f64) -> Vec<EndContact> {

@@ -73,13 +73,13 @@ impl Problem {
         method: &Method,
         poses: &[PoseError],
         exec: &Exec,
-        told: PoseObserver<'_>,
+        words: PoseObserver<'_>,
     ) -> Result<FollowedPoses, DecideError> {
         let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
         let kept = Mutex::new(Vec::new());
         let keep = |number, end| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
-            told(number, end);
+            words(number, end);
         };
         match follow.rest_observed(self, Domain::Poses(poses.to_vec()), exec, &keep) {
             Ok((acceptance, ends)) => Ok(FollowedPoses { acceptance, ends, finished: None }),

@@ -119,11 +119,11 @@ impl Seating {
         let docked = &problem.alignment().docked;
         let far =
             self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
-        let told = DisplayUnit::of(problem.design());
+        let unit = DisplayUnit::of(problem.design());
         let far = far.map(|residual| {
             let text = format!(
                 "docked halves rest up to {} off in {}: state in [docked] how far off still counts as docked",
-                told.amount(residual.axis, residual.most),
+                unit.amount(residual.axis, residual.most),
                 residual.axis.name()
             );
             Diagnostic::warning("rests-off", text)
@@ -131,8 +131,8 @@ impl Seating {
         let deeper = self.deeper.iter().map(|Deeper { sinks, error }| {
             let text = format!(
                 "the mated pose does not hold: docked halves rest {} deeper, at {}; draw the halves so that this is the mated pose",
-                told.length(*sinks),
-                told.error(error)
+                unit.length(*sinks),
+                unit.error(error)
             );
             Diagnostic::warning("deeper-rest", text)
         });
@@ -140,7 +140,7 @@ impl Seating {
             let text = format!(
                 "the seat leaks: its rim is lower than docked.depth, {} above the mated pose, so every motion is followed until it rests; \
                  give a smaller depth if only what is in the hollow is docked",
-                told.length(docked.depth)
+                unit.length(docked.depth)
             );
             Diagnostic::warning("leaky-seat", text)
         });
@@ -230,8 +230,8 @@ impl Problem {
     /// A warning as a sentence; for an unstable mated pose with the distance to the rest of the half and the
     /// remedy.
     fn sentence(&self, problem: &MatedProblem) -> String {
-        let told = DisplayUnit::of(self.design());
-        let said = problem.in_words(told);
+        let unit = DisplayUnit::of(self.design());
+        let said = problem.in_words(unit);
         if !is_unstable(problem) {
             return said;
         }
@@ -257,20 +257,20 @@ impl Problem {
         };
         format!(
             "{said}. Released without an error the half comes to rest {} and {} away, {} deeper, at {}: {takes}",
-            told.length(error.x.hypot(error.y)),
-            told.amount(Dof::Yaw, turn),
-            told.length(sinks),
-            told.error(&error),
+            unit.length(error.x.hypot(error.y)),
+            unit.amount(Dof::Yaw, turn),
+            unit.length(sinks),
+            unit.error(&error),
         )
     }
 
     /// A warning that halves slightly off come to rest below the seat, if they do.
     fn fallen(&self) -> Option<String> {
         let fall = descent::fall(self.pair())?;
-        let told = DisplayUnit::of(self.design());
+        let unit = DisplayUnit::of(self.design());
         Some(format!(
             "{}: draw the halves so that they are mated where they rest, or lock the degree of freedom in which they tip",
-            fall.in_words(told)
+            fall.in_words(unit)
         ))
     }
 }

@@ -168,11 +168,11 @@ fn size(svg: &mut Svg, face: &PicturedDesign<'_>, view: &View<'_>, frame: &PlotF
     let [left, right] = [-0.5, 0.5].map(|x| view.place(frame, [x, 0.0])[0]);
     dimension(svg, [left, below], [right, below], INK);
     let units = ShownUnits::of(face.design);
-    let told = face
+    let length = face
         .design
         .unit
         .map_or_else(|| "D".to_owned(), |_| format!("D = {} {}", short(units.lengths()), units.symbol()));
-    svg.text([0.5 * (left + right), below + 16.0], LABEL - 1.0, Anchor::Middle, INK, &told);
+    svg.text([0.5 * (left + right), below + 16.0], LABEL - 1.0, Anchor::Middle, INK, &length);
     if let ConnectorSpec::Family(spec) = &face.design.connector {
         let h = spec.aspect_ratio() / 2.0;
         let [low, high] = [-h, h].map(|z| view.place(frame, [0.5, z])[1]);
@@ -194,11 +194,11 @@ fn offset(svg: &mut Svg, face: &PicturedDesign<'_>, view: &View<'_>, frame: &Plo
     dimension(svg, [fixed, below], [moving, below], INK);
     let units = ShownUnits::of(face.design);
     let in_d = rounded(shift).replace('-', "−");
-    let told = face.design.unit.map_or_else(
+    let length = face.design.unit.map_or_else(
         || format!("{in_d} D"),
         |_| format!("{in_d} D = {} {}", short(shift * units.lengths()), units.symbol()),
     );
-    svg.text([0.5 * (fixed + moving), below + 18.0], LABEL, Anchor::Middle, INK, &told);
+    svg.text([0.5 * (fixed + moving), below + 18.0], LABEL, Anchor::Middle, INK, &length);
 }
 
 /// As much of a name as fits.
@@ -252,8 +252,8 @@ mod tests {
         let picture = faces(&shown).unwrap();
         look("faces", &picture);
         let svg = picture.svg();
-        for told in ["0.3333 D", "0.5 D", "1 D", ">H<", "…<", "a face named ", "not one profile"] {
-            assert!(svg.contains(told), "{told}");
+        for length in ["0.3333 D", "0.5 D", "1 D", ">H<", "…<", "a face named ", "not one profile"] {
+            assert!(svg.contains(length), "{length}");
         }
         assert!(!svg.contains("NaN") && faces(&shown[..1]).unwrap().svg().contains("0.3333 D"));
     }

@@ -177,9 +177,9 @@ mod tests {
         assert!(picture.svg().contains("what sticks first") && picture.svg().contains("static test"));
         assert!(!picture.svg().contains("NaN"));
         the_curve_is_that_of_the_mark(&report, &picture);
-        let told = report.table();
-        assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
-        assert!(told.contains("from μ = "), "{told}");
+        let printout = report.table();
+        assert!(printout.lines().all(|line| line.chars().count() <= 80), "{printout}");
+        assert!(printout.contains("from μ = "), "{printout}");
         // An interval that ends at the largest friction that was tried is open there.
         for kept in &mut report.kept {
             (kept.friction, kept.ci95, kept.is_top) = (0.276, [0.044, 0.5], false);

@@ -153,9 +153,9 @@ fn weakest(svg: &mut Svg, report: &HoldReport, below: [f64; 2], at: impl Fn(f64,
     let place = at(side.direction_rad, force);
     svg.circle(place, 5.0, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="2""##));
     let unit = report.force_unit();
-    let told =
+    let force =
         if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
-    let words = format!("○ weakest: {told} {unit} at {:.1}°", side.direction_rad.to_degrees());
+    let words = format!("○ weakest: {force} {unit} at {:.1}°", side.direction_rad.to_degrees());
     svg.text(below, LABEL, Anchor::Middle, INK, &words);
 }
 
@@ -210,7 +210,7 @@ fn bars(svg: &mut Svg, report: &HoldReport, Rect { x, y, w, h }: Rect) {
             let opacity = if column.dashed { 0.35 } else { 0.85 };
             let bar = Rect { x, y: top + thick * j as f64, w: length.max(0.5), h: 0.8 * thick };
             svg.rect(bar, &format!(r#"fill="{colour}" fill-opacity="{opacity}" stroke="none""#));
-            let told = match value {
+            let force = match value {
                 f64::INFINITY => "any".to_owned(),
                 value if value < NOTHING => "0".to_owned(),
                 value => significant(value * scale),
@@ -220,7 +220,7 @@ fn bars(svg: &mut Svg, report: &HoldReport, Rect { x, y, w, h }: Rect) {
                 TICK.min(thick + 1.0),
                 Anchor::Start,
                 INK,
-                &told,
+                &force,
             );
         }
     }

@@ -88,8 +88,8 @@ mod tests {
         let pair = [Dof::X, Dof::Pitch];
         let picture = overview(&report, &pyramid(), &coarse, &coarse, &|_| 0.2, pair).unwrap();
         look("overview-5", &picture);
-        let told = "Sum 10.5 ± 3.9 D²·rad³  ·  12.50 % of the error box  ·  ONAA edge 0.0000  ·  by flood";
-        assert!(picture.svg().contains(told), "{}", picture.svg());
+        let text = "Sum 10.5 ± 3.9 D²·rad³  ·  12.50 % of the error box  ·  ONAA edge 0.0000  ·  by flood";
+        assert!(picture.svg().contains(text), "{}", picture.svg());
         assert!(picture.svg().contains("of this slice:") && picture.svg().contains("jammed 100 %"));
         assert!(picture.svg().contains("slice beside zero"));
         assert!(report.table().contains("AA (Sum)       10.5 D²·rad³ (95 % CI 6.6 … 14.4)\n"));

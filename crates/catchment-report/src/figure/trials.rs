@@ -24,7 +24,7 @@ pub fn trials(report: &TrialsReport) -> Picture {
     let height = if found.grid.axes.len() == 2 { SIDE } else { 60.0 };
     let unit = found.unit;
     let round = found.rounds.last();
-    let told = round.map_or_else(String::new, |round| {
+    let text = round.map_or_else(String::new, |round| {
         let [lo, hi] = round.disagreeing_ci95.map(percent);
         let step = round.timestep.map_or_else(String::new, |step| format!(", time step {step} s"));
         format!(
@@ -40,7 +40,7 @@ pub fn trials(report: &TrialsReport) -> Picture {
     };
     let (mut svg, frames) = Layout::of(design)
         .story("corrected without rotation, in theory and by trials")
-        .story(told)
+        .story(text)
         .row([panel("exact", found.exact), panel("trials", accepted)])
         .legend(legend(found))
         .open();

@@ -169,7 +169,7 @@ fn fill(
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
     }
     if let Some(watersheds) = layers.watersheds {
-        for (name, told, merged) in [
+        for (name, words, merged) in [
             ("watershed", "number of the watershed before merging", false),
             ("watershed_merged", "number of the watershed after merging", true),
         ] {
@@ -177,7 +177,7 @@ fn fill(
                 let last = if merged { watersheds.merged(cell) } else { Some(watersheds.first[cell]) };
                 last.unwrap_or(DAM)
             };
-            let attributes = json!({ "long_name": told, "outside": watersheds.outside, "dam": DAM });
+            let attributes = json!({ "long_name": words, "outside": watersheds.outside, "dam": DAM });
             let (kind, fill) = (data_type::uint32(), DAM);
             let plan = Plan { name, dimensions: &dimensions, kind, fill, folder, exec };
             arrays.insert(name.to_owned(), plan.write(&store, attributes, label)?);

@@ -50,8 +50,8 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let cells = grid.checked_len().ok_or_else(|| bad("it has too many cells".to_owned()))?;
     if cells != report.acceptance.cells {
-        let told = report.acceptance.cells;
-        return Err(bad(format!("its axes have {cells} cells, its report counts {told}")));
+        let counted = report.acceptance.cells;
+        return Err(bad(format!("its axes have {cells} cells, its report counts {counted}")));
     }
     exec.ensure_fits("the outcomes of a stored result", cells as u64, |_| vec![Advice::MoreMemory])?;
     let shape: Vec<usize> = grid.axes.iter().rev().map(|axis| axis.cells).collect();
@@ -62,8 +62,10 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     let warnings = report.warnings.clone();
     let acceptance = Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings };
     let [aligned, jammed, missed, undecided] = acceptance.counts();
-    let told = report.acceptance.outcomes;
-    if [aligned, jammed, missed, undecided] != [told.aligned, told.jammed, told.missed, told.undecided] {
+    let counted = report.acceptance.outcomes;
+    if [aligned, jammed, missed, undecided]
+        != [counted.aligned, counted.jammed, counted.missed, counted.undecided]
+    {
         return Err(bad("its outcomes are not those that its report counts".to_owned()));
     }
     Ok((report, acceptance))

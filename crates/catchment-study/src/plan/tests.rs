@@ -238,8 +238,8 @@ fn distances_are_mirrored() {
         })
         .collect();
     let motions = descent::DescentSettings::default();
-    let (told, _) = foretell(&problem, &accuracy, &motions, &poses, 1, &Exec::new()).unwrap();
-    for pair in told.chunks(2) {
+    let (printed, _) = foretell(&problem, &accuracy, &motions, &poses, 1, &Exec::new()).unwrap();
+    for pair in printed.chunks(2) {
         assert_eq!(pair[0].predicted, pair[1].predicted);
         let [a, b] = [pair[0].margin(), pair[1].margin()];
         // Directions are random: each is at most so much, and neither by much.

@@ -44,7 +44,7 @@ pub(super) fn docked(
     let found =
         exec.each(holds.len(), usize::MAX, "seats", |k, exec| let_in(both, holds[k].0, holds[k].1, exec));
     looked.add(found);
-    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    rank(&mut looked.judged, both.settings.free, both.display, exec)?;
     if !looked.has_seat() {
         // A groove holds in a single direction, which the lattice search does not recognise as a seat.
         let rests = |drawn: &sink::ApproachResult| matches!(drawn, sink::ApproachResult::Flat { .. });
@@ -53,10 +53,10 @@ pub(super) fn docked(
             looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
         let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
             let lie = PartLayout::Assembled { approach: flat[k] };
-            judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie))
+            judge(both.halves, lie, DVec2::ZERO, &[], None, both.display).map_err(|refusal| refusal.of(lie))
         });
         looked.add(found);
-        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+        rank(&mut looked.judged, both.settings.free, both.display, exec)?;
     }
     Ok(looks)
 }
@@ -69,7 +69,8 @@ fn let_in(
     exec: &Exec,
 ) -> Result<SeatCandidate, RejectedLayout> {
     let lie = PartLayout::Assembled { approach: way };
-    let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
+    let drawn =
+        judge(both.halves, lie, DVec2::ZERO, &[], None, both.display).map_err(|refusal| refusal.of(lie));
     let near = |found: &SeatCandidate| {
         let lift = sunk.height + 0.5 * sunk.climb;
         found.lift <= lift
@@ -78,13 +79,13 @@ fn let_in(
         && near(&found)
     {
         let mut found = found.found(sunk, 0);
-        found.ask(both.settings.free, both.told, exec);
+        found.ask(both.settings.free, both.display, exec);
         if matches!(found.seat, Some(Ok(_))) {
             return Ok(found);
         }
     }
     let lie = sunk.lie;
-    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.told)
+    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.display)
         .map(|found| found.found(sunk, 0))
         .map_err(|refusal| refusal.of(lie))
 }
@@ -110,12 +111,12 @@ pub(super) fn let_down(
         Some(let_in(both, apart[k], sunk, exec))
     });
     looked.add(found.into_iter().flatten().collect());
-    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    rank(&mut looked.judged, both.settings.free, both.display, exec)?;
     let best = looked.judged.first().filter(|best| is_seat(best)).and_then(|best| best.sunk);
     Ok(best.map(|sunk| {
         let text = format!(
             "in doubt: as drawn the parts are {} apart; the moving part slides so far along the approach to first contact",
-            both.told.length(sunk.height.abs())
+            both.display.length(sunk.height.abs())
         );
         Diagnostic::note("drawn-apart", text)
     }))

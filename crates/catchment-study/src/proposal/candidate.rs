@@ -48,7 +48,7 @@ pub enum SeatCheck {
         /// By how much it shifted across the approach, in the unit of the design.
         shift: f64,
         /// Its description.
-        told: String,
+        off_by: String,
     },
     /// It is not a seat, for this reason.
     Refused(String),
@@ -60,7 +60,7 @@ impl fmt::Display for SeatCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Holds => f.write_str("at rest when mated"),
-            Self::Settles { told, .. } => write!(f, "settles {told} off the drawn pose"),
+            Self::Settles { off_by, .. } => write!(f, "settles {off_by} off the drawn pose"),
             Self::Refused(reason) => f.write_str(reason),
             Self::NotAsked => f.write_str("not examined further"),
         }
@@ -82,7 +82,7 @@ pub fn shown_length(value: f64, unit: LengthUnit) -> String {
 }
 
 /// A candidate in the user's terms: lengths times `unit` are in the unit of the design.
-pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) -> Candidate {
+pub(super) fn candidate(judged: &SeatCandidate, unit: f64, display: DisplayUnit) -> Candidate {
     let SeatCandidate { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
     Candidate {
         lie: *lie,
@@ -97,7 +97,7 @@ pub(super) fn candidate(judged: &SeatCandidate, unit: f64, told: DisplayUnit) ->
         offset: (*offset * unit).to_array(),
         seat: match seat {
             None => SeatCheck::NotAsked,
-            Some(Ok(Seat { settle: Some(off), .. })) => settles(off, width * told.scale, told.unit),
+            Some(Ok(Seat { settle: Some(off), .. })) => settles(off, width * display.scale, display.unit),
             Some(Ok(_)) => SeatCheck::Holds,
             Some(Err(reason)) => SeatCheck::Refused(reason.clone()),
         },
@@ -118,8 +118,8 @@ fn settles(off: &PoseError, width: f64, unit: &str) -> SeatCheck {
             _ => format!("{} {unit}", number(value)),
         })
         .collect();
-    let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
-    SeatCheck::Settles { turn, shift, told }
+    let off_by = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
+    SeatCheck::Settles { turn, shift, off_by }
 }
 
 impl Candidate {

@@ -61,9 +61,9 @@ pub(super) fn of(
     parts: [&Triangles; 2],
     looks: &[(AxisDirection, ApproachResult)],
     grain: Grain,
-    told: DisplayUnit,
+    display: DisplayUnit,
 ) -> (String, Option<Advice>) {
-    let text = words(parts, looks, grain, told);
+    let text = words(parts, looks, grain, display);
     let stops =
         |drawn: &ApproachResult| matches!(drawn, ApproachResult::Flat { .. } | ApproachResult::Passes);
     let holds = |drawn: &ApproachResult| matches!(drawn, ApproachResult::Holds(_));
@@ -77,7 +77,7 @@ fn words(
     parts: [&Triangles; 2],
     looks: &[(AxisDirection, ApproachResult)],
     grain: Grain,
-    told: DisplayUnit,
+    display: DisplayUnit,
 ) -> String {
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, ApproachResult::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
@@ -90,7 +90,7 @@ fn words(
         return format!(
             "as drawn, approach {way}: flat: the parts meet and nothing holds them sideways (the moving part climbs {} before it slides off). Are magnets or \
              pins missing?",
-            told.length(climb)
+            display.length(climb)
         );
     }
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, ApproachResult::Passes)) {
@@ -105,7 +105,7 @@ fn words(
     if let Some((by, way)) = apart.min_by(|a, b| a.0.total_cmp(&b.0)) {
         return format!(
             "as drawn, approach {way}: the parts are {} apart, and where the moving part then meets the fixed one nothing holds it",
-            told.length(by)
+            display.length(by)
         );
     }
     let blocked = looks.iter().filter_map(|(way, drawn)| match drawn {
@@ -122,7 +122,7 @@ fn words(
         return format!(
             "as drawn the parts are screwed together: a {hand}-handed thread along {way} that moves about {} per turn. No straight way along an axis brings them \
              together: what docks is a part without its thread",
-            told.length(lead.abs())
+            display.length(lead.abs())
         );
     }
     let ways = blocked.iter().map(|(_, way)| *way);
@@ -131,15 +131,15 @@ fn words(
         Some((undercut, way)) => format!(
             "as drawn the parts interlock: along {way} walls would have to give way by {}: a snap, an undercut or an interference. Both halves are rigid here: \
              draw the catch as it is when it is bent, or leave it out",
-            told.length(undercut)
+            display.length(undercut)
         ),
         None if looks.len() == 1 => format!(
             "as drawn, approach {way}: the moving part meets the fixed one {} before it is where it is drawn",
-            told.length(by)
+            display.length(by)
         ),
         None => format!(
             "as drawn the parts interlock: no straight way along an axis brings them together. Nearest is approach {way}, {} short",
-            told.length(by)
+            display.length(by)
         ),
     }
 }

@@ -161,8 +161,8 @@ pub enum ProposalError {
 const MOST_TOLD: usize = 4;
 
 fn listed(tried: &[String]) -> String {
-    let told: Vec<&str> = tried.iter().take(MOST_TOLD).map(String::as_str).collect();
-    if told.is_empty() { String::new() } else { format!(": {}", told.join("; ")) }
+    let directions: Vec<&str> = tried.iter().take(MOST_TOLD).map(String::as_str).collect();
+    if directions.is_empty() { String::new() } else { format!(": {}", directions.join("; ")) }
 }
 
 fn size_in_words(size: [f64; 3]) -> String {
@@ -188,7 +188,7 @@ struct Parts<'a> {
     grain: sink::Grain,
     settings: &'a ProposalSettings,
     /// Unit of lengths in texts.
-    told: DisplayUnit,
+    display: DisplayUnit,
 }
 
 impl<'a> Parts<'a> {
@@ -196,11 +196,11 @@ impl<'a> Parts<'a> {
         halves: [&'a Half; 2],
         grain: sink::Grain,
         settings: &'a ProposalSettings,
-        told: DisplayUnit,
+        display: DisplayUnit,
     ) -> Self {
         let triangles = halves.map(sink::triangles);
         let diagonals = triangles.each_ref().map(sink::diagonals);
-        Self { halves, triangles, diagonals, grain, settings, told }
+        Self { halves, triangles, diagonals, grain, settings, display }
     }
 
     fn lattices(&self) -> [&sink::Triangles; 2] {
@@ -245,10 +245,10 @@ pub fn propose(
     let unit = halves.each_ref().map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
     let shown = shown_unit(design_unit(settings));
-    let told =
+    let display =
         DisplayUnit { scale: unit * design_unit(settings).metres() / shown.metres(), unit: shown.symbol() };
     let millimetre = 1e-3 / (unit * design_unit(settings).metres());
-    let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, told);
+    let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, display);
     let pinned = settings.facing.iter().any(Option::is_some);
     let may_be = |frames: PartFrames| match settings.frames {
         PartFrames::Any => {
@@ -274,9 +274,9 @@ pub fn propose(
             }
             // Parts in frames of their own say nothing about an assembly, so no cause is given.
             why = (may_be_assembly || !may_be(PartFrames::Facing))
-                .then(|| diagnosis::of(both.lattices(), &looks, both.grain, told));
+                .then(|| diagnosis::of(both.lattices(), &looks, both.grain, display));
             let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::ApproachResult::Flat { .. }));
-            flat = are_flat.then(|| diagnosis::of(both.lattices(), &looks, both.grain, told));
+            flat = are_flat.then(|| diagnosis::of(both.lattices(), &looks, both.grain, display));
         }
     }
     let is_assembly = frame == diagnosis::Frame::Assembly;
@@ -288,7 +288,7 @@ pub fn propose(
         }
     }
     let SeatSearch { judged, mut refused } = looked;
-    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit, told)).collect();
+    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit, display)).collect();
     let best = judged.first().filter(|best| is_seat(best));
     let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
         let slack = |one: &Candidate| {
@@ -323,10 +323,10 @@ pub fn propose(
     notes.extend(warnings::of(&candidates, settings));
     if best.score() < remedy::WEAK
         && faces
-        && let Some((score, told)) = remedy::mirrored(&both, exec)?
+        && let Some((score, note)) = remedy::mirrored(&both, exec)?
         && score * NEARLY > best.score()
     {
-        notes.push(Diagnostic::note("mirror-image", told));
+        notes.push(Diagnostic::note("mirror-image", note));
     }
     if halves::are_more_than_two(parts, settings, exec) {
         let text = "in doubt: the file holds more than two separate bodies; the two largest were taken";
@@ -342,10 +342,10 @@ pub fn propose(
 /// are none.
 fn anywhere(both: &Parts<'_>, looked: &mut SeatSearch, exec: &Exec) -> Result<(), Cancelled> {
     looked.add(sunk(both, exec)?);
-    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    rank(&mut looked.judged, both.settings.free, both.display, exec)?;
     if !looked.has_seat() {
-        looked.add(facing(both.halves, both.settings, both.told, exec)?);
-        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+        looked.add(facing(both.halves, both.settings, both.display, exec)?);
+        rank(&mut looked.judged, both.settings.free, both.display, exec)?;
     }
     Ok(())
 }
@@ -381,7 +381,7 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, Rejec
             sunk.offset,
             &round_numbers(both.halves, sunk.lie),
             Some(&sunk),
-            both.told,
+            both.display,
         )
         .map(|found| found.found(sunk, class))
         .map_err(|refusal| refusal.of(sunk.lie))
@@ -392,14 +392,14 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, Rejec
 fn facing(
     pair: [&Half; 2],
     settings: &ProposalSettings,
-    told: DisplayUnit,
+    display: DisplayUnit,
     exec: &Exec,
 ) -> Result<Vec<Result<SeatCandidate, RejectedLayout>>, Cancelled> {
     let facing = settings.facing.map(ways);
     let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
     Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
         let search::SeatPlace { lie, offset, .. } = places[k];
-        judge(pair, lie, offset, &round_numbers(pair, lie), None, told).map_err(|refusal| refusal.of(lie))
+        judge(pair, lie, offset, &round_numbers(pair, lie), None, display).map_err(|refusal| refusal.of(lie))
     }))
 }
 
@@ -411,7 +411,7 @@ fn is_seat(judged: &SeatCandidate) -> bool {
 fn rank(
     judged: &mut Vec<SeatCandidate>,
     free: Option<DofSet>,
-    told: DisplayUnit,
+    display: DisplayUnit,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
     let sort = |judged: &mut Vec<SeatCandidate>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
@@ -434,7 +434,7 @@ fn rank(
         let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
             return Ok(());
         };
-        next.ask(free, told, exec);
+        next.ask(free, display, exec);
         sort(judged);
     }
 }

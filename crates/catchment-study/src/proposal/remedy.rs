@@ -22,7 +22,7 @@ pub(super) const WEAK: f64 = 0.3;
 pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancelled> {
     match mirrored(both, exec)? {
         Some((_, words)) => Ok(Some(words)),
-        None => obstacle(both.halves, both.settings, both.told, exec),
+        None => obstacle(both.halves, both.settings, both.display, exec),
     }
 }
 
@@ -30,9 +30,9 @@ pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancel
 pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, String)>, Cancelled> {
     let [fixed, moving] = both.halves;
     let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
-    let found = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.told), exec)?;
+    let found = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.display), exec)?;
     let mut judged = found.into_iter().filter_map(Result::ok).collect();
-    rank(&mut judged, both.settings.free, both.told, exec)?;
+    rank(&mut judged, both.settings.free, both.display, exec)?;
     let best = judged.into_iter().next().filter(is_seat);
     Ok(best.filter(|found| found.score() >= WEAK).map(|found| {
         let score = found.score();
@@ -48,7 +48,7 @@ pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, Str
 fn obstacle(
     pair: [&Half; 2],
     settings: &ProposalSettings,
-    told: DisplayUnit,
+    display: DisplayUnit,
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {
     let facing = settings.facing.map(ways);
@@ -56,9 +56,9 @@ fn obstacle(
     Ok(found.map(|(lie, found)| {
         let turns = lie.turns();
         let at = [0, 1].map(|k| {
-            let [x, y, z] = (told.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
-            format!("({x}, {y}, {z}) {}", told.unit)
+            let [x, y, z] = (display.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
+            format!("({x}, {y}, {z}) {}", display.unit)
         });
-        format!("{} ({lie})", height_map::in_words(&found, &at, told))
+        format!("{} ({lie})", height_map::in_words(&found, &at, display))
     }))
 }

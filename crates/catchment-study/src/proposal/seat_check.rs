@@ -153,10 +153,10 @@ impl SeatCandidate {
     }
 
     /// Evaluates its seat, which takes the longest.
-    pub(super) fn ask(&mut self, free: Option<DofSet>, told: DisplayUnit, exec: &Exec) {
+    pub(super) fn ask(&mut self, free: Option<DofSet>, display: DisplayUnit, exec: &Exec) {
         if self.seat.is_none() {
-            let told = DisplayUnit { scale: told.scale * self.width, ..told };
-            self.seat = Some(seat(&self.connector, free, told, exec));
+            let display = DisplayUnit { scale: display.scale * self.width, ..display };
+            self.seat = Some(seat(&self.connector, free, display, exec));
         }
     }
 }
@@ -170,7 +170,7 @@ pub(super) fn judge(
     offset: DVec2,
     others: &[DVec2],
     sunk: Option<&Sunk>,
-    told: DisplayUnit,
+    display: DisplayUnit,
 ) -> Result<SeatCandidate, RejectedLayout> {
     const APART: &str = "they pass each other by";
     let turns = lie.turns();
@@ -198,7 +198,7 @@ pub(super) fn judge(
             }
         }
         if on_the_rim(lift) {
-            let (deep, cell) = (told.length(sunk.climb), told.length(sunk.cell));
+            let (deep, cell) = (display.length(sunk.climb), display.length(sunk.cell));
             let why = format!(
                 "no play: one would sink {deep} into the other if it were {cell} narrower on each side; give it some play"
             );
@@ -220,11 +220,11 @@ pub(super) fn judge(
         lift = height(&pair, offset).ok_or(APART)?;
     } else {
         if lift > MOST_APART * wide {
-            let why = format!("blocked: {} above where they are drawn", told.length(lift));
+            let why = format!("blocked: {} above where they are drawn", display.length(lift));
             return Err(RejectedLayout::new(lift, why));
         }
         if lift < -MOST_APART * wide {
-            return Err(RejectedLayout::new(-lift, format!("drawn {} apart", told.length(-lift))));
+            return Err(RejectedLayout::new(-lift, format!("drawn {} apart", display.length(-lift))));
         }
     }
     let placed = at(offset);
@@ -335,7 +335,7 @@ fn symmetry(pair: &Pair) -> u32 {
 fn seat(
     connector: &Connector,
     wanted: Option<DofSet>,
-    told: DisplayUnit,
+    display: DisplayUnit,
     exec: &Exec,
 ) -> Result<Seat, String> {
     // A seat that does not hold with all errors free may hold without tilts, or with offsets only.
@@ -343,7 +343,7 @@ fn seat(
     let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
     let mut first = None;
     for set in sets {
-        match held(connector, set, wanted.is_some(), told, exec) {
+        match held(connector, set, wanted.is_some(), display, exec) {
             Ok(seat) => return Ok(seat),
             Err(reason) => first = first.or(Some(reason)),
         }
@@ -356,7 +356,7 @@ fn held(
     connector: &Connector,
     free: DofSet,
     exactly: bool,
-    told: DisplayUnit,
+    display: DisplayUnit,
     exec: &Exec,
 ) -> Result<Seat, String> {
     let mut alignment = Alignment::new(free, Mount::X);
@@ -408,14 +408,14 @@ fn held(
         match (found.first(), loose) {
             (None, _) => {
                 if let Some(fall) = descent::fall(&Pair::new(&held, &alignment)) {
-                    return Err(fall.in_words(told));
+                    return Err(fall.in_words(display));
                 }
                 let Alignment { free, dont_care, docked, .. } = alignment;
                 return Ok(Seat { free, dont_care, settle, symmetry, play: docked.limits });
             }
             (Some(_), Some(dof)) => leave_out(&mut alignment, dof)?,
             (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
-            (Some(problem), None) => return Err(problem.in_words(told)),
+            (Some(problem), None) => return Err(problem.in_words(display)),
         }
     }
 }

@@ -88,11 +88,11 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<D
         let text = "the parts meet as drawn, and were taken as an assembly that is docked";
         notes.push(Diagnostic::note("assembly", text));
     }
-    if let SeatCheck::Settles { turn, shift, told } = &best.seat
+    if let SeatCheck::Settles { turn, shift, off_by } = &best.seat
         && (*turn > MUCH || *shift > MUCH * best.width)
     {
         notes.push(look("settles", format!(
-            "the drawn pose is not a rest: released, the moving part settles {told} off, and that pose counts as mated: look at the picture; \
+            "the drawn pose is not a rest: released, the moving part settles {off_by} off, and that pose counts as mated: look at the picture; \
              errors that your mount locks need not be free"
         )));
     }

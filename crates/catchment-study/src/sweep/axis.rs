@@ -212,13 +212,13 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_said() {
-        let told = |text: &str| text.parse::<SweepAxis>().unwrap_err().to_string();
-        assert!(told("aspect_ratio").contains("KEY=VALUE"));
-        assert!(told("=1").contains("KEY=VALUE"));
-        assert!(told("aspct_ratio=1").ends_with("did you mean `aspect_ratio`?"));
-        assert!(told("mesh=a.stl").ends_with("write connector.fixed.mesh or connector.moving.mesh"));
-        assert!(told("cor=1,2,1").contains("twice"));
-        assert!(told("cor=1,,2").contains("nothing"));
+        let refusal = |text: &str| text.parse::<SweepAxis>().unwrap_err().to_string();
+        assert!(refusal("aspect_ratio").contains("KEY=VALUE"));
+        assert!(refusal("=1").contains("KEY=VALUE"));
+        assert!(refusal("aspct_ratio=1").ends_with("did you mean `aspect_ratio`?"));
+        assert!(refusal("mesh=a.stl").ends_with("write connector.fixed.mesh or connector.moving.mesh"));
+        assert!(refusal("cor=1,2,1").contains("twice"));
+        assert!(refusal("cor=1,,2").contains("nothing"));
         for range in [
             "cor=1..1/3",
             "cor=1..2/1",
@@ -228,10 +228,10 @@ mod tests {
             "cor=1 mm..2 deg/3",
             "cor=1..2/x",
         ] {
-            assert!(told(range).contains("is no range"), "{range}");
+            assert!(refusal(range).contains("is no range"), "{range}");
         }
         assert!(
-            told(&format!("cor={}", (0..1001).map(|k| k.to_string()).collect::<Vec<_>>().join(",")))
+            refusal(&format!("cor={}", (0..1001).map(|k| k.to_string()).collect::<Vec<_>>().join(",")))
                 .contains("1000")
         );
     }

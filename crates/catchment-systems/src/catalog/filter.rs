@@ -194,8 +194,8 @@ mod tests {
 
     #[test]
     fn what_is_unknown_is_answered_with_what_is_known() {
-        let told = |error: &UnknownError| format!("{error} {}", error.help().unwrap_or_default());
-        let condition = |text: &str| told(&catalog().condition(text).unwrap_err());
+        let refusal = |error: &UnknownError| format!("{error} {}", error.help().unwrap_or_default());
+        let condition = |text: &str| refusal(&catalog().condition(text).unwrap_err());
         assert!(condition("gendering").contains("write attribute=value"));
         let attribute = condition("gendring=Ungendered");
         assert!(
@@ -204,7 +204,7 @@ mod tests {
         );
         let value = condition("gendering=Hermaphroditic");
         assert!(value.ends_with("known are Gendered, Ungendered"), "{value}");
-        let system = told(catalog().named("Dragn").as_ref().unwrap_err());
+        let system = refusal(catalog().named("Dragn").as_ref().unwrap_err());
         assert!(system.contains("did you mean `DRAGON`?") && system.contains("GENFA"), "{system}");
     }
 

@@ -119,8 +119,8 @@ impl CommandSequence {
         let mut found = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
             for (joint, command) in &step.commands {
-                if let Some(told) = now.get_mut(joint - 1) {
-                    *told = *command;
+                if let Some(commanded) = now.get_mut(joint - 1) {
+                    *commanded = *command;
                 }
             }
             found.push(now.clone());
@@ -132,9 +132,9 @@ impl CommandSequence {
     /// last angle, to which the latched faces pull it.
     pub fn commanded_angles(&self, modules: usize) -> Vec<Vec<f64>> {
         let mut now = vec![0.0; modules];
-        let told = self.commanded(modules);
-        let mut found = Vec::with_capacity(told.len());
-        for commands in told {
+        let commanded = self.commanded(modules);
+        let mut found = Vec::with_capacity(commanded.len());
+        for commands in commanded {
             for (angle, command) in now.iter_mut().zip(commands) {
                 *angle = match command {
                     Command::Angle(angle) => angle,
@@ -275,9 +275,9 @@ mod tests {
             sequence.steps.iter().map(|s| s.time_s).collect::<Vec<_>>(),
             [0.0, 1.0, 3.0, 4.0, 5.0, 6.0]
         );
-        let told = sequence.commanded(6);
-        assert_eq!(told[1][3], Command::Angle(-1.67));
-        assert_eq!((told[4][3], told[4][4]), (Command::Slack, Command::Angle(-1.74)));
+        let commanded = sequence.commanded(6);
+        assert_eq!(commanded[1][3], Command::Angle(-1.67));
+        assert_eq!((commanded[4][3], commanded[4][4]), (Command::Slack, Command::Angle(-1.74)));
         // 5.68° and 9.69° past the right angle.
         assert!(((1.67 - FRAC_PI_2).to_degrees() - 5.68).abs() < 0.005);
         assert!(((1.74 - FRAC_PI_2).to_degrees() - 9.69).abs() < 0.005);
@@ -305,18 +305,18 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_table_is_told_in_its_place() {
+    fn what_is_wrong_with_a_table_is_reported_in_its_place() {
         let read = |text: &str| table(&SourceText::new("t.csv", text));
         assert_eq!(read("time_s,module_2\n0,0\n1,slack\n").unwrap().len(), 2);
-        let told = |text: &str| read(text).unwrap_err().to_string();
-        assert!(told("time_s,modul_2\n0,0\n").starts_with("t.csv:1:1: a column is of no module"));
-        let all = told("time_s,module_2\n1,0\n1,slakc\nx,0\n");
+        let commanded = |text: &str| read(text).unwrap_err().to_string();
+        assert!(commanded("time_s,modul_2\n0,0\n").starts_with("t.csv:1:1: a column is of no module"));
+        let all = commanded("time_s,module_2\n1,0\n1,slakc\nx,0\n");
         assert!(
             all.contains("t.csv:3:1: 1 s does not come after")
                 && all.contains("t.csv:3:1: `slakc` is neither")
         );
         assert!(all.contains("t.csv:4:1: `x` is no time"), "{all}");
-        assert!(told("time_s,module_1\n0,0,0\n").contains("record"), "a row of another length");
+        assert!(commanded("time_s,module_1\n0,0,0\n").contains("record"), "a row of another length");
     }
 
     #[test]
@@ -327,8 +327,8 @@ mod tests {
             ChainShape::Block { reading: Reading::Tail },
         ];
         for shape in shapes.into_iter().chain([ChainShape::O { first_corner: 2 }]) {
-            let told = CommandSequence::of(shape).unwrap().commanded(shape.modules());
-            let last = told.last().unwrap();
+            let commanded = CommandSequence::of(shape).unwrap().commanded(shape.modules());
+            let last = commanded.last().unwrap();
             // The first corner of a ring holds its shape.
             let holds = usize::from(matches!(shape, ChainShape::O { .. }));
             for joint in shape.turned().into_iter().skip(holds) {

@@ -257,12 +257,12 @@ fn the_shipped_example_is_the_one_of_the_page() {
     assert!(brackets(&string, PI * 6000.0));
     let boats = Some([file("boat.toml"), file("boat.toml")]);
     let found = compose([hook, string], boats, &ComposeSettings::default(), &Exec::new()).unwrap();
-    let told = report(&found);
-    assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());
+    let printed = report(&found);
+    assert!(printed.table().lines().all(|line| line.chars().count() <= 80), "{}", printed.table());
     assert!(figure(&found).unwrap().png(1.0).unwrap().len() > 1000);
     // The written files are read back, to the last digit.
     let svg = read(SourceText::new("sum.svg", outline_svg(&found)), &Exec::new()).unwrap();
-    let table = catchment::report::csv(&told.records()).unwrap();
+    let table = catchment::report::csv(&printed.records()).unwrap();
     let table = read(SourceText::new("sum.csv", String::from_utf8(table).unwrap()), &Exec::new()).unwrap();
     let inner = found.slices[0].region.inner.area();
     // Corners of the drawing are rounded by a scale factor of 1.

@@ -217,9 +217,9 @@ fn the_result_is_a_design_that_runs() {
         let problem = family(name);
         let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let limits = ManufacturingLimits { feature_d: 0.01, draft_rad: 0.05 };
-        let told = report(problem.design(), &found, limits);
-        assert!(told.table().lines().all(|line| line.chars().count() <= 80), "{}", told.table());
-        assert!(told.pieces_d.len() <= MAX_PIECES, "{name}: {} pieces", told.pieces_d.len());
+        let printed = report(problem.design(), &found, limits);
+        assert!(printed.table().lines().all(|line| line.chars().count() <= 80), "{}", printed.table());
+        assert!(printed.pieces_d.len() <= MAX_PIECES, "{name}: {} pieces", printed.pieces_d.len());
         let text = design_file(problem.design(), &found);
         let again = super::tests::problem(&text);
         let [a, b] = [own_heights(&problem), own_heights(&again)];

@@ -305,8 +305,8 @@ mod tests {
             rows.iter().map(|r| MeasuredForce { o: r.overhang_mm, t: r.neck_mm, force: of(r) }).collect()
         };
         let tension = ForceFit::of(ForceLaw::Power, &points(|r| r.k_extension_n_per_mm));
-        let told: Vec<String> = tension.parameters.iter().map(|p| format!("{p:.2}")).collect();
-        assert_eq!(told[1..], ["0.11", "0.80"]);
+        let words: Vec<String> = tension.parameters.iter().map(|p| format!("{p:.2}")).collect();
+        assert_eq!(words[1..], ["0.11", "0.80"]);
         assert_eq!(format!("{:.1} {:.2}", tension.parameters[0], tension.rms), "38.2 0.08");
         let compression = ForceFit::of(ForceLaw::Power, &points(|r| r.k_compression_n_per_mm));
         assert_eq!(format!("{:.2}", compression.rms), "0.36");

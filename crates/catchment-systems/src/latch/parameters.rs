@@ -275,14 +275,14 @@ mod tests {
     }
 
     #[test]
-    fn broken_rules_are_told_in_their_place_with_their_reason() {
-        let told = read("[latch]\nslit_depth = 15\nspline_end = '70 deg'\n").unwrap_err();
-        assert!(told.contains("l.toml:2:14: the stop slit ends below the cut-out"), "{told}");
-        assert!(told.contains("l.toml:3:14: the tangent at the hook passes through P"), "{told}");
+    fn broken_rules_are_reported_in_their_place_with_their_reason() {
+        let words = read("[latch]\nslit_depth = 15\nspline_end = '70 deg'\n").unwrap_err();
+        assert!(words.contains("l.toml:2:14: the stop slit ends below the cut-out"), "{words}");
+        assert!(words.contains("l.toml:3:14: the tangent at the hook passes through P"), "{words}");
         assert!(read("[latch]\nsides = 2\n").unwrap_err().contains("one face or three"));
         assert!(read("").unwrap_err().contains("`latch` is missing"));
-        let told = read("[latch]\nspline_start = '35 deg'\nl_eq = 100\n").unwrap_err();
-        assert!(told.contains("l.toml:2:16: no falling profile"), "{told}");
+        let words = read("[latch]\nspline_start = '35 deg'\nl_eq = 100\n").unwrap_err();
+        assert!(words.contains("l.toml:2:16: no falling profile"), "{words}");
     }
 
     proptest! {

@@ -55,8 +55,8 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
         return tell(&String::from_utf8_lossy(&bytes), &[]);
     }
     write_file(&args.output, &bytes, args.force)?;
-    let told = if kind == SetFileKind::Table { String::new() } else { view.table() };
-    tell(&told, &[format!("wrote {}", shown(&args.output))])
+    let words = if kind == SetFileKind::Table { String::new() } else { view.table() };
+    tell(&words, &[format!("wrote {}", shown(&args.output))])
 }
 
 /// The first option that only a drop test has.

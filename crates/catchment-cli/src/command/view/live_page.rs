@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fails_is_told_and_the_page_before_stays() {
+    fn what_fails_is_reported_and_the_page_before_stays() {
         let desk = Arc::new(LivePage::new(1, |resolution, _: &Exec| match cells(resolution).as_str() {
             "own" => Err("no design".to_owned()),
             "13" => panic!("a bug"),

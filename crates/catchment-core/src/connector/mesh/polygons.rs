@@ -264,12 +264,12 @@ impl<'a> Rings<'a> {
             *number = vertices.len() as u32;
             vertices.push(*at);
         }
-        let mut is_told = vec![false; self.from.len()];
+        let mut is_reported = vec![false; self.from.len()];
         let mut polygons = Vec::new();
         for half in 0..self.from.len() as u32 {
             let mut polygon = Vec::new();
             let mut at = half;
-            while !self.has_gone(at) && !std::mem::replace(&mut is_told[at as usize], true) {
+            while !self.has_gone(at) && !std::mem::replace(&mut is_reported[at as usize], true) {
                 polygon.push(numbers[self.from[at as usize] as usize]);
                 at = self.next(at);
             }

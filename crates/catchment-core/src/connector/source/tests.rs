@@ -122,7 +122,7 @@ fn what_the_file_held_counts_and_not_where_it_lay() {
 }
 
 #[test]
-fn a_missing_file_and_one_that_cannot_be_read_are_told_apart() {
+fn a_missing_file_and_one_that_cannot_be_read_are_distinguished() {
     let half = HalfSpec::Mesh(FileSpec::new("no/such/file.stl", 1.0));
     let error =
         |read: FileReader<'_>| match HalfSource::of(&half, HalfRole::Moving, read).unwrap_err().remove(0) {

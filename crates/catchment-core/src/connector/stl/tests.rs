@@ -181,7 +181,7 @@ fn solids_that_touch_along_an_edge_are_non_manifold() {
 }
 
 #[test]
-fn inside_out_and_mixed_windings_are_told_apart() {
+fn inside_out_and_mixed_windings_are_distinguished() {
     let mut triangles = cube();
     triangles[7].swap(0, 1);
     let problems = defects(&triangles);

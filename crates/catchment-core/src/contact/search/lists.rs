@@ -383,13 +383,13 @@ impl Lists<Touching> {
         out: &mut Vec<(Number, super::Element)>,
     ) -> bool {
         out.clear();
-        let told = self.within(turned, gaps.deep.max(gaps.front), |number| {
+        let is_complete = self.within(turned, gaps.deep.max(gaps.front), |number| {
             let element = turned.element(number).filter(|element| gaps.hold(element.gap(turned.position)));
             out.extend(element.map(|element| (*number, element)));
             false
         });
         out.sort_unstable_by_key(|(number, _)| *number);
-        told
+        is_complete
     }
 }
 
@@ -398,7 +398,7 @@ impl Lists<Passing> {
     pub(super) fn pass(&mut self, turned: &Turned<'_>, reach: f64) -> Option<bool> {
         let frames = Frames::new(&turned.rotation, turned.position);
         let mut found = false;
-        let told = self.within(turned, reach, |(is_facet, two)| {
+        let is_complete = self.within(turned, reach, |(is_facet, two)| {
             let (fixed, moving) = turned.shapes(two.shapes);
             found = if *is_facet {
                 frames.moving_enters(moving, two.moving, fixed, two.fixed)
@@ -407,7 +407,7 @@ impl Lists<Passing> {
             };
             found
         });
-        told.then_some(found)
+        is_complete.then_some(found)
     }
 }
 

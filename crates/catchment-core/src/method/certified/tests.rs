@@ -205,8 +205,8 @@ fn no_motion_contradicts_the_other_certificates() {
         (charger.pair(), 10_000, 0.0),
     ] {
         let found = certified(pair, more * boxes);
-        let told = contradicts_nothing(pair, &found, motions);
-        assert!(told as f64 >= least * motions as f64, "{told} of {motions}: {:?}", found.certificate);
+        let printed = contradicts_nothing(pair, &found, motions);
+        assert!(printed as f64 >= least * motions as f64, "{printed} of {motions}: {:?}", found.certificate);
     }
 }
 
@@ -276,7 +276,7 @@ fn all_of_a_box_of_three_errors_docks() {
 /// A border through a box of three errors: motions that slide off along it are decided by their progress
 /// across the errors.
 #[test]
-fn a_border_in_three_errors_is_told() {
+fn a_border_in_three_errors_is_reported() {
     let pair = narrow(Family::Pyramid, 0.0, &[(Dof::X, 0.6), (Dof::Y, 0.6), (Dof::Yaw, 0.35)]);
     let found = certified(&pair, 70_000);
     let BoxCertificate { yes, no, undecided, .. } = found.certificate;
@@ -317,11 +317,11 @@ fn motions_never_go_back_along_a_bearing() {
         let tree = Tree::over(&pair.alignment, &bodies);
         let all: Vec<u32> = (0..bodies.meetings.len() as u32).collect();
         let (mut number, mut nearby) = (numbers(23), pair.about(REACH));
-        let (mut told, mut steps) = (0, 0);
+        let (mut printed, mut steps) = (0, 0);
         for _ in 0..150 {
             let (poses, error) = random_box(&pair, 0.1, &mut number);
             let rising = Survey::of(&bodies, &poses, &all, &mut nearby).rising(&tree.bearings);
-            told += rising.count_ones();
+            printed += rising.count_ones();
             let settings = descent::DescentSettings { step: 1e-3, ..descent::DescentSettings::default() };
             let way = descent::trace(&pair, &error, &settings).waypoints;
             let inside = |error: &PoseError| (0..5).all(|k| poses[k].contains(error.to_array()[k]));
@@ -338,7 +338,7 @@ fn motions_never_go_back_along_a_bearing() {
                 }
             }
         }
-        assert!(told > 150 && steps > 300, "{told} {steps}");
+        assert!(printed > 150 && steps > 300, "{printed} {steps}");
     }
 }
 
@@ -359,16 +359,16 @@ fn no_trial_of_an_engine_contradicts() {
         let spec = FamilySpec::new(family).with_aspect_ratio(set["aspect_ratio"].as_f64().unwrap());
         let pair = Pair::new(&Connector::of_family(&spec, alignment.mount).unwrap(), &alignment);
         let found = certified(&pair, boxes);
-        let mut told = 0;
+        let mut printed = 0;
         for row in set["poses"].as_array().unwrap() {
             let error = PoseError::from_array(std::array::from_fn(|k| row[k].as_f64().unwrap()));
             let outcome = row[5].as_str().unwrap();
             if let Some(docks) = found.label_at(&error).filter(|_| outcome != "undecided") {
-                told += 1;
+                printed += 1;
                 assert_eq!(outcome == "aligned", docks, "{file} {error:?}: {outcome}");
             }
         }
-        assert!(told > labelled, "{file}: {told}");
+        assert!(printed > labelled, "{file}: {printed}");
     }
 }
 

@@ -62,10 +62,10 @@ impl Labeller<'_> {
         // If a free error is not an axis of the grid, motions leave the grid, so cells cannot inherit
         // outcomes.
         let joins = self.pair.alignment.free.iter().all(|dof| grid.axis(dof).is_some());
-        let mut told = InheritedLabels { cells: order.len(), ..InheritedLabels::default() };
+        let mut counts = InheritedLabels { cells: order.len(), ..InheritedLabels::default() };
         let size = order.len().div_ceil(BATCHES).clamp(LEAST_BATCH, BATCH);
         for (number, batch) in order.chunks(size).enumerate() {
-            if self.is_late() || self.settings.motions.is_some_and(|most| told.motions >= most) {
+            if self.is_late() || self.settings.motions.is_some_and(|most| counts.motions >= most) {
                 break;
             }
             exec.report((number * size) as f64 / order.len() as f64, STAGE);
@@ -80,14 +80,14 @@ impl Labeller<'_> {
             })?;
             for (cell, (label, is_followed)) in batch.iter().zip(found) {
                 labels[*cell as usize] = label;
-                told.motions += usize::from(is_followed);
+                counts.motions += usize::from(is_followed);
             }
         }
         drop(order);
-        told.motions += self.mend(&mut labels, exec)?;
-        told.inherited = labels.iter().filter(|label| label.has_inherited()).count();
-        self.judge(&labels, &mut told, exec)?;
-        Ok((labels, told))
+        counts.motions += self.mend(&mut labels, exec)?;
+        counts.inherited = labels.iter().filter(|label| label.has_inherited()).count();
+        self.judge(&labels, &mut counts, exec)?;
+        Ok((labels, counts))
     }
 
     /// Does something with every cell of a list, in its order, in parallel; every thread has a follower of its own.
@@ -226,7 +226,7 @@ impl Labeller<'_> {
     }
 
     /// Follows some of the cells with inherited labels to their end: a random sample, or all if they are few.
-    fn judge(&self, labels: &[Label], told: &mut InheritedLabels, exec: &Exec) -> Result<(), Cancelled> {
+    fn judge(&self, labels: &[Label], counts: &mut InheritedLabels, exec: &Exec) -> Result<(), Cancelled> {
         let DescentDirections { grid, fold, .. } = self.falls;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
         let stream = Stream::new(SEED);
@@ -239,10 +239,10 @@ impl Labeller<'_> {
         cells.retain(|cell| labels[*cell as usize].has_inherited());
         let ends = self.each(&cells, exec, |follower, cell| self.follow(cell, follower).outcome())?;
         let differs = |(cell, end): &(&u32, Outcome)| labels[**cell as usize].outcome() != *end;
-        told.tried = cells.len();
-        told.wrong = cells.iter().zip(ends).filter(differs).count();
-        if told.tried > 0 {
-            told.wrong_ci95 = wilson95(told.wrong as f64 / told.tried as f64, told.tried as f64);
+        counts.tried = cells.len();
+        counts.wrong = cells.iter().zip(ends).filter(differs).count();
+        if counts.tried > 0 {
+            counts.wrong_ci95 = wilson95(counts.wrong as f64 / counts.tried as f64, counts.tried as f64);
         }
         Ok(())
     }

@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dependence_is_told_with_its_interval() {
+    fn a_dependence_is_reported_with_its_interval() {
         // A limit on steps that suffices for some motion, but not at half the step length.
         let pair = pair(Family::XFace3dLocking);
         let short = |max_steps: usize| DescentSettings { max_steps, ..DescentSettings::default() };

@@ -296,7 +296,7 @@ impl<'a> At<'a> {
         let bends: Vec<f64> = self.carrying.iter().map(|k| -self.bend(*k, way)).collect();
         // The direction is free: each row may carry the bend of its gap along it, and the load their weighted
         // sum.
-        let told: Vec<Vector> = self
+        let rows: Vec<Vector> = self
             .carrying
             .iter()
             .zip(&bends)
@@ -310,7 +310,7 @@ impl<'a> At<'a> {
         let with = |kappa: f64| -> Vector { std::array::from_fn(|j| load[j] - kappa * way[j]) };
         let mut one = self.holding.some(&self.carrying);
         let mut most: f64 = one.forces(&load).iter().map(|(k, force)| force * bends[*k]).sum();
-        one.replace_rows(told);
+        one.replace_rows(rows);
         let (mut held, mut step) = (most, FLAT * FLAT);
         while step < MOST_CURVED && one.holds(&with(held + step), 0.0) {
             held += step;

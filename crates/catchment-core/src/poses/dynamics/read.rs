@@ -257,7 +257,7 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
     if number.is_empty() {
         return Err(defect(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
     }
-    let told =
+    let refusal =
         |c: crate::design::DesignDefect| Diagnostic::error(FAMILY, format!("{}: {c}", of.name()), c.help());
     match of {
         Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),
@@ -277,8 +277,8 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
             Ok(factor * plain(number)?)
         }
         Circumstance::Height => {
-            let read = format!("{number} {unit}").parse::<Quantity>().map_err(told)?;
-            read.length_d(&design.scale()).map_err(told)
+            let read = format!("{number} {unit}").parse::<Quantity>().map_err(refusal)?;
+            read.length_d(&design.scale()).map_err(refusal)
         }
         _ => {
             let length = match unit.strip_suffix("/s") {
@@ -289,11 +289,11 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
                     return Err(defect(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
                 }
             };
-            let read = format!("{number} {length}").parse::<Quantity>().map_err(told)?;
+            let read = format!("{number} {length}").parse::<Quantity>().map_err(refusal)?;
             let turns =
                 matches!(of, Circumstance::SpinRoll | Circumstance::SpinPitch | Circumstance::SpinYaw);
             let value = if turns { read.angle_rad() } else { read.length_d(&design.scale()) };
-            value.map_err(told)
+            value.map_err(refusal)
         }
     }
 }

@@ -309,11 +309,11 @@ fn place(error: &PoseError) -> String {
     const SHOWN: f64 = 5e-5;
     let parts = || Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| *value != 0.0);
     let large = parts().any(|(_, value)| value.abs() >= SHOWN);
-    let told = parts().filter(|(_, value)| !large || value.abs() >= SHOWN).map(|(dof, value)| {
+    let words = parts().filter(|(_, value)| !large || value.abs() >= SHOWN).map(|(dof, value)| {
         let value = if large { format!("{value:.4}") } else { format!("{value:.1e}") };
         format!("{} = {value} {}", dof.name(), unit(dof))
     });
-    told.collect::<Vec<_>>().join(", ")
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// Permitted error probability of the certificate of the first window, and of all later ones: together 5 %.

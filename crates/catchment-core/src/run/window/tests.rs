@@ -151,7 +151,7 @@ fn all_certificates_together_are_wrong_in_five_of_a_hundred_at_most() {
 }
 
 #[test]
-fn a_place_is_never_told_as_nothing() {
+fn a_place_is_never_reported_as_nothing() {
     let pose = |x: f64, yaw: f64| PoseError { x, yaw, ..PoseError::default() };
     assert_eq!(place(&pose(0.25, -1e-7)), "x = 0.2500 D");
     assert_eq!(place(&pose(-2e-6, 0.0)), "x = -2.0e-6 D");

@@ -157,8 +157,8 @@ mod tests {
         for (message, spoil) in spoils {
             let mut body = report.body.clone();
             spoil(&mut body);
-            let told = body.check().unwrap_err().to_string();
-            assert!(told.starts_with(message), "{told} instead of {message}");
+            let text = body.check().unwrap_err().to_string();
+            assert!(text.starts_with(message), "{text} instead of {message}");
         }
     }
 }

@@ -46,8 +46,8 @@ impl RunBody {
         for stratum in &sample.strata {
             share(stratum.share, &name("strata.share"))?;
             share(stratum.accepted, &name("strata.accepted"))?;
-            let told = stratum.aligned.checked_add(stratum.undecided);
-            let sound = told.is_some_and(|told| told <= stratum.descents);
+            let decided = stratum.aligned.checked_add(stratum.undecided);
+            let sound = decided.is_some_and(|decided| decided <= stratum.descents);
             hold(sound, name("strata.descents"), "must be at least those that aligned and those undecided")?;
             descents = descents.saturating_add(stratum.descents);
         }
@@ -96,8 +96,8 @@ fn check_jams(found: &Jams) -> Result<(), UnsoundError> {
         share(of.share, "jams: a share")?;
         interval(of.ci95, "jams: an interval")?;
     }
-    let told = found.jams.iter().flat_map(|jam| [jam.of_jams, jam.of_failures]);
-    for of in told.chain(found.features.iter().flat_map(|pair| [pair.of_jams, pair.of_failures])) {
+    let shares = found.jams.iter().flat_map(|jam| [jam.of_jams, jam.of_failures]);
+    for of in shares.chain(found.features.iter().flat_map(|pair| [pair.of_jams, pair.of_failures])) {
         share(of, "jams: a share")?;
     }
     for jam in &found.jams {
@@ -246,8 +246,8 @@ mod tests {
         for (message, spoil) in spoils {
             let mut body = whole.clone();
             spoil(&mut body);
-            let told = body.check().unwrap_err().to_string();
-            assert!(told.starts_with(message), "{told} instead of {message}");
+            let refusal = body.check().unwrap_err().to_string();
+            assert!(refusal.starts_with(message), "{refusal} instead of {message}");
         }
     }
 

@@ -149,6 +149,6 @@ fn what_two_parts_share_is_measured() {
 fn basins_climb_to_their_passes() {
     let rows: [[f32; 7]; 3] = [[9.0; 7], [9.0, 1.0, 5.0, 3.0, 9.0, 2.0, NOTHING], [9.0; 7]];
     let found = basins(&rows.concat(), 7, 0.5);
-    let told: Vec<(usize, f32)> = found.iter().map(|basin| (basin.at, basin.climb)).collect();
-    assert_eq!(told, [(8, 8.0), (10, 2.0)]);
+    let printed: Vec<(usize, f32)> = found.iter().map(|basin| (basin.at, basin.climb)).collect();
+    assert_eq!(printed, [(8, 8.0), (10, 2.0)]);
 }

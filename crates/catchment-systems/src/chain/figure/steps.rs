@@ -182,10 +182,10 @@ fn words(
             format!("{joints}: {said}")
         })
         .collect();
-    let told = if said.is_empty() { "straight".to_owned() } else { said.join(";  ") };
+    let printout = if said.is_empty() { "straight".to_owned() } else { said.join(";  ") };
     let time = format!("t = {} s", catchment::document::rounded(step.time_s));
     svg.bold([x, y], LABEL, Anchor::Start, &time);
-    svg.text([x + width_of(&time, LABEL) + 14.0, y], TICK, Anchor::Start, INK, &told);
+    svg.text([x + width_of(&time, LABEL) + 14.0, y], TICK, Anchor::Start, INK, &printout);
     let news: Vec<String> = folding
         .latches
         .iter()

@@ -6,7 +6,7 @@ fn read(text: &str) -> Result<ChainFile, Diagnostics> {
     ChainFile::read(SourceText::new("folder/c.toml", text))
 }
 
-fn told(text: &str) -> String {
+fn printed(text: &str) -> String {
     read(text).unwrap_err().to_string()
 }
 
@@ -36,15 +36,15 @@ fn own_steps_fold_onto_a_lattice_of_their_own() {
     assert_eq!(folding.sequence.steps.len(), 3);
     assert_eq!(folding.sequence.latches.len(), 1);
     assert_eq!(folding.sequence.steps[1].commands.len(), 2);
-    let wrong = told(&format!("[chain]\nmodules = 6\n[sequence]\nlatches = '2-6'\n{fold}"));
+    let wrong = printed(&format!("[chain]\nmodules = 6\n[sequence]\nlatches = '2-6'\n{fold}"));
     assert!(wrong.contains("`2-6` are no two modules") && wrong.contains("those that do: 3-6"), "{wrong}");
 }
 
 #[test]
-fn everything_wrong_is_told_in_its_place() {
+fn everything_wrong_is_reported_in_its_place() {
     let text = "[chain]\nmodules = 6\n[[step]]\ntime = 1\njoint = 9\ncommand = 0\n[[step]]\ntime = 1\njoint = 2\n\
                 command = 'slack'\n[[step]]\ntime = 0\njoint = 2\ncommand = 'slakc'\n[[step]]\ntime = 0.5\njoint = 2\ncommand = 1\n";
-    let all = told(text);
+    let all = printed(text);
     for wanted in [
         "c.toml:5:9: joint 9 does not exist; the chain has joints 1 to 6",
         "c.toml:10:11: joint 2 goes slack without an earlier command",
@@ -54,13 +54,13 @@ fn everything_wrong_is_told_in_its_place() {
         assert!(all.contains(wanted), "{wanted}: {all}");
     }
     assert!(
-        told("[sequence]\nname = 'P'\n[chain]\nmodules = 7").contains("P is folded from 6 modules, not 7")
+        printed("[sequence]\nname = 'P'\n[chain]\nmodules = 7").contains("P is folded from 6 modules, not 7")
     );
-    assert!(told("[sequence]\nname = 'P'\nreading = 'A'").contains("is for name = \"Block\" alone"));
-    assert!(told("[sequence]\nname = 'Q'").contains("cannot be \"Q\""));
-    assert!(told("[sequence]\n").contains("names no shape"));
-    assert!(told("[connector]\nrotation_length = 1").contains("`connector.design` is missing"));
-    assert!(told("[chain]\nlength = 96").contains("do not fit a pitch"));
-    assert!(told("[[step]]\ntime = 0\njoint = 1\n").contains("`step[0].command` is missing"));
-    assert!(told("[[step]]\ntime = 0\njoint = 1\ncommand = 7").contains("`step[0].command` is 7"));
+    assert!(printed("[sequence]\nname = 'P'\nreading = 'A'").contains("is for name = \"Block\" alone"));
+    assert!(printed("[sequence]\nname = 'Q'").contains("cannot be \"Q\""));
+    assert!(printed("[sequence]\n").contains("names no shape"));
+    assert!(printed("[connector]\nrotation_length = 1").contains("`connector.design` is missing"));
+    assert!(printed("[chain]\nlength = 96").contains("do not fit a pitch"));
+    assert!(printed("[[step]]\ntime = 0\njoint = 1\n").contains("`step[0].command` is missing"));
+    assert!(printed("[[step]]\ntime = 0\njoint = 1\ncommand = 7").contains("`step[0].command` is 7"));
 }

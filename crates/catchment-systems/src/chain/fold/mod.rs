@@ -209,14 +209,14 @@ pub fn fold(
     let mut chain = Chain::new(*body, modules, &sequence.latches, settings);
     let mut found =
         Folded { moments: Vec::new(), events: Vec::new(), track: Vec::new(), pressed: Vec::new() };
-    let told = sequence.commanded(modules);
+    let commanded = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
     let meant = sequence.commanded_angles(modules);
-    for (number, (step, commands)) in sequence.steps.iter().zip(&told).enumerate() {
+    for (number, (step, commands)) in sequence.steps.iter().zip(&commanded).enumerate() {
         if let Some((a, b)) = collision::in_one_cell(body, &rotors(body, &meant[number]), &sequence.latches) {
             return Err(FoldError::Cell { step: number, time_s: step.time_s, a, b });
         }
-        exec.report(number as f64 / told.len() as f64, "folding");
+        exec.report(number as f64 / commanded.len() as f64, "folding");
         let until = sequence.steps.get(number + 1).map_or(step.time_s + RAMP_S, |next| next.time_s);
         let length = (until - step.time_s).min(RAMP_S);
         let from: Vec<f64> = before.iter().zip(&chain.angles).map(|(b, now)| ramp_start(*b, *now)).collect();
@@ -260,8 +260,8 @@ fn advance(chain: &mut Chain, commands: &[Command], from: &[f64], done: f64, sub
         // Rounding of the sum must not leave a sliver behind.
         let share =
             if done + 1.5 * part * whole > 1.0 && part == 1.0 { 1.0 } else { (done + part * whole).min(1.0) };
-        for ((told, to), from) in chain.told.iter_mut().zip(commands).zip(from) {
-            *told = match to {
+        for ((commanded, to), from) in chain.commanded.iter_mut().zip(commands).zip(from) {
+            *commanded = match to {
                 Command::Angle(to) => Some(from + share * (to - from)),
                 Command::Slack => None,
             };

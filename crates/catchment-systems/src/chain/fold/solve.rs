@@ -22,7 +22,7 @@ pub(super) struct Chain {
     settings: FoldSettings,
     pub(super) angles: Vec<f64>,
     /// Commands to all joints; `None` is slack.
-    pub(super) told: Vec<Option<f64>>,
+    pub(super) commanded: Vec<Option<f64>>,
     pub(super) pairs: Vec<Pair>,
 }
 
@@ -37,7 +37,7 @@ impl Chain {
             body,
             settings: *settings,
             angles: vec![0.0; modules],
-            told: vec![Some(0.0); modules],
+            commanded: vec![Some(0.0); modules],
             pairs: latches.iter().map(|latch| Pair::new(*latch, settings.hooks)).collect(),
         }
     }
@@ -49,12 +49,14 @@ impl Chain {
     /// States of all joints.
     pub(super) fn states(&self) -> Vec<State> {
         let servo = self.settings.servo;
-        self.told
+        self.commanded
             .iter()
             .zip(&self.angles)
-            .map(|(told, angle)| match told {
+            .map(|(commanded, angle)| match commanded {
                 None => State::Slack,
-                Some(told) if servo.stiffness * (told - angle).abs() >= servo.torque => State::Stalled,
+                Some(commanded) if servo.stiffness * (commanded - angle).abs() >= servo.torque => {
+                    State::Stalled
+                }
                 Some(_) => State::Holding,
             })
             .collect()
@@ -67,7 +69,7 @@ impl Chain {
         for pair in &mut self.pairs {
             let force_n = pair.press(&self.body, &rotors, &self.angles);
             let [lateral_mm, _, angle_rad] = pair.error(&self.body, &rotors, &self.angles);
-            let driven = self.told[pair.latch.joints()].iter().all(Option::is_some);
+            let driven = self.commanded[pair.latch.joints()].iter().all(Option::is_some);
             match pair.change(force_n, lateral_mm, driven) {
                 Change::Nothing => {}
                 Change::Realigned => return true,
@@ -98,9 +100,9 @@ impl Chain {
         let n = angles.len();
         let (stiffness, stall) = (MILLI * self.settings.servo.stiffness, MILLI * self.settings.servo.torque);
         let (mut energy, mut gradient, mut curvature) = (0.0, vec![0.0; n], vec![vec![0.0; n]; n]);
-        for (k, (told, angle)) in self.told.iter().zip(angles).enumerate() {
-            let Some(told) = told else { continue };
-            let off = angle - told;
+        for (k, (commanded, angle)) in self.commanded.iter().zip(angles).enumerate() {
+            let Some(commanded) = commanded else { continue };
+            let off = angle - commanded;
             if stiffness * off.abs() < stall {
                 energy += 0.5 * stiffness * off * off;
                 gradient[k] += stiffness * off;
@@ -207,7 +209,7 @@ mod tests {
             const STEP: f64 = 1e-6;
             let angles = ChainShape::P.angles();
             let mut chain = Chain::new(ModuleDimensions::default(), 6, &latches(&angles), &FoldSettings::default());
-            chain.told = vec![Some(0.0), Some(0.01), None, Some(-1.67), Some(-1.74), Some(0.0)];
+            chain.commanded = vec![Some(0.0), Some(0.01), None, Some(-1.67), Some(-1.74), Some(0.0)];
             chain.pairs[0].held =
                 [LatchedLayers::None, LatchedLayers::One { offset: 3.0 }, LatchedLayers::One { offset: 0.0 }, LatchedLayers::Both][held];
             let at: Vec<f64> = angles.iter().zip(&off).map(|(a, o)| a + o).collect();

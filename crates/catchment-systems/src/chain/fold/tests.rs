@@ -10,7 +10,7 @@ fn folded(shape: ChainShape, settings: &FoldSettings) -> Folded {
     fold(&ModuleDimensions::default(), shape.modules(), &sequence, settings, &Exec::new()).unwrap()
 }
 
-fn told(found: &Folded) {
+fn check(found: &Folded) {
     for event in &found.events {
         println!("{event:?}");
     }
@@ -26,7 +26,7 @@ fn told(found: &Folded) {
 #[test]
 fn table_6_2_latches_one_layer_after_the_other_and_ends_on_the_lattice() {
     let found = folded(ChainShape::P, &FoldSettings::default());
-    told(&found);
+    check(&found);
     let events: Vec<_> = found.events.iter().map(|e| (e.from, e.to, e.layers, e.time_s.floor())).collect();
     assert_eq!(events, [(3, 6, 1, 3.0), (3, 6, 2, 5.0)]);
     // The first contact is off-centre, by the 9.41 mm of the commanded pose minus the deflection of the servo
@@ -54,7 +54,7 @@ fn every_shape_latches_and_ends_on_its_lattice() {
     for shape in blocks.into_iter().chain(rings) {
         println!("{shape:?}");
         let found = folded(shape, &FoldSettings::default());
-        told(&found);
+        check(&found);
         let latches = CommandSequence::of(shape).unwrap().latches;
         assert!(open_latches(&found, &latches).is_empty(), "{shape:?}");
         let (off, turned) =
@@ -112,7 +112,7 @@ fn collisions_name_their_step() {
 
 /// Half as long sub-steps move no event to another step and no rest by more than a hundredth of a millimetre.
 #[test]
-fn finer_steps_change_nothing_that_is_told() {
+fn finer_steps_change_nothing_that_is_reported() {
     let coarse = folded(ChainShape::P, &FoldSettings::default());
     let fine = folded(ChainShape::P, &FoldSettings { substeps: 240, ..FoldSettings::default() });
     assert_eq!(coarse.events.len(), fine.events.len());

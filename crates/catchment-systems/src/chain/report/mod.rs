@@ -273,24 +273,24 @@ pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing
 
 /// The warnings.
 fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
-    let mut told = Vec::new();
+    let mut lines = Vec::new();
     if let Some(docking) = &study.docking {
         let (found, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
         if (found - own).abs() > 1e-9 {
-            told.push(format!(
+            lines.push(format!(
                 "the centre of rotation is the last rotor, {} D behind the face; that of the design, {} D, does not count",
                 rounded(-found),
                 rounded(own)
             ));
         }
         if let Err(reason) = &docking.offsets {
-            told.push(format!("no exact offsets without rotation: {reason}"));
+            lines.push(format!("no exact offsets without rotation: {reason}"));
         }
         let design = docking.problem.design();
         let width = design.unit.map(|unit| design.width * unit.metres() * 1e3);
         if let Some(width) = width.filter(|width| (width / study.file.body.face - 1.0).abs() > 0.01) {
             let face = rounded(study.file.body.face);
-            told.push(format!(
+            lines.push(format!(
                 "the design is {} mm wide, the chain's faces {face} mm: D is the chain's",
                 rounded(width)
             ));
@@ -302,14 +302,14 @@ fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
         for ((latch, pressed), layers) in open.zip(last) {
             let name = latch.latch.map_or_else(String::new, |latch| latch.name());
             if layers < 2 {
-                told.push(format!(
+                lines.push(format!(
                     "{name} holds with {layers} of 2 layers: pressed with {pressed:.1} N at most, a layer needs {} N",
                     number(body.hooks.force)
                 ));
             }
         }
     }
-    told.into_iter().map(|text| Diagnostic::warning(ChainBody::KIND, text)).collect()
+    lines.into_iter().map(|text| Diagnostic::warning(ChainBody::KIND, text)).collect()
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ fn turned(geometry: &Geometry, polygon: &Polygon) -> Polygon {
 fn the_defaults_give_the_recomputed_geometry() {
     let geometry = Geometry::of(&LatchDesign::default()).unwrap();
     let lever = geometry.lever();
-    let told = [
+    let printed = [
         geometry.profile.end.to_degrees(),
         geometry.height(),
         geometry.pivot.x,
@@ -36,7 +36,7 @@ fn the_defaults_give_the_recomputed_geometry() {
         geometry.slit_end,
     ];
     let digits = [1, 1, 2, 1, 2, 1, 1];
-    let said: Vec<String> = told.iter().zip(digits).map(|(v, d)| format!("{v:.d$}")).collect();
+    let said: Vec<String> = printed.iter().zip(digits).map(|(v, d)| format!("{v:.d$}")).collect();
     assert_eq!(said, ["75.7", "36.5", "46.25", "-40.0", "10.95", "43.0", "-44.3"]);
     assert!(geometry.tangent_miss() < 1e-9);
 }

@@ -122,7 +122,7 @@ fn closed_forms() {
 }
 
 #[test]
-fn the_square_around_zero_is_told_beside_the_largest() {
+fn the_square_around_zero_is_reported_beside_the_largest() {
     // Zero in the narrow part of an hourglass lying down.
     let wide = tile(0.1, -0.4, 0.9, 0.8);
     let found = square(&[tile(-0.2, -0.05, 0.3, 0.1), wide]);
