@@ -19,7 +19,7 @@ import catchment
         ("x-face", ["--samples", "500"], {"samples": 500}),
         ("s-face", ["--method", "flood"], {"method": "flood"}),
         (
-            "s-face",
+            "pyramid",
             ["--free", "x", "--resolution", "21", "--window", "--jams"],
             {"resolution": 21, "window": True, "jams": True},
         ),
