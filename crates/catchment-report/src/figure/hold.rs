@@ -13,7 +13,7 @@ const RADIUS: f64 = 180.0;
 const BARS: [f64; 2] = [300.0, 360.0];
 /// Room of the chart for the names of its axes and the words below it, and of the bars for their names and numbers.
 const AROUND: [f64; 4] = [20.0, 22.0, 20.0, 48.0];
-const BESIDE: [f64; 4] = [50.0, 0.0, 84.0, 24.0];
+const BESIDE: [f64; 4] = [50.0, 22.0, 84.0, 24.0];
 /// Rings of the polar chart, at most.
 const RINGS: f64 = 4.0;
 /// Values beyond this multiple of the finite median are drawn at the rim, so that the rest is visible.

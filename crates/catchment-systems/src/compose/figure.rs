@@ -4,29 +4,23 @@ use super::report::bracket;
 use super::{Composition, OverlapMap, Region, RegionFrames};
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame, short};
 use catchment::report::figure::draw::colour::{self, Rgb, hex, mix, sequential};
-use catchment::report::figure::draw::svg::{
-    Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline,
-};
+use catchment::report::figure::draw::layout::{Layout, Legend, Panel};
+use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, Rect, SOFT, Svg, TICK, polyline};
 use catchment::report::figure::{FigureError, Picture};
 use glam::DVec2;
 
 /// Side of a panel, in SVG units.
 const SIDE: f64 = 300.0;
-/// Top of the panels.
-const TOP: f64 = 96.0;
-/// Distance between panels.
-const PITCH: f64 = SIDE + 76.0;
 /// Room around a region, as a share of its extent.
 const MARGIN: f64 = 0.08;
 
 /// The square of the plane around points.
-fn frame(around: [DVec2; 2], column: usize, unit: &str) -> PlotFrame {
+fn frame(around: [DVec2; 2], rect: Rect, unit: &str) -> PlotFrame {
     let (center, half) = ((around[0] + around[1]) / 2.0, (around[1] - around[0]).max_element() / 2.0);
     let half = (half * (1.0 + 2.0 * MARGIN)).max(1e-6);
     let scale = |name: &str, middle: f64| {
         AxisScale::new(format!("{name} [{unit}]"), middle - half, middle + half, false)
     };
-    let rect = Rect { x: 70.0 + PITCH * column as f64, y: TOP, w: SIDE, h: SIDE };
     PlotFrame { rect, x: scale("x", center.x), y: scale("y", center.y) }
 }
 
@@ -87,14 +81,31 @@ fn image(map: &OverlapMap) -> Result<Vec<u8>, FigureError> {
 pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
     let slice = &found.slices[found.shown];
     let unit = found.halves[0].measure.symbol();
-    let mut svg = Svg::new(70.0 + 3.0 * PITCH, TOP + SIDE + 82.0);
     let names = [&found.halves[0].name, &found.halves[1].name];
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &format!("{} and {}: where they meet", names[0], names[1]));
     let frames = match found.settings.frames {
         RegionFrames::Own => "each drawn in its own frame, facing +y; the second is mounted by a half turn",
         RegionFrames::World => "both drawn in one frame, as they stand before each other",
     };
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, frames);
+    let heading = short(slice.heading.to_degrees());
+    let mut words = vec![format!("colour: area of the overlap, up to {}", significant_area(found, unit))];
+    if found.slices.len() > 1 {
+        words.push(format!("heading {heading}°; thin lines: first and last heading"));
+    }
+    if found.bodies.is_some() {
+        words.push("dashed: bodies".to_owned());
+    }
+    let panel = |name: &str, area: [f64; 2]| {
+        Panel::with_axes([SIDE; 2]).over(format!("{name}: {} {unit}²", bracket(area)))
+    };
+    let (mut svg, rects) = Layout::titled(format!("{} and {}: where they meet", names[0], names[1]))
+        .story(frames)
+        .row([
+            panel(names[0], found.halves[0].region.area()),
+            panel(names[1], found.halves[1].region.area()),
+            panel("both", slice.region.area()),
+        ])
+        .legend(Legend::titled(&words.join("  ·  ")))
+        .open();
     let style = |fill: Rgb, edge: Rgb| {
         format!(
             r#"fill="{}" stroke="{}" stroke-width="1.2" fill-rule="evenodd" {JOIN}"#,
@@ -106,9 +117,7 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
     let body = format!(r#"fill="none" stroke="{SOFT}" stroke-width="1.1" stroke-dasharray="5 3" {JOIN}"#);
     for (k, half) in found.halves.iter().enumerate() {
         let own = found.bodies.as_ref().map(|bodies| &bodies[k].region.outer);
-        let frame = frame(around([&half.region.outer]), k, unit);
-        let title = format!("{}: {} {unit}²", half.name, bracket(half.region.area()));
-        svg.text([frame.rect.x, TOP - 12.0], LABEL, Anchor::Start, INK, &title);
+        let frame = frame(around([&half.region.outer]), rects[k], unit);
         svg.begin_clip(frame.rect);
         svg.path(&path(&frame, &half.region.inner), &style(colours[k].0, colours[k].1));
         if let Some(own) = own {
@@ -118,16 +127,7 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
         svg.end();
         frame.draw(&mut svg);
     }
-    meeting(&mut svg, found, unit)?;
-    let heading = short(slice.heading.to_degrees());
-    let mut story = vec![format!("colour: area of the overlap, up to {}", significant_area(found, unit))];
-    if found.slices.len() > 1 {
-        story.push(format!("heading {heading}°; thin lines: first and last heading"));
-    }
-    if found.bodies.is_some() {
-        story.push("dashed: bodies".to_owned());
-    }
-    svg.text([24.0, TOP + SIDE + 64.0], TICK, Anchor::Start, SOFT, &story.join("  ·  "));
+    meeting(&mut svg, found, rects[2], unit)?;
     Ok(Picture::of(svg))
 }
 
@@ -137,13 +137,11 @@ fn significant_area(found: &Composition, unit: &str) -> String {
 }
 
 /// The third panel.
-fn meeting(svg: &mut Svg, found: &Composition, unit: &str) -> Result<(), FigureError> {
+fn meeting(svg: &mut Svg, found: &Composition, rect: Rect, unit: &str) -> Result<(), FigureError> {
     let slice = &found.slices[found.shown];
     let own = found.bodies.as_ref().map(|bodies| &bodies[0].region.outer);
     let all = found.slices.iter().map(|slice| &slice.region.outer);
-    let frame = frame(around(all), 2, unit);
-    let title = format!("both: {} {unit}²", bracket(slice.region.area()));
-    svg.text([frame.rect.x, TOP - 12.0], LABEL, Anchor::Start, INK, &title);
+    let frame = frame(around(all), rect, unit);
     svg.begin_clip(frame.rect);
     let map = &found.map;
     if !map.values.is_empty() {

@@ -5,10 +5,10 @@
 //! discarding those whose bound is below the best found (branch and bound): the square is inside, and no
 //! other is larger by more than the stated slack.
 
+use super::cell::Cell;
 use super::region::{Region, place, sides};
 use glam::DVec2;
 use serde::Serialize;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Search until the side is known to this share of the extent.
@@ -42,30 +42,6 @@ pub struct AxisReach {
 
 /// Most distances from a cell to a side.
 const MOST_DISTANCES: usize = 400_000_000;
-
-/// A cell of the search, the most promising first.
-struct Cell {
-    center: DVec2,
-    half: f64,
-    bound: f64,
-}
-
-impl PartialEq for Cell {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Cell {}
-impl PartialOrd for Cell {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Cell {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
-}
 
 /// The borders of a region, for distances.
 struct Borders<'r> {
@@ -111,7 +87,7 @@ pub fn largest_square(region: &Region) -> Option<LargestSquare> {
     let slack = SLACK * extent / 2.0;
     let cell = |center: DVec2, half: f64| {
         let room = borders.room(center);
-        (room, Cell { center, half, bound: room + half })
+        (room, Cell { center, half, bound: room + half, number: 0 })
     };
     let (mut room, first) = cell((low + high) / 2.0, extent / 2.0);
     let mut center = first.center;

@@ -46,6 +46,7 @@
 //! hulls.
 
 pub mod brute;
+mod cell;
 mod figure;
 pub mod measure;
 mod overlap;

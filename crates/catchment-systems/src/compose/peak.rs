@@ -12,11 +12,11 @@
 //! Not promised: that the position is unique. If one region fits into the other with room to spare, every
 //! such position has the same overlap, and the first one found is returned.
 
+use super::cell::Cell;
 use super::overlap::RegionOverlap;
 use super::sweep::Bracket;
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// The search ends if the bound exceeds the largest value by at most this share of it.
@@ -35,32 +35,6 @@ pub struct Peak {
     pub value: f64,
     /// No place has a larger overlap.
     pub at_most: f64,
-}
-
-/// A square of positions, the square with the highest bound first; among equal bounds the most recent, which
-/// is the smallest.
-struct Cell {
-    center: DVec2,
-    half: f64,
-    bound: f64,
-    number: usize,
-}
-
-impl PartialEq for Cell {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Cell {}
-impl PartialOrd for Cell {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Cell {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.bound.total_cmp(&other.bound).then(self.number.cmp(&other.number))
-    }
 }
 
 /// The largest area of A ∩ (B + d) over all d; `None` if the regions never overlap.

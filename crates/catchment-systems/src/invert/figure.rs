@@ -7,14 +7,12 @@
 //! ```
 
 use super::{Heights, Inverse, REACHED};
-use catchment::connector::Connector;
 use catchment::design::Design;
 use catchment::document::significant;
 use catchment::report::figure::draw::axis::{PlotFrame, ShownUnits};
 use catchment::report::figure::draw::colour::{CURVES, hex};
-use catchment::report::figure::draw::svg::{
-    Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of,
-};
+use catchment::report::figure::draw::layout::{Layout, Legend, Panel, stroked};
+use catchment::report::figure::draw::svg::{Rect, Svg, polyline};
 use catchment::report::figure::{FigureError, MovingHalfPose, Picture, section_panel};
 use glam::DVec2;
 
@@ -23,8 +21,8 @@ const APART: f64 = 0.25;
 /// Height of both panels, and their widths, in SVG units.
 const HEIGHT: f64 = 380.0;
 const WIDTHS: [f64; 2] = [360.0, 400.0];
-/// Top of the panels.
-const TOP: f64 = 112.0;
+/// The style of the wanted heights.
+const WANTED: &str = r##"fill="none" stroke="#1f2933" stroke-width="1.6" stroke-dasharray="6 4""##;
 /// Room around the heights, as a share of their extent.
 const MARGIN: f64 = 0.06;
 
@@ -33,14 +31,18 @@ const MARGIN: f64 = 0.06;
 /// # Errors
 /// If the section meets neither half, or no height is wanted at y = 0.
 pub fn figure(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
-    let mut svg = Svg::new(72.0 + WIDTHS[0] + 86.0 + WIDTHS[1] + 28.0, TOP + HEIGHT + 58.0);
+    let key = Legend::default().line(WANTED, "wanted").line(stroked(CURVES[0], 2.2), "reached, at y = 0");
     let title = format!("{}: the moving half that the wanted heights ask for", design.name);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &title);
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story(found));
-    let left = Rect { x: 72.0, y: TOP, w: WIDTHS[0], h: HEIGHT };
-    let right = Rect { x: left.x + left.w + 86.0, w: WIDTHS[1], ..left };
-    halves(&mut svg, left, design, &found.connector)?;
-    heights(&mut svg, right, design, found)?;
+    let (mut svg, frames) = Layout::titled(title)
+        .computed(design)
+        .story(story(found))
+        .row([
+            Panel::with_axes([WIDTHS[0], HEIGHT]).over("the halves, aligned and drawn apart"),
+            Panel::with_axes([WIDTHS[1], HEIGHT]).over(key),
+        ])
+        .open();
+    section_panel(&mut svg, frames[0], design, &found.connector, &MovingHalfPose::mated(design, APART))?;
+    heights(&mut svg, frames[1], design, found)?;
     Ok(Picture::of(svg))
 }
 
@@ -57,11 +59,6 @@ fn story(found: &Inverse) -> String {
         }
         None => format!("every wanted height is reached, to {REACHED:e} D{turned}"),
     }
-}
-
-fn halves(svg: &mut Svg, rect: Rect, design: &Design, connector: &Connector) -> Result<(), FigureError> {
-    svg.text([rect.x, rect.y - 12.0], LABEL, Anchor::Start, INK, "the halves, aligned and drawn apart");
-    section_panel(svg, rect, design, connector, &MovingHalfPose::mated(design, APART))
 }
 
 fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Result<(), FigureError> {
@@ -81,7 +78,6 @@ fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Resul
     let scale = |name: &str, k: usize| units.length(name, lo[k] - room[k], hi[k] + room[k]);
     let frame = PlotFrame { rect, x: scale("x", 0), y: scale("height of first contact", 1) };
     let at = |p: DVec2| frame.at((p * units.lengths()).to_array());
-    let colour = hex(CURVES[0]);
     svg.begin_clip(rect);
     for corners in gaps(&wanted, &reached) {
         svg.path(
@@ -91,18 +87,10 @@ fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Resul
     }
     let line =
         |pieces: &[[DVec2; 2]]| pieces.iter().map(|ends| polyline(ends.map(at), false)).collect::<String>();
-    let full = format!(r#"fill="none" stroke="{colour}" stroke-width="2.2" {JOIN}"#);
-    svg.path(&line(&reached), &full);
-    let dashed = format!(r#"fill="none" stroke="{INK}" stroke-width="1.6" stroke-dasharray="6 4""#);
-    svg.path(&line(&wanted), &dashed);
+    svg.path(&line(&reached), &stroked(CURVES[0], 2.2));
+    svg.path(&line(&wanted), WANTED);
     svg.end();
     frame.draw(svg);
-    let mut x = rect.x;
-    for (words, style) in [("wanted", &dashed), ("reached, at y = 0", &full)] {
-        svg.line([x, rect.y - 16.0], [x + 24.0, rect.y - 16.0], style);
-        svg.text([x + 30.0, rect.y - 12.0], LABEL, Anchor::Start, INK, words);
-        x += 52.0 + width_of(words, LABEL);
-    }
     Ok(())
 }
 

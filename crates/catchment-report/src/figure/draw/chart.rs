@@ -98,7 +98,7 @@ impl Chart<'_> {
         }
         svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, self.x_label);
         svg.begin_clip(r);
-        if let Some(Mark { x, y, words }) = self.mark {
+        if let Some(Mark { x, y, .. }) = self.mark {
             let px = frame.px(self.spacing.at(x));
             let top = y.map_or(r.y, |y| frame.py(y));
             let dashed = format!(r#"stroke="{INK}" stroke-width="1" stroke-dasharray="4 3""#);
@@ -106,15 +106,18 @@ impl Chart<'_> {
             if y.is_some() {
                 svg.line([r.x, top], [px, top], &dashed);
             }
-            let fits = px + 5.0 + width_of(words, TICK) < r.x + r.w;
-            let (x, anchor) = if fits { (px + 5.0, Anchor::Start) } else { (px - 5.0, Anchor::End) };
-            svg.text([x, r.y + 14.0], TICK, anchor, INK, words);
         }
         for line in self.lines {
             line.band(svg, &frame, self.spacing);
         }
         for line in self.lines {
             line.curve(svg, &frame, self.spacing);
+        }
+        if let Some(Mark { x, words, .. }) = self.mark {
+            let px = frame.px(self.spacing.at(x));
+            let fits = px + 5.0 + width_of(words, TICK) < r.x + r.w;
+            let (x, anchor) = if fits { (px + 5.0, Anchor::Start) } else { (px - 5.0, Anchor::End) };
+            svg.haloed([x, r.y + 14.0], TICK, anchor, INK, words);
         }
         svg.end();
         frame.beside(svg);

@@ -32,7 +32,7 @@ const OVER: f64 = 10.0;
 /// Numbers and label of an axis: beside a frame, and below it.
 const AXES: [f64; 2] = [48.0, 38.0];
 /// A colour bar with its numbers.
-const BAR: f64 = 84.0;
+const BAR: f64 = 76.0;
 /// Bold letters are wider by this, about.
 const BOLD: f64 = 1.14;
 /// From the start of a key to its words, and from words to the next key.
