@@ -5,7 +5,8 @@
 //!  ────┼──────────┼──────────────┼───────────────┼────────────────┼─────────────┼──────────────┼──▶  D, or a sine
 //!   one sum   ROUNDING       PARALLEL          SINGLE         TOUCHING    `docked.depth`   the face
 //!             sums of        directions        numbers of     ends of     of a design
-//!             coordinates    without a normal  mesh files     motions     (default)
+//!             coordinates    COINCIDENT        mesh files     motions     (default)
+//!                            intersections
 //! ```
 //!
 //! Lengths are in D: a design is scaled to D = 1 before any of them applies, and coordinates stay within a
@@ -16,15 +17,21 @@
 //! The characteristic length ρ, which converts radians to lengths, enters the measure of a motion
 //! ([`crate::pose`]); a rotation by α moves a face by up to α D, so angles have the same numbers.
 
-/// Sums of a few thousand coordinates in double precision, in D: cracks between neighbouring facets are narrower, and nothing that matters is as small.
+/// Sums of a few thousand coordinates, or of products with unit vectors, in double precision, in D or as a
+/// sine: cracks between neighbouring facets are narrower, and nothing that matters is as small.
 pub const ROUNDING: f64 = 1e-12;
 
 /// Sine of the angle below which two directions are parallel, and of a slope beyond which a face is a wall: their cross product, or the height over it, has
 /// lost all but seven of its sixteen digits.
 pub const PARALLEL: f64 = 1e-9;
 
-/// Ten times the rounding of numbers in single precision (binary STL, 3MF), in D or as a sine: facets bent by
-/// less are coplanar, corners within it are equal.
+/// Places computed by intersections, and gaps and heights computed there, in D: within it they are equal. An
+/// intersection of planes at a sine of a thousandth, or a height on a slope of a thousand, magnifies
+/// [`ROUNDING`] by as much; coordinates written with ten digits round by less.
+pub const COINCIDENT: f64 = 1e-9;
+
+/// Ten times the rounding of numbers in single precision (binary STL, 3MF), in D, in radians or as a sine, and
+/// that of numbers written with six digits: facets bent by less are coplanar, corners within it are equal.
 pub const SINGLE: f64 = 1e-6;
 
 /// Largest gap of features in contact, in D: the accuracy of motion ends, and of drawings rounded to four
@@ -37,8 +44,10 @@ mod tests {
 
     #[test]
     fn each_scale_is_far_above_the_one_below_it() {
-        let ladder = [f64::EPSILON, ROUNDING, PARALLEL, SINGLE, TOUCHING];
-        assert!(ladder.windows(2).all(|pair| pair[1] >= 10.0 * pair[0]), "{ladder:?}");
+        for third in [PARALLEL, COINCIDENT] {
+            let ladder = [f64::EPSILON, ROUNDING, third, SINGLE, TOUCHING];
+            assert!(ladder.windows(2).all(|pair| pair[1] >= 10.0 * pair[0]), "{ladder:?}");
+        }
         // Coordinates of a thousand D in single precision, relative to the largest of them.
         assert!(SINGLE > 10.0 * f64::from(f32::EPSILON) / 2.0);
     }

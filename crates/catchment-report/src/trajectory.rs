@@ -11,6 +11,7 @@ use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoi
 use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
 use catchment_core::problem::Problem;
+use catchment_core::tolerance::COINCIDENT;
 use glam::{DMat3, DVec3};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -18,8 +19,6 @@ use std::borrow::Cow;
 
 /// Lines of the text, about.
 const LINES: usize = 24;
-/// Errors below this, in D or rad, are rounding: the axis does not move.
-const STILL: f64 = 1e-9;
 
 /// A path, with its head.
 pub type TraceReport = ReportEnvelope<TraceBody>;
@@ -189,7 +188,7 @@ impl TraceBody {
         let length = ColumnFormat::Fixed(decimals(width) + 1);
         let moves = |dof: &Dof| {
             design.alignment.free.contains(*dof)
-                || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
+                || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > COINCIDENT)
         };
         let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(moves).collect();
         let timed = self.is_timed();

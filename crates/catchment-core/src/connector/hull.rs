@@ -5,15 +5,13 @@
 //! pieces consist of such points. Here every facet is checked against every point, and the facets must close.
 
 use super::{Surface, SurfaceError};
+use crate::tolerance::COINCIDENT;
 use glam::DVec3;
 
 /// Largest number of points of a piece: they fit a bit set, and the hull takes milliseconds.
 pub const MAX_POINTS: usize = 64;
-/// Distance, relative to the size of the piece, within which a point lies on a plane: above the rounding of
-/// coordinates written with ten digits, far below any designed detail.
-const ON_PLANE: f64 = 1e-9;
 /// Smallest sine of a triangle's corner whose plane is trusted: a plane through flatter ones could be off by
-/// `ON_PLANE` / this over the piece.
+/// `COINCIDENT` / this over the piece.
 const THINNEST: f64 = 1e-4;
 
 /// Why points do not make a convex piece.
@@ -71,7 +69,7 @@ pub fn convex_hull(points: &[DVec3]) -> Result<Surface, HullError> {
         return Err(HullError::NotFinite { vertex });
     }
     let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-    let tolerance = ON_PLANE * (hi - lo).length();
+    let tolerance = COINCIDENT * (hi - lo).length();
     let mut planes: Vec<(DVec3, u64)> = Vec::new();
     let mut spatial = false;
     for i in 0..count {
@@ -174,7 +172,7 @@ fn corners(points: &[DVec3], normal: DVec3, on: u64, tolerance: f64) -> Vec<u32>
 /// Keeps only the points that are corners. Points closer than rounding are merged.
 fn compact(points: &[DVec3], polygons: &[Vec<u32>]) -> Result<Surface, SurfaceError> {
     let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-    let tolerance = ON_PLANE * (hi - lo).length();
+    let tolerance = COINCIDENT * (hi - lo).length();
     let mut vertices: Vec<DVec3> = Vec::new();
     let polygons: Vec<Vec<u32>> = polygons
         .iter()

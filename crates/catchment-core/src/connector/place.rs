@@ -9,10 +9,8 @@
 
 use crate::design::{DrawnFrames, OwnSpec, PartPlacement, PartSpec};
 use crate::pose::Mount;
+use crate::tolerance::ROUNDING;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-
-/// A rotation counts as a right-angle rotation if its matrix is this close to a matrix of zeros and ones.
-const RIGHT: f64 = 1e-12;
 
 /// The frames of both halves, from the coordinates in D in which they are drawn. An unknown face centre is
 /// taken as the origin of the drawing.
@@ -57,7 +55,7 @@ fn placed(placement: &PartPlacement) -> DAffine3 {
 /// The shortest rotation from a unit vector to another; between opposite vectors about x, or about y if they
 /// lie along x.
 pub fn turn_between(from: DVec3, to: DVec3) -> DMat3 {
-    if from.dot(to) > RIGHT - 1.0 {
+    if from.dot(to) > ROUNDING - 1.0 {
         return exact(DMat3::from_quat(DQuat::from_rotation_arc(from, to)));
     }
     let about = if from.x.abs() < 0.5 { DVec3::X } else { DVec3::Y };
@@ -67,7 +65,7 @@ pub fn turn_between(from: DVec3, to: DVec3) -> DMat3 {
 /// A turn by right angles without its rounding; any other as it is.
 fn exact(turn: DMat3) -> DMat3 {
     let rounded = DMat3::from_cols_array(&turn.to_cols_array().map(f64::round));
-    if turn.abs_diff_eq(rounded, RIGHT) { rounded } else { turn }
+    if turn.abs_diff_eq(rounded, ROUNDING) { rounded } else { turn }
 }
 
 #[cfg(test)]

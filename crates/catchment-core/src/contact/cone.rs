@@ -20,11 +20,9 @@
 //! can touch anything.
 
 use super::shape::{Corner, INSIDE, Ridge, Shape};
+use crate::tolerance::PARALLEL;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-/// Rounding of angles, with room.
-const ROUNDING: f64 = 1e-9;
 
 /// The half-angle of a cone around an axis that its owner knows: below 90°.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +37,7 @@ impl Cone {
 
     /// Of this half-angle, in radians.
     pub(super) fn of(angle: f64) -> Self {
-        if angle < FRAC_PI_2 - ROUNDING {
+        if angle < FRAC_PI_2 - PARALLEL {
             let (sine, cosine) = angle.sin_cos();
             Self { cosine, sine }
         } else {
@@ -73,7 +71,7 @@ pub(super) fn of_corner(axis: DVec3, shape: &Shape, corner: &Corner, slack: f64)
 fn around_spokes(axis: DVec3, spread: f64, spokes: &[DVec3], slack: f64) -> Option<f64> {
     // From here on a normal is against all facets.
     let inside = INSIDE.asin() + FRAC_PI_2 + spread;
-    if axis == DVec3::ZERO || inside > PI - ROUNDING {
+    if axis == DVec3::ZERO || inside > PI - PARALLEL {
         return None;
     }
     let (side, across) = axis.any_orthonormal_pair();
@@ -87,7 +85,7 @@ fn around_spokes(axis: DVec3, spread: f64, spokes: &[DVec3], slack: f64) -> Opti
     for (k, (from, p, h)) in seen.iter().enumerate() {
         let (to, q, i) = seen[(k + 1) % seen.len()];
         let gap = to - from + if k + 1 == seen.len() { TAU } else { 0.0 };
-        if gap > PI - ROUNDING {
+        if gap > PI - PARALLEL {
             return None;
         }
         let along = q - *p;

@@ -124,9 +124,8 @@ impl HeightMap {
 
     /// Whether two height maps are equal.
     pub fn is_like(&self, other: &Self) -> bool {
-        const SAME: f32 = 1e-4;
         self.counts == other.counts
-            && self.z.iter().zip(&other.z).all(|(a, b)| a == b || (a - b).abs() < SAME)
+            && self.z.iter().zip(&other.z).all(|(a, b)| a == b || (a - b).abs() < tolerance::TOUCHING as f32)
     }
 }
 

@@ -8,17 +8,15 @@
 //! ```
 //!
 //! They are detected, not declared: a pair has a symmetry if each of its halves has the same creases after
-//! the reflection, to [`GRAIN`], independent of the division of its faces into facets. Symmetries that
+//! the reflection, to [`COINCIDENT`], independent of the division of its faces into facets. Symmetries that
 //! exchange x and y, or rotate by other angles, do not map a grid over Euler angles onto itself and are not
 //! considered.
 
 use super::crease::{self, Crease};
 use crate::connector::Half;
 use crate::pose::Dof;
+use crate::tolerance::COINCIDENT;
 use glam::DVec3;
-
-/// Corners closer than this are equal, in D: rounding of a computed vertex, far below any feature.
-const GRAIN: f64 = 1e-9;
 
 /// One of the three reflections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +60,7 @@ type Corner = [i64; 3];
 fn creases(half: &[Crease], place: impl Fn(DVec3) -> DVec3) -> Vec<[Corner; 2]> {
     let corner = |p: DVec3| -> Corner {
         // `as` saturates: points farther than 10⁹ D away differ anyway.
-        place(p).to_array().map(|v| (v / GRAIN).round() as i64)
+        place(p).to_array().map(|v| (v / COINCIDENT).round() as i64)
     };
     let ends = |crease: &Crease| {
         let mut ends = crease.ends.map(corner);

@@ -61,8 +61,8 @@ pub use nearby::Nearby;
 pub(crate) use nearby::chord;
 pub use play::play_on;
 pub use play::{Play, play};
-pub(crate) use seat::CORE as SEAT_CORE;
 pub use seat::Seat;
+pub(crate) use seat::{CORE as SEAT_CORE, OVER_A_PATH};
 pub use side_by_side::SideBySide;
 
 use crate::connector::{Connector, Half};

@@ -18,6 +18,7 @@ use super::search::Gaps;
 use super::turned::Turned;
 use super::{Contact, Pair};
 use crate::pose::{CorPose, PoseError};
+use crate::tolerance::TOUCHING;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Contacts that pull down are searched up to this slope (sine, 30°): a tilted plug hooks under the lip of a
@@ -27,9 +28,8 @@ const OVERHANG: f64 = 0.5;
 /// The same with undersides: all normals, and their rounding.
 const ANY: f64 = 2.0;
 
-/// Distance at which possible contacts are reported to a motion of halves with many facets, in D, and as a
+/// Possible contacts are reported to a motion of halves with many facets within [`TOUCHING`], and within this
 /// share of the reach of its step.
-pub(super) const MET: f64 = 1e-4;
 const SHARE_MET: f64 = 0.01;
 
 /// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
@@ -164,8 +164,11 @@ impl<'a> Nearby<'a> {
     /// For halves with many facets, of which the reach of a step contains thousands, only those closer than
     /// 10⁻⁴ D, or a hundredth of the reach, count: the others are detected during the step.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
-        let reach =
-            if self.turned.pair.trees.is_some() { reach.min((SHARE_MET * reach).max(MET)) } else { reach };
+        let reach = if self.turned.pair.trees.is_some() {
+            reach.min((SHARE_MET * reach).max(TOUCHING))
+        } else {
+            reach
+        };
         out.clear();
         self.turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
     }

@@ -21,6 +21,7 @@ use super::Pair;
 use super::hold::inside;
 use super::plan::Plan;
 use super::shape::{Ridge, Shape};
+use crate::tolerance::ROUNDING;
 use glam::{DMat3, DVec3};
 
 /// Depth from which on halves overlap rather than touch, in D.
@@ -29,8 +30,6 @@ pub(super) const MARGIN: f64 = 3e-7;
 const SHORT: f64 = 4.0 * MARGIN;
 /// Of an edge between facets that enclose less than 12° a witness is moved no further than that of 12°: a sine.
 const SHARP: f64 = 0.02;
-/// Facets with a smaller z-component of the normal are upright: no vertical line crosses them.
-const UPRIGHT: f64 = 1e-12;
 
 /// Transforms between the frames of the two halves.
 #[derive(Debug, Clone, Copy)]
@@ -227,7 +226,8 @@ impl Shape {
             let (facet, level) = (&self.facets[k as usize], self.levels[k as usize]);
             let up = facet.normal.z;
             // Above the point, and over it in plan view.
-            if up.abs() > UPRIGHT && (level - facet.normal.dot(point)) * up > 0.0 && self.is_over(k, point) {
+            // No vertical line crosses an upright facet.
+            if up.abs() > ROUNDING && (level - facet.normal.dot(point)) * up > 0.0 && self.is_over(k, point) {
                 winds += if up > 0.0 { 1 } else { -1 };
             }
         });

@@ -34,9 +34,9 @@ pub(crate) const CORE: f64 = 5e-3;
 pub(super) const PATH_STEP: f64 = 5e-3;
 /// Largest number of samples of a path.
 const MOST_LOOKS: f64 = 2000.0;
-/// Amount by which heights along a path may exceed the seat, in D: curvature of a rotation over rounded
-/// drawings.
-const ROUNDING: f64 = 1e-6;
+/// Amount by which energies along a path may exceed the seat's level, and errors their limits, in D and
+/// radians: curvature of a rotation over rounded drawings.
+pub(crate) const OVER_A_PATH: f64 = 1e-6;
 
 /// Tests for a pair whether a half is docked; keeps its buffers.
 #[derive(Debug, Clone)]
@@ -77,7 +77,7 @@ impl<'a> Seat<'a> {
         let alignment = &self.pair.alignment;
         let off = self.off(error).to_array();
         alignment.free.iter().all(|dof| {
-            alignment.docked.limit(dof).is_none_or(|limit| off[dof.index()].abs() <= limit + ROUNDING)
+            alignment.docked.limit(dof).is_none_or(|limit| off[dof.index()].abs() <= limit + OVER_A_PATH)
         })
     }
 
@@ -124,7 +124,7 @@ impl<'a> Seat<'a> {
 
     /// Whether the seat leaks in this direction, within the range of the errors.
     fn leaks_along(&mut self, way: PoseError) -> bool {
-        let (level, floor) = (self.level() + ROUNDING, self.floor());
+        let (level, floor) = (self.level() + OVER_A_PATH, self.floor());
         let way = way.to_array();
         let alignment = &self.pair.alignment;
         let ends = |dof: Dof| alignment.half_range(dof) / way[dof.index()].abs();
@@ -175,7 +175,7 @@ impl<'a> Seat<'a> {
 
     /// Whether a pose is as deep as the seat.
     fn is_deep(&mut self, error: &PoseError) -> bool {
-        let level = self.level() + ROUNDING;
+        let level = self.level() + OVER_A_PATH;
         !self.nearby.is_above(error, level)
     }
 

@@ -4,11 +4,10 @@
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
-use super::nearby::MET;
 use super::search::{Carried, Gaps, HeightQuery, Lists, Number, Passing, Touching, Trees};
 use super::{Contact, Pair};
 use crate::pose::CorPose;
-use crate::tolerance;
+use crate::tolerance::{self, TOUCHING};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Below this z-component a normal counts as horizontal: such a facet has no height of its own and is
@@ -234,7 +233,7 @@ impl<'a> Turned<'a> {
             near.remove(near.iter().position(|near| !mated(near)).unwrap_or(0)).elements
         };
         // A pose that a motion tries is often the start of the next step.
-        let least = MET + 2.0 * SEAM;
+        let least = TOUCHING + 2.0 * SEAM;
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
         trees.near(pair, (rotation, position), *counts, gaps, touching, &mut elements);
         near.push(Near { rotation: *rotation, position, counts: *counts, gaps, elements });

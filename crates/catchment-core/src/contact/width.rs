@@ -15,7 +15,7 @@
 use crate::connector::Half;
 use crate::connector::mesh::PLAUSIBLE_WIDTH;
 use crate::design::WidthFrom;
-use crate::tolerance;
+use crate::tolerance::{self, TOUCHING};
 use glam::{DVec2, DVec3};
 
 /// A facet faces up or down if the z-component of its normal is beyond this: above the rounding of upright
@@ -23,9 +23,6 @@ use glam::{DVec2, DVec3};
 const LOOKS: f64 = tolerance::SINGLE;
 /// How much wider than D a half may be as drawn: a little less than designs allow.
 pub const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
-/// Flat faces in contact share a plane: distance beyond it in which contacts are searched, as a share of the
-/// halves' width.
-const THIN: f64 = 1e-4;
 
 /// The box in plan view around the features that can touch, lowest and highest corner, with the moving half
 /// lifted by `lift`; `None` if the halves share no area.
@@ -38,7 +35,7 @@ pub fn touching(fixed: &Half, moving: &Half, lift: f64) -> Option<[DVec2; 2]> {
         });
         sizes.fold(0.0, f64::max)
     };
-    let seam = THIN * wide(fixed).min(wide(moving));
+    let seam = TOUCHING * wide(fixed).min(wide(moving));
     let [a, b] = around(fixed, 1.0, bottom + lift - seam);
     // Seen from below.
     let [c, d] = around(moving, -1.0, -(top - lift) - seam);

@@ -212,6 +212,7 @@ fn meshing(file: &FileSpec, design: &Design) -> Option<String> {
 /// To three digits, not below the value but for rounding.
 fn rounded_up(value: f64) -> f64 {
     const DIGITS: i32 = 3;
+    // Share of a value by which rounding may exceed it.
     const ROUNDING: f64 = 1e-9;
     if !(value.is_finite() && value > 0.0) {
         return value;

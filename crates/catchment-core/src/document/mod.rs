@@ -22,6 +22,7 @@ pub use number::{
 };
 pub use table::{Cell, Column, ColumnFormat, Table};
 pub use units::DesignUnits;
+pub(crate) use units::NOTHING;
 
 use crate::design::Design;
 use crate::diagnostic::Diagnostic;

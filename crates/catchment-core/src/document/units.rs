@@ -4,8 +4,8 @@ use super::number::{decimals, length, significant};
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
 
-/// Lengths below this are 0, in D: rounding.
-const NOTHING: f64 = 1e-8;
+/// Lengths below this are written as 0, in D: rounding, and the last step of a search for rests.
+pub(crate) const NOTHING: f64 = 1e-8;
 
 /// The unit of a design: its own, or D without one.
 #[derive(Debug, Clone, Copy)]

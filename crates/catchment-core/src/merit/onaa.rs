@@ -20,6 +20,7 @@ use crate::acceptance::{Acceptance, Outcome};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::Dof;
+use crate::tolerance::ROUNDING;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -112,8 +113,6 @@ impl Fitting {
 
     /// The position of the cube nearest to zero: among equals, the first in memory.
     fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<(Dof, f64, f64)> {
-        // Symmetric places are equally far but for rounding of numbers of order 1.
-        const EQUALLY_FAR: f64 = 1e-12;
         if self.edge.cells == 0 {
             return Vec::new();
         }
@@ -143,7 +142,8 @@ impl Fitting {
         };
         let corner = exec.install(|| {
             let nearest = self.corners.marked().map(distance).min_by(f64::total_cmp)?;
-            let limit = nearest + EQUALLY_FAR;
+            // Symmetric places are equally far except for rounding.
+            let limit = nearest + ROUNDING;
             self.corners.marked().find_first(|index| distance(*index).total_cmp(&limit).is_le())
         });
         let bounds = |((axis, centers), k): ((&GridAxis, &Vec<f64>), usize)| {

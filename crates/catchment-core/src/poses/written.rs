@@ -4,15 +4,13 @@ use super::{FAMILY, OffsetsAt, defect};
 use crate::design::{Design, Quantity, QuantityUnit};
 use crate::diagnostic::Diagnostic;
 use crate::pose::{Dof, PoseError, face_from_cor};
+use crate::tolerance::SINGLE;
 use std::f64::consts::PI;
 
 /// Largest offset that is tried, in D: beyond it a text is in the wrong unit.
 const FARTHEST: f64 = 100.0;
 /// Angles written as 180 deg, or rounded to six digits, are still half a turn.
 const HALF_TURN: f64 = PI + 1e-5;
-/// Largest distance of a locked offset of the face centre from its value for the locked centre of rotation,
-/// in D: that of rounding to six digits.
-const LOCKED_WITHIN: f64 = 1e-6;
 
 /// A pose error as written: a quantity for each error that was, in the order of [`Dof::ALL`].
 pub(super) type Written = [Option<Quantity>; 5];
@@ -51,7 +49,7 @@ pub(super) fn resolve(
                 OffsetsAt::Face => {
                     let face = face_from_cor(&measured.rotation(), alignment.center_of_rotation);
                     let implied = [face.x, face.y][dof.index()];
-                    if (value - implied).abs() <= LOCKED_WITHIN {
+                    if (value - implied).abs() <= SINGLE {
                         continue;
                     }
                     implied_by(implied, quantity.unit, design)
@@ -111,6 +109,7 @@ pub(super) fn from_d(value: f64, unit: QuantityUnit, design: &Design) -> f64 {
 /// The number rounded to nine digits: far finer than the required accuracy of a locked offset. Less than
 /// 10⁻¹² is rounding.
 fn nine_digits(value: f64) -> f64 {
+    // In the unit of the number.
     const NOTHING: f64 = 1e-12;
     if value.abs() < NOTHING { 0.0 } else { format!("{value:.8e}").parse().unwrap_or(value) }
 }
@@ -143,7 +142,7 @@ mod tests {
         let y = implied();
         for text in ["0".to_owned(), format!("{y:.6}"), format!("{:.4} mm", y * 50.0)] {
             let error = read(&text, OffsetsAt::Face).unwrap();
-            assert!(error.y == 0.0 || (error.y - y).abs() <= LOCKED_WITHIN);
+            assert!(error.y == 0.0 || (error.y - y).abs() <= SINGLE);
         }
         for (off, unit, scale) in [(y + 1e-4, "", 1.0), (y - 1e-4, " mm", 50.0)] {
             let [(Dof::Y, fault)] =

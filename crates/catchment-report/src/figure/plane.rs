@@ -79,11 +79,11 @@ impl Patch {
     }
 }
 
-/// Nearer than this is in the plane, in D.
+/// Nearer than this is in the plane, in D: less than the picture resolves.
 const IN_PLANE: f64 = 2e-3;
 /// Horizontal components below this define no direction.
 const UPRIGHT: f64 = 0.02;
-/// Angles below this count as zero, radians.
+/// Angles below this count as zero, radians: 0.06°, less than the picture shows.
 const NO_ANGLE: f64 = 1e-3;
 
 impl Plane {

@@ -13,6 +13,7 @@ use super::{FigureError, Picture};
 use catchment_core::connector::{Connector, Half, Surface};
 use catchment_core::design::Design;
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
+use catchment_core::tolerance::COINCIDENT;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
@@ -41,7 +42,7 @@ impl MovingHalfPose {
 
 /// The colour of contacts.
 const CONTACT: &str = "#c0262d";
-/// Contacts this near to the cut are in it, in D.
+/// Contacts this near to the cut are in it, in D: less than the picture resolves.
 const CLOSE: f64 = 5e-3;
 /// Contacts closer to each other than this are merged, in SVG units.
 const APART: f64 = 3.0;
@@ -339,13 +340,12 @@ pub(super) fn approach_axis(svg: &mut Svg, frame: &PlotFrame) {
 /// Positions of cuts: y = 0, or either side of it if a half has facets there or does not meet it. From far
 /// (+y) to near.
 pub(super) fn cuts(connector: &Connector) -> Vec<f64> {
-    const IN_PLANE: f64 = 1e-9;
     let lies_in = |s: &Surface| {
-        s.facets.iter().any(|f| f.corners.iter().all(|i| s.vertices[*i as usize].y.abs() < IN_PLANE))
+        s.facets.iter().any(|f| f.corners.iter().all(|i| s.vertices[*i as usize].y.abs() < COINCIDENT))
     };
     let meets = |s: &Surface| {
         let (lo, hi) = s.bounds();
-        lo.y < -IN_PLANE && hi.y > IN_PLANE
+        lo.y < -COINCIDENT && hi.y > COINCIDENT
     };
     let all = || connector.fixed.surfaces.iter().chain(&connector.moving.surfaces);
     if all().any(meets) && !all().any(lies_in) {
@@ -356,7 +356,7 @@ pub(super) fn cuts(connector: &Connector) -> Vec<f64> {
         .iter()
         .map(Surface::bounds)
         .fold((0.0f64, 0.0f64), |(lo, hi), (a, b)| (lo.min(a.y), hi.max(b.y)));
-    [0.5 * hi, 0.5 * lo].into_iter().filter(|y| y.abs() > IN_PLANE).collect()
+    [0.5 * hi, 0.5 * lo].into_iter().filter(|y| y.abs() > COINCIDENT).collect()
 }
 
 /// The closed outlines, in x and z, of a half rotated by `rotation` and moved by `shift`, cut at `y`.

@@ -68,7 +68,7 @@ impl Default for FrictionSettings {
 
 /// Poses of a sample that is enough for a percent; the ladder takes as many motions of each as it has rungs, and more.
 const FEWER: usize = 4;
-/// To so much the critical friction of a pose is found.
+/// Accuracy of the critical friction of a pose, a friction coefficient: the digits that are shown.
 const EXACT: f64 = 1e-3;
 /// Shares of the poses that dock without friction whose critical friction is reported.
 const SHARES: [f64; 4] = [0.99, 0.95, 0.9, 0.5];

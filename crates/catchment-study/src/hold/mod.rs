@@ -307,7 +307,8 @@ const STAGE: &str = "loads";
 const FIRST_SHARE: f64 = 0.6;
 /// Columns: without friction guided and free, with it guided and free.
 const COLUMNS: usize = 4;
-/// The weakest direction is found to so much of the step between two that are tried.
+/// The weakest direction is found to this share of the step between two that are tried: less than
+/// tables show.
 const FINEST: f64 = 1e-4;
 
 impl HoldSettings {
@@ -417,6 +418,7 @@ const ROUNDING: f64 = 1e-4;
 
 /// Components of a direction along an axis are exact.
 fn snapped(part: f64) -> f64 {
+    // Of a unit vector: the rounding of a cosine of 90°.
     const NOTHING: f64 = 1e-15;
     if part.abs() < NOTHING { 0.0 } else { part }
 }

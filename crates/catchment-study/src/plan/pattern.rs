@@ -19,6 +19,7 @@ use catchment_core::exec::Exec;
 use catchment_core::method::descent;
 use catchment_core::pose::{CorPose, Dof, PoseError, face_from_cor};
 use catchment_core::problem::Problem;
+use catchment_core::tolerance::SINGLE;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -96,8 +97,6 @@ pub(super) struct Maker<'a> {
     pub(super) seed: u64,
 }
 
-/// A joint may miss the lock of an offset by so much, in D: rounding.
-const LOCKED_WITHIN: f64 = 1e-6;
 /// Looks along a line of a bracket for its first failure.
 const LOOKS: usize = 48;
 /// Bisections of a border along a line: to 2⁻²⁰ of it.
@@ -255,7 +254,7 @@ impl Maker<'_> {
                 )
                 .lateral;
                 for (axis, off) in [(Dof::X, held.x), (Dof::Y, held.y)] {
-                    if locked(axis) && off.abs() > LOCKED_WITHIN {
+                    if locked(axis) && off.abs() > SINGLE {
                         return Err(TrialPlanError::JointElsewhere {
                             axis,
                             lever,

@@ -84,6 +84,7 @@ fn scale(units: DesignUnits<'_>, axis: Dof) -> f64 {
 
 /// The number rounded to nine digits: far finer than any robot, and 6° is 6. Less than 10⁻¹² is rounding.
 fn nine_digits(value: f64) -> f64 {
+    // In the unit of the number.
     const NOTHING: f64 = 1e-12;
     if value.abs() < NOTHING { 0.0 } else { format!("{value:.8e}").parse().unwrap_or(value) }
 }

@@ -17,6 +17,7 @@ use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::problem::Problem;
+use catchment_core::tolerance::SINGLE;
 
 /// A slice, or a projection.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +39,6 @@ pub const CELLS: usize = 96;
 const MOST: usize = 9;
 /// Most projections.
 const MOST_PROJECTIONS: usize = 6;
-/// Values nearer than this are the same, in D or radians.
-const SAME: f64 = 1e-6;
 /// Room around the poses of a panel, as a share of their extent.
 const ROOM: f64 = 0.25;
 
@@ -52,7 +51,7 @@ impl Panel {
     /// The value of another error at which a slice lies, and the largest distance of its poses from that
     /// value; `None` if they lie on it.
     pub fn middle([lo, hi]: [f64; 2]) -> (f64, Option<f64>) {
-        (f64::midpoint(lo, hi), (hi - lo > SAME).then_some(0.5 * (hi - lo)))
+        (f64::midpoint(lo, hi), (hi - lo > SINGLE).then_some(0.5 * (hi - lo)))
     }
 
     /// With the poses of these numbers in it.
@@ -63,7 +62,7 @@ impl Panel {
             let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
             (axis, ends)
         });
-        let is_zero = |axis: Dof| poses.iter().all(|pose| pose.to_array()[axis.index()].abs() <= SAME);
+        let is_zero = |axis: Dof| poses.iter().all(|pose| pose.to_array()[axis.index()].abs() <= SINGLE);
         Self {
             across: across.iter().map(|axis| (*axis, range(problem, *axis, poses))).collect(),
             others: others.filter(|(axis, _)| !is_zero(*axis)).collect(),
@@ -87,7 +86,7 @@ pub fn panels(
 ) -> Result<Vec<Panel>, Cancelled> {
     let varies = |axis: &Dof| {
         let value = |pose: &PoseError| pose.to_array()[axis.index()];
-        poses.iter().any(|pose| (value(pose) - poses.first().map_or(0.0, value)).abs() > SAME)
+        poses.iter().any(|pose| (value(pose) - poses.first().map_or(0.0, value)).abs() > SINGLE)
     };
     let mut axes: Vec<Dof> = problem.alignment().free.iter().filter(varies).collect();
     if axes.is_empty() {
@@ -151,7 +150,7 @@ fn range(problem: &Problem, axis: Dof, poses: &[PoseError]) -> [f64; 2] {
 fn grouped(poses: &[PoseError], axes: &[Dof], accuracy: &PoseError) -> Option<Vec<Vec<usize>>> {
     let of = |pose: &PoseError, axis: &Dof| pose.to_array()[axis.index()];
     let near = |a: &PoseError, b: &PoseError| {
-        axes.iter().all(|axis| (of(a, axis) - of(b, axis)).abs() <= of(accuracy, axis).max(SAME))
+        axes.iter().all(|axis| (of(a, axis) - of(b, axis)).abs() <= of(accuracy, axis).max(SINGLE))
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (number, pose) in poses.iter().enumerate() {

@@ -29,7 +29,7 @@ const FINER: i32 = 4;
 /// Number of places that are refined, and of those with the same orientation.
 const PLACES: usize = 10;
 const OF_ONE: usize = 2;
-/// Heights this near are equal.
+/// Heights this near are equal, in D: as near as docked by default.
 const LEVEL: f32 = 2e-3;
 
 /// A place at which parts may dock.

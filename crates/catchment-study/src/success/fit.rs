@@ -65,7 +65,7 @@ fn of_axis(axis: Dof, poses: &[PoseError], moments: &Moments) -> AxisFit {
 
 /// The statistic of standardised values in ascending order, corrected for their number.
 fn anderson_darling(y: &[f64]) -> f64 {
-    /// Lower bound of the logarithm of a tail.
+    /// Smallest probability of a tail: its logarithm is finite.
     const LEAST: f64 = 1e-300;
     let n = y.len() as f64;
     let below = |v: f64| (0.5 * libm::erfc(-v / SQRT_2)).max(LEAST);
@@ -95,7 +95,7 @@ fn anderson_darling_p(a: f64) -> f64 {
 
 /// Mardia's kurtosis and its p-value; `None` if errors are linearly dependent.
 fn kurtosis(poses: &[PoseError], moments: &Moments, varying: &[Dof]) -> Option<[f64; 2]> {
-    /// Smaller than that an error has nothing of its own.
+    /// Share of its standard deviation below which an error depends on the others: rounding of the correlation.
     const OWN: f64 = 1e-6;
     let factor = cholesky(&moments.correlation).ok()?;
     if varying.is_empty() || varying.iter().any(|dof| factor[dof.index()][dof.index()] < OWN) {

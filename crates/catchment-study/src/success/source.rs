@@ -190,7 +190,8 @@ impl<'a> Source<'a> {
 
     /// Whether the density has a derivative by every σ: errors are normal and linearly independent.
     pub(super) fn has_scores(&self) -> bool {
-        /// Smaller than that a correlation leaves nothing of an error's own.
+        /// Share of its standard deviation below which an error depends on the others: scores grow as its inverse
+        /// square.
         const OWN: f64 = 1e-4;
         matches!(self.law, Law::Normal)
             && self.varying().all(|dof| self.factor[dof.index()][dof.index()] > OWN)

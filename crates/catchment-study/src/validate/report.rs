@@ -274,6 +274,7 @@ fn differing(a: &PoseError, b: &PoseError) -> Vec<Dof> {
 
 /// A chance in words.
 fn chance(p: f64) -> String {
+    /// The last digit that is shown.
     const LEAST: f64 = 1e-4;
     if p < LEAST { "< 0.0001".to_owned() } else { format!("{p:.4}") }
 }

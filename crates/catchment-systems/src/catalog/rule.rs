@@ -18,13 +18,12 @@
 
 use catchment::method::zraa::Zraa;
 use catchment::pose::Dof;
+use catchment::tolerance::COINCIDENT;
 use glam::DVec2;
 use serde::Serialize;
 
 /// The extent above which the degree is High, in D.
 pub const HIGH: f64 = 0.20;
-/// Gaps of a tiling narrower than this, in D, are seams.
-const SEAM: f64 = 1e-9;
 
 /// Degree of self-alignment by contact alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -43,7 +42,7 @@ impl Degree {
     pub fn of(extent: f64) -> Self {
         if extent > HIGH {
             Self::High
-        } else if extent > SEAM {
+        } else if extent > COINCIDENT {
             Self::Low
         } else {
             Self::None
@@ -100,11 +99,11 @@ fn through_zero(polygons: &[Vec<DVec2>], axis: DVec2) -> [f64; 2] {
     let mut joined: Vec<[f64; 2]> = Vec::new();
     for [from, to] in stretches {
         match joined.last_mut() {
-            Some(last) if from <= last[1] + SEAM => last[1] = last[1].max(to),
+            Some(last) if from <= last[1] + COINCIDENT => last[1] = last[1].max(to),
             _ => joined.push([from, to]),
         }
     }
-    joined.into_iter().find(|[from, to]| *from <= SEAM && *to >= -SEAM).unwrap_or([0.0; 2])
+    joined.into_iter().find(|[from, to]| *from <= COINCIDENT && *to >= -COINCIDENT).unwrap_or([0.0; 2])
 }
 
 /// Intersection of a convex polygon with an axis.
@@ -117,10 +116,10 @@ fn on_axis(polygon: &[DVec2], axis: DVec2) -> Option<[f64; 2]> {
     for (k, &a) in polygon.iter().enumerate() {
         let b = polygon[(k + 1) % polygon.len()];
         let (da, db) = (axis.perp_dot(a), axis.perp_dot(b));
-        if da.abs() <= SEAM {
+        if da.abs() <= COINCIDENT {
             meet(axis.dot(a));
         }
-        if (da > SEAM && db < -SEAM) || (da < -SEAM && db > SEAM) {
+        if (da > COINCIDENT && db < -COINCIDENT) || (da < -COINCIDENT && db > COINCIDENT) {
             meet(axis.dot(a.lerp(b, da / (da - db))));
         }
     }

@@ -52,7 +52,7 @@ pub fn forces(closing: &Closing, torque: f64, turned: &[usize]) -> (f64, f64) {
 
 /// All choices of corners.
 pub fn choices(body: &ModuleDimensions, errors: &ChainErrors, torque: f64) -> Vec<Corners> {
-    /// Mirror images differ by rounding.
+    /// Mirror images differ by this share: rounding.
     const SAME: f64 = 1e-9;
     let mut found: Vec<Corners> = FIRST_CORNERS
         .filter_map(|first_corner| {

@@ -21,6 +21,7 @@
 //! of a side.
 
 use super::kinematics::{ModuleDimensions, PlanarPose, rotors, wrapped};
+use catchment::tolerance::SINGLE;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -225,10 +226,8 @@ pub fn latches(angles: &[f64]) -> Vec<LatchingPair> {
 
 /// The face of a module that faces a direction, if it has one there.
 fn side(angles: &[f64], module: usize, towards: f64) -> Option<ModuleFace> {
-    /// Far above rounding, far below a quarter turn.
-    const SAME: f64 = 1e-6;
     let heading: f64 = angles[..module].iter().sum();
-    let looks = |heading: f64, side: ModuleFace| wrapped(heading + side.turn() - towards).abs() < SAME;
+    let looks = |heading: f64, side: ModuleFace| wrapped(heading + side.turn() - towards).abs() < SINGLE;
     if module == 1 && looks(0.0, ModuleFace::Back) {
         return Some(ModuleFace::Back);
     }

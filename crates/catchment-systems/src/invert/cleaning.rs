@@ -15,7 +15,7 @@
 //!    first those whose planes differ there by at most [`ROUNDED`]; if they do not cover it, also those that
 //!    are higher; at the rim it may be dropped.
 //! 3. A side that ends before it begins is removed, if its neighbours meet just beyond it; if they would
-//!    cover something higher, a side shorter than [`POINT`] collapses to its middle.
+//!    cover something higher, a side shorter than [`COINCIDENT`] collapses to its middle.
 //!
 //! So the function changes by at most [`ROUNDED`] in height or [`SIDEWAYS`] sideways, except at slivers of
 //! another height than all around them, such as leaning walls: there it rises, in a strip narrower than
@@ -29,10 +29,8 @@ use super::heights::{Heights, apart, common, width};
 use super::{NARROW, ROUNDED, SIDEWAYS};
 use catchment::method::zraa::{HeightFacet, area, clip};
 use catchment::polytope::planar_hull;
+use catchment::tolerance::COINCIDENT;
 use glam::DVec2;
-
-/// Corners closer than this, in D, are equal to readers of convex pieces.
-const POINT: f64 = 1e-9;
 
 impl Heights {
     /// The same function, to `ROUNDED` in height and `SIDEWAYS` to the side, without the pieces that rounding made.
@@ -253,7 +251,7 @@ fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
 /// longer.
 fn without_point_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
     let n = polygon.len();
-    let side = (0..n).find(|k| n > 3 && polygon[*k].distance(polygon[(k + 1) % n]) <= POINT)?;
+    let side = (0..n).find(|k| n > 3 && polygon[*k].distance(polygon[(k + 1) % n]) <= COINCIDENT)?;
     let mut out = polygon.to_vec();
     out[side] = polygon[side].midpoint(polygon[(side + 1) % n]);
     out.remove((side + 1) % n);

@@ -17,13 +17,12 @@ use super::fan::{circle, corners_of_circle};
 use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};
 use crate::design::family::PinHole;
+use crate::tolerance::COINCIDENT;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// Most corners over all circles of a half: about 8 facets each keep it within the limit of a mesh half.
 const MAX_CORNERS: f64 = 2048.0;
-/// Distance under which a ray through a corner of the plate counts as meeting it, in D.
-const SNAP: f64 = 1e-9;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Feature {
@@ -180,13 +179,14 @@ fn border_between(from: f64, to: f64) -> Vec<DVec2> {
         let k = k.rem_euclid(4);
         DVec2::new(if k == 0 || k == 3 { 0.5 } else { -0.5 }, if k < 2 { 0.5 } else { -0.5 })
     };
-    if to - from > 2.0 * PI - SNAP {
+    if to - from > 2.0 * PI - COINCIDENT {
         return (0..4).map(corner).collect();
     }
     let exit = |angle: f64| {
         let d = DVec2::from_angle(angle);
         let p = d * (0.5 / d.abs().max_element());
-        let snap = |v: f64| [-0.5, 0.0, 0.5].into_iter().find(|s: &f64| (s - v).abs() < SNAP).unwrap_or(v);
+        let snap =
+            |v: f64| [-0.5, 0.0, 0.5].into_iter().find(|s: &f64| (s - v).abs() < COINCIDENT).unwrap_or(v);
         DVec2::new(snap(p.x), snap(p.y))
     };
     let mut points = vec![exit(from)];
@@ -217,7 +217,7 @@ impl Mesh {
 
     /// The vertex at `p`, shared with the neighbouring sector.
     fn vertex(&mut self, p: DVec3) -> u32 {
-        match self.vertices.iter().position(|q| q.distance(p) < SNAP) {
+        match self.vertices.iter().position(|q| q.distance(p) < COINCIDENT) {
             Some(k) => k as u32,
             None => self.push(p),
         }

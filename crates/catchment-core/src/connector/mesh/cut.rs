@@ -16,12 +16,10 @@
 //! a corner of the ear is removed: about n² steps for n corners, charged to a budget in advance.
 
 use crate::budget::{Budget, Limit, Overspent};
+use crate::tolerance::COINCIDENT;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-/// A corner counts as inside an ear from here on, relative to the face's size; nearer it is on its border.
-const ON: f64 = 1e-9;
 
 /// Corners of a face: as many as the steps below suffice for.
 pub(in crate::connector) const CORNERS: Limit =
@@ -141,7 +139,7 @@ pub(in crate::connector) fn triangles(
     let up = normal.cross(side);
     let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(side.dot(*p), up.dot(*p))).collect();
     let size = flat.iter().map(|p| p.distance(flat[0])).fold(0.0, f64::max);
-    let on = ON * size * size;
+    let on = COINCIDENT * size * size;
     let mut border = Border::of(flat, on);
     let mut found = Vec::with_capacity(count.saturating_sub(2));
     while count - found.len() > 3 {
@@ -204,7 +202,7 @@ mod tests {
         let up = normal.cross(side);
         let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(side.dot(*p), up.dot(*p))).collect();
         let size = flat.iter().map(|p| p.distance(flat[0])).fold(0.0, f64::max);
-        let on = ON * size * size;
+        let on = COINCIDENT * size * size;
         let mut left: Vec<usize> = (0..count).collect();
         let mut found = Vec::new();
         while left.len() > 3 {

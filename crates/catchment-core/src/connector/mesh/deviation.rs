@@ -19,6 +19,7 @@ const SPARSE: usize = 61;
 /// The largest distance of a point of `from` to `to`; if some distance exceeds `most`, the first such
 /// distance.
 pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
+    /// Share of the tolerance below which a deviation is rounding.
     const ROUNDING: f64 = 1e-6;
     let Some(target) = Target::of(to) else { return f64::INFINITY };
     let mut seen = vec![false; from.vertices.len()];

@@ -13,7 +13,8 @@
 //! rejected. The reader is our own because it reports the line of every defect and uses no more memory than
 //! the text.
 
-use super::{NEAR, OutlineProblem, Stroke, Within};
+use super::{OutlineProblem, Stroke, Within};
+use crate::tolerance::COINCIDENT;
 use glam::DVec2;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -285,7 +286,7 @@ impl<'t> Entity<'t> {
         if ["CIRCLE", "ARC"].contains(&name) && entity.radius <= 0.0 {
             return Err(broken(line, &format!("{name} has the radius {}", entity.radius)));
         }
-        if tilt > NEAR.sqrt() && !entity.is_hidden {
+        if tilt > COINCIDENT.sqrt() && !entity.is_hidden {
             let advice = "draw all outlines in the x-y plane";
             let what = "an outline in a tilted plane".to_owned();
             return Err(OutlineProblem::Unsupported { line, what, advice });
@@ -371,7 +372,7 @@ impl<'t> Entity<'t> {
 fn joined(mut open: Vec<Stroke>) -> Result<Vec<Stroke>, OutlineProblem> {
     let size = open.iter().flat_map(|s| &s.corners).fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
     // Ends that were rounded to six digits meet.
-    let near = 1e3 * NEAR * size;
+    let near = 1e3 * COINCIDENT * size;
     let mut loops = Vec::new();
     while let Some(Stroke { mut corners, line }) = open.pop() {
         loop {

@@ -14,6 +14,7 @@ mod svg;
 use super::source::{FileBytes, UnitProblem, unit};
 use crate::budget::Overspent;
 use crate::design::FileSpec;
+use crate::tolerance::COINCIDENT;
 use glam::DVec2;
 
 /// Largest drawing that is read, in bytes: of outlines, megabytes are thousands of curves.
@@ -22,8 +23,6 @@ pub(super) const MOST_BYTES: u64 = 4 << 20;
 const MOST_CORNERS: usize = 2000;
 /// Farthest from the origin that outlines may go, in D: as far as pieces may.
 const REACH: f64 = 1e3;
-/// How near two lines of an outline may come and touch, relative to its size.
-const NEAR: f64 = 1e-9;
 
 /// Reason why outlines bound no region. Positions are in the coordinates of the drawing, or in D without a
 /// drawing.
@@ -194,7 +193,7 @@ pub(super) fn regions(loops: Vec<Vec<DVec2>>) -> Result<Vec<Region>, OutlineProb
         return Err(OutlineProblem::TooFar);
     }
     let (low, high) = all().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
-    let near = NEAR * (high - low).length();
+    let near = COINCIDENT * (high - low).length();
     let loops: Vec<Vec<DVec2>> = loops.into_iter().map(|ring| distinct(ring, near)).collect();
     if loops.iter().map(Vec::len).sum::<usize>() > MOST_CORNERS {
         return Err(OutlineProblem::TooMany);

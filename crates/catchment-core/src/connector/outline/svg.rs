@@ -6,6 +6,7 @@
 
 use super::{OutlineProblem, Stroke, Within, line_of};
 use crate::design::{LengthUnit, Quantity, QuantityUnit};
+use crate::tolerance::COINCIDENT;
 use crate::xml::svg::{self, UnsupportedSvg};
 use crate::xml::{Tag, XmlAttribute};
 use glam::DVec2;
@@ -282,7 +283,7 @@ fn flattened(path: &BezPath, within: Within, line: usize) -> Result<Vec<Stroke>,
         if corners.len() == 1 {
             return Ok(());
         }
-        let near = super::NEAR * corners.iter().map(|p| p.distance(first)).fold(0.0, f64::max);
+        let near = COINCIDENT * corners.iter().map(|p| p.distance(first)).fold(0.0, f64::max);
         if !is_closed && first.distance(last) > near {
             return Err(OutlineProblem::Open { line, at: first });
         }

@@ -18,6 +18,7 @@
 use super::home::Home;
 use super::placed::PoseBox;
 use super::tree::{Cell, Label, Tree};
+use crate::contact::OVER_A_PATH;
 use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -85,10 +86,6 @@ fn walk(
 
 /// Number of boxes between two checks for cancellation.
 const BETWEEN: usize = 1024;
-
-/// Amount by which heights along a path may exceed the seat's level in the connection test of
-/// [`crate::contact::Seat`], in D.
-const OVER_A_PATH: f64 = 1e-6;
 
 /// Whether to go on from a box.
 enum Expansion {

@@ -44,7 +44,7 @@ const LEAST: f64 = 1e5 * ROUNDING;
 /// larger, the larger the neighbourhood over which they certainly lie over the facet, and the weaker their
 /// bounds on rotations.
 const INSETS: [f64; 3] = [0.06, 0.15, 0.35];
-/// Facets that lie flush: cosine.
+/// Cosine above which facets lie flush: rounding of normals.
 const FLUSH: f64 = 1.0 - 1e-9;
 /// Pieces into which the border is cut at most.
 const PIECES: usize = 100_000;

@@ -151,7 +151,8 @@ pub(crate) struct Certified {
 
 /// Number of levels of boxes that are always examined, for one to five free errors.
 const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
-/// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
+/// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D: each halving
+/// doubles their number or more.
 const FINEST: f64 = 3e-4;
 /// How often a window is halved.
 const WINDOW_HALVINGS: usize = 24;

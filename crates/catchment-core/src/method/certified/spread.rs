@@ -20,6 +20,7 @@
 use super::flood::Seat;
 use super::tree::{Cell, Face, Label, Tree};
 use crate::exec::{Cancelled, Exec};
+use crate::tolerance::COINCIDENT;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -115,9 +116,6 @@ impl PartialOrd for FarthestLeaf {
     }
 }
 
-/// Rounding of positions along a bearing, in D.
-const ROUNDING: f64 = 1e-9;
-
 impl SourceChains<'_> {
     /// The leaves all of whose chains would have to go back along a bearing: the farthest reach along it of
     /// all leaves that may lead on stays behind the whole leaf.
@@ -152,7 +150,7 @@ impl SourceChains<'_> {
                 }
                 let shared = tree.shared(to, from, *face);
                 let [first, last] = tree.bearings.range(bearing, &shared);
-                if farthest[number] < first - ROUNDING {
+                if farthest[number] < first - COINCIDENT {
                     continue;
                 }
                 // If an axis is periodic, positions on the two sides of the face differ.
@@ -168,7 +166,7 @@ impl SourceChains<'_> {
             }
         }
         let all = tree.leaves().filter(|(number, cell)| leads[*number] && rises(cell));
-        Ok(all.map(|(k, _)| k).filter(|k| farthest[*k] < range(*k)[0] - ROUNDING).collect())
+        Ok(all.map(|(k, _)| k).filter(|k| farthest[*k] < range(*k)[0] - COINCIDENT).collect())
     }
 }
 

@@ -22,6 +22,7 @@ use super::placed::{Bodies, Placed, PoseBox, middle};
 use super::touch::{Touch, Touching, plan};
 use crate::contact::Nearby;
 use crate::pose::{Dof, ROTATIONS};
+use crate::tolerance::{COINCIDENT, PARALLEL};
 use glam::DVec3;
 
 /// Largest error of an exact height, in D: rounding, and features that support within 4·10⁻⁶.
@@ -263,10 +264,6 @@ struct Rim<'a> {
     outward: [Option<([Interval; 2], u32)>; 2],
 }
 
-/// Largest z-component that counts as facing neither up nor down, and largest distance in plan view that
-/// counts as rounding.
-const LEVEL: f64 = 1e-9;
-
 impl Rims {
     /// All corners that may reach a rim from outside.
     fn meeting(bodies: &Bodies, at: &Placed) -> Vec<Meet> {
@@ -339,7 +336,7 @@ impl Rim<'_> {
         };
         let (way, off) = ([0, 1].map(|k| b[k] - a[k]), [0, 1].map(|k| corner[k] - a[k]));
         let share = (way[0] * off[0] + way[1] * off[1]).over(square(way[0]) + square(way[1]));
-        let share = share.and_then(|share| share.widened(LEVEL).and(Interval::new(0.0, 1.0)));
+        let share = share.and_then(|share| share.widened(COINCIDENT).and(Interval::new(0.0, 1.0)));
         low + share.unwrap_or(Interval::new(0.0, 1.0)) * (high - low)
     }
 
@@ -353,21 +350,21 @@ impl Rim<'_> {
         mut tell: impl FnMut([Interval; 2], Interval, u32, Vec<u32>),
     ) {
         let [a, b] = self.ends;
-        let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(LEVEL));
+        let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(COINCIDENT));
         if !near(0) || !near(1) {
             return;
         }
         let beside = perp(self.along, [corner[0] - a[0], corner[1] - a[1]]);
-        if beside.lo > LEVEL || beside.up < -LEVEL {
+        if beside.lo > COINCIDENT || beside.up < -COINCIDENT {
             return;
         }
         for (outward, facet) in self.outward.into_iter().flatten() {
             let leads = |s: &Vector| s[0] * outward[0] + s[1] * outward[1];
             // If a motion certainly leads inwards, the halves overlap in plan view and continue to overlap.
-            if !sheet.clone().any(|(s, _)| leads(&s).up < -LEVEL) {
+            if !sheet.clone().any(|(s, _)| leads(&s).up < -PARALLEL) {
                 let mut outside: Vec<u32> = sheet.clone().map(|(_, facet)| facet).collect();
                 let may_lead_in =
-                    |facet: u32| sheet.clone().any(|(s, own)| own == facet && leads(&s).lo < -LEVEL);
+                    |facet: u32| sheet.clone().any(|(s, own)| own == facet && leads(&s).lo < -PARALLEL);
                 outside.retain(|facet| !may_lead_in(*facet));
                 tell(outward, self.level(corner), facet, outside);
             }
@@ -380,7 +377,7 @@ impl Rim<'_> {
 /// wall, its own. A rim may be upright.
 fn ending(along: [Interval; 2], [left, right]: [Vector; 2]) -> [[Interval; 2]; 2] {
     let across = [along[1], -along[0]];
-    let is_wall = |n: &Vector| n[2].lo >= -LEVEL && n[2].up <= LEVEL;
+    let is_wall = |n: &Vector| n[2].lo >= -PARALLEL && n[2].up <= PARALLEL;
     let plan = |n: Vector| [n[0], n[1]];
     let to_right = if is_wall(&right) { plan(right) } else { across };
     [to_right, if is_wall(&left) { plan(left) } else { across.map(|x| -x) }]
@@ -389,7 +386,7 @@ fn ending(along: [Interval; 2], [left, right]: [Vector; 2]) -> [[Interval; 2]; 2
 /// Sides, right and left, on which the outside of a ridge may be if its facets, left and right, face the
 /// other half by these amounts; `None` if it is not a rim.
 fn sides([left, right]: [Interval; 2]) -> Option<[bool; 2]> {
-    let ends = |facing: Interval, other: Interval| facing.up > LEVEL && other.lo <= LEVEL;
+    let ends = |facing: Interval, other: Interval| facing.up > PARALLEL && other.lo <= PARALLEL;
     let sides = [ends(left, right), ends(right, left)];
     (sides[0] || sides[1]).then_some(sides)
 }
@@ -400,7 +397,7 @@ fn is_on_rim(corner: &Corner, sides: &[Option<[bool; 2]>]) -> bool {
 
 /// Directions of the facets around a corner that certainly face the other half.
 fn sheet(corner: &Corner, facing: impl Fn(DVec3) -> Interval + Clone) -> impl Iterator<Item = Side> + Clone {
-    corner.sides.iter().filter(move |side| facing(side.normal).lo > LEVEL).copied()
+    corner.sides.iter().filter(move |side| facing(side.normal).lo > PARALLEL).copied()
 }
 
 /// Outward motion of a moving vertex, per unit of each error.

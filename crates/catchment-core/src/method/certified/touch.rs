@@ -26,7 +26,8 @@ use glam::DVec3;
 pub(super) const SLACK: f64 = tolerance::PARALLEL;
 /// Distance that counts as within a border in plan view, as a multiple of lengths.
 const SEAM: f64 = tolerance::ROUNDING;
-/// Below this part of its own length a normal's rise gives no mean value form.
+/// Below this share of its own length a normal's rise gives no mean value form: the division by it would widen
+/// intervals a millionfold.
 const STEEP: f64 = 1e-6;
 /// Slopes that differ by no more are known well enough.
 const PRECISE: f64 = 0.05;

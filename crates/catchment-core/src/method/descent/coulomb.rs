@@ -54,8 +54,9 @@ const SETTLED: usize = 4;
 const BOLDEST: f64 = 20.0;
 const SHYEST: f64 = 0.05;
 const LEFT: f64 = 0.5;
-/// A displacement below this share of that by the push alone counts as rest.
-const STILL: f64 = 1e-7;
+/// A displacement below this share of that by the push alone counts as rest: above the remaining violation of
+/// cones.
+pub(super) const STILL: f64 = 1e-7;
 /// A displacement below this share of it is slow: whether it continues is tested.
 const SLOW: f64 = 1e-2;
 /// Contacts that such a slip opens or closes by less than this share of itself stay closed.

@@ -56,7 +56,9 @@ pub enum Guide {
 /// designed fit.
 pub use super::rest::TOUCHING;
 
-/// A foot counts as on its feature up to this far beyond the border, in D: so that the facets on both sides of a valley are found together.
+/// A foot counts as on its feature up to this far beyond the border, in D: above the gap at which a sliding
+/// contact is active, so that the facets on both sides of a valley are found together; below the distance at
+/// which walls between pieces are searched (1e-7).
 pub(super) const BORDER: f64 = 1e-8;
 
 /// Loads beyond this many preloads count as infinite: a slope of 89.9999°.

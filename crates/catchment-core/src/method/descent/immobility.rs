@@ -29,6 +29,7 @@ use crate::acceptance::Stream;
 use crate::contact::Pair;
 use crate::polytope::{Polytope, PolytopePoint};
 use crate::pose::{PoseError, rotation};
+use crate::tolerance::SINGLE;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -38,8 +39,6 @@ const LEVEL: f64 = 1e-3;
 const MOST_HULL: usize = 40;
 /// Gradients steeper than this are walls, and count as if they were as steep.
 const STEEPEST: f64 = 500.0;
-/// Gradients, and directions, closer than this are equal.
-const SAME: f64 = 1e-6;
 /// The pushes by which curvature is taken, in D: rounding of 10⁻¹⁶ leaves 10⁻⁹, the next order 10⁻⁷.
 const PUSH: f64 = 3e-4;
 /// A curvature below this counts as zero, per D: a radius of a thousand widths.
@@ -187,7 +186,7 @@ impl<'a> At<'a> {
             for (k, axis) in self.axes.iter().enumerate() {
                 gradient[k] = -row[*axis] / up;
             }
-            if gradients.iter().all(|other| distance(other, &gradient) > SAME) {
+            if gradients.iter().all(|other| distance(other, &gradient) > SINGLE) {
                 gradients.push(gradient);
             }
         }
@@ -251,7 +250,7 @@ impl<'a> At<'a> {
             for (part, direction) in parts.iter().zip(free) {
                 (0..MAX_COORDINATES).for_each(|k| way[k] += part * direction[k]);
             }
-            unit(&way, SAME)
+            unit(&way, SINGLE)
         };
         let count = free.len();
         let axis =

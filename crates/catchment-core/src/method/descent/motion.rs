@@ -6,13 +6,14 @@ use super::fall::{fall, home};
 use super::homing;
 use super::projection::{Projection, Vector, dot};
 use super::rest::TOUCHING;
-use super::rows::{OVERLAP, Rows, horizon};
+use super::rows::{Rows, horizon};
 use super::sliding::Sliding;
 use super::step::{Advance, Pace};
 use super::{DescentSettings, End, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
 use crate::pose::{CorPose, PoseError, rotation};
+use crate::tolerance::COINCIDENT;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Position of the moving half.
@@ -86,7 +87,7 @@ impl<F: FnMut(&PoseError) -> Option<Outcome>> MotionObserver for F {
     }
 }
 
-/// A mean slope below this over a whole step's length, or over so many steps, is rest.
+/// A mean slope below this over a whole step's length, or over so many steps, is rest: less than any friction.
 const LEVEL: f64 = 1e-6;
 const LEVEL_STEPS: usize = 128;
 
@@ -368,7 +369,7 @@ impl<'a> Motion<'a> {
         let touches = self
             .contacts
             .iter()
-            .filter(|(c, _)| c.gap <= OVERLAP)
+            .filter(|(c, _)| c.gap <= COINCIDENT)
             .map(|(c, _)| Touch { point: c.point, normal: c.normal })
             .collect();
         Waypoint { error: self.error_of(state), height: state.cor.z, travelled, touches }

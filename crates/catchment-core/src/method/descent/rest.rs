@@ -13,7 +13,8 @@ use crate::tolerance;
 /// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
 /// fit is as close.
 pub const TOUCHING: f64 = tolerance::TOUCHING;
-/// The same for a half that was set down onto its contacts.
+/// The same for a half that was set down onto its contacts, in D: above [`EXACT`] and the inexactness of
+/// coplanar facets.
 const SET_DOWN: f64 = 1e-7;
 
 /// Depth by which a half is pushed down onto its contacts, in D: finds hollows whose curvature is below its
@@ -22,7 +23,7 @@ const PUSH: f64 = 0.05;
 /// Largest displacement of this, in the ρ-metric and z combined, in D: the distance that motions leave at
 /// their end.
 const FARTHEST: f64 = 1e-3;
-/// Passes of Newton's method at most, and the last displacement, in D.
+/// Passes of Newton's method at most, and the last displacement, in D: above the rounding of its equations.
 const PASSES: usize = 24;
 const EXACT: f64 = 1e-11;
 /// Feet may lie so many times as far beyond the borders of their features as the half moved last, down to [`BORDER`].

@@ -15,6 +15,7 @@ use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::contact::Contact;
 use crate::pose::{Dof, ROTATIONS, euler_axes};
+use crate::tolerance::{COINCIDENT, ROUNDING};
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeSet;
 
@@ -22,14 +23,10 @@ use std::collections::BTreeSet;
 const WALL: f64 = 0.05;
 /// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
 const WALL_MARGIN: f64 = 1e-6;
-/// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
-pub(super) const OVERLAP: f64 = 1e-9;
 /// Features that fail to support by more than this angle are not searched, however long the step: radians.
 const WIDEST: f64 = 0.2;
-/// Rows that differ by less belong to the same contact.
-const SAME: f64 = 1e-12;
 /// By more than this sums over equal rows do not differ.
-const SUM_SAME: f64 = 8.0 * SAME;
+const SUM_SAME: f64 = 8.0 * ROUNDING;
 
 /// The constraints on a displacement, without duplicates.
 #[derive(Debug, Clone, Default)]
@@ -61,9 +58,9 @@ impl Rows {
 
     /// Adds a row unless it is present; returns whether it was new.
     fn learn(&mut self, row: Vector, tangents: Option<Tangents>, gap: f64) -> bool {
-        let same = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
+        let same = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING);
         let is = |k: usize| {
-            (self.gaps[k] - gap).abs() < SAME
+            (self.gaps[k] - gap).abs() < ROUNDING
                 && same(&self.vectors[k], &row)
                 && tangents.is_none_or(|t| self.tangents[k].iter().zip(&t).all(|(a, b)| same(a, b)))
         };
@@ -102,7 +99,7 @@ impl Motion<'_> {
     pub(super) fn gather(&mut self, state: &State, step: f64) {
         let (_, near) = self.horizon(step);
         self.nearby.contacts(state.cor, near, &mut self.contacts);
-        self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
+        self.contacts.retain(|(c, _)| c.gap > -COINCIDENT);
         self.rows.clear();
         let axes = self.axes(state);
         let contacts = std::mem::take(&mut self.contacts);
@@ -153,7 +150,7 @@ impl Motion<'_> {
     /// other side of a valley, not a step up.
     pub(super) fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
         let mut carrying = std::mem::take(&mut self.carrying);
-        self.nearby.contacts(landed.cor, OVERLAP, &mut carrying);
+        self.nearby.contacts(landed.cor, COINCIDENT, &mut carrying);
         let axes = self.axes(landed);
         let mut added = false;
         for (contact, _) in &carrying {
@@ -161,7 +158,7 @@ impl Motion<'_> {
             let there = -contact.normal.z * rise;
             let here = there - dot(&row, u);
             // A contact that the step respects already adds nothing.
-            if there < -OVERLAP && here > 0.25 * there {
+            if there < -COINCIDENT && here > 0.25 * there {
                 let tangents = self.tangents(contact, landed, &axes);
                 added |= self.rows.learn(row, tangents, here.max(0.0));
             }
@@ -180,7 +177,7 @@ impl Motion<'_> {
         let middle = self.moved(state, &half);
         let axes = self.axes(&middle);
         let mut added = false;
-        for (contact, meeting) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
+        for (contact, meeting) in met.iter().filter(|(c, _)| c.gap < -COINCIDENT) {
             let there = contact.gap - margin(contact);
             let contact = self.pair.contact(contact, meeting, &middle.rotation, middle.cor);
             let row = self.row(&contact, &middle, &axes);

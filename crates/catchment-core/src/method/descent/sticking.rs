@@ -22,11 +22,12 @@
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
 use super::motion::{Motion, MotionObserver, State};
 use super::projection::{MAX_COORDINATES, Projection, Vector};
-use super::rows::{OVERLAP, margin};
+use super::rows::margin;
 use super::{DescentSettings, MOST_FRICTION as MOST};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Pair};
 use crate::pose::PoseError;
+use crate::tolerance::COINCIDENT;
 use serde::{Deserialize, Serialize};
 
 /// Friction coefficients at which a touching half may stick, by Coulomb's law.
@@ -51,7 +52,7 @@ pub struct FrictionAmbiguity {
     pub wedges: bool,
 }
 
-/// To so much the first threshold is found.
+/// Accuracy of the sticking threshold, a friction coefficient: the slipping threshold is extrapolated from it.
 const HOLDS_TO: f64 = 1e-9;
 /// For the slipping threshold, slips are computed at these shares of the first estimate, then at this share
 /// of the distance to their apparent end, until that distance is this share of it: the remainder is of second
@@ -106,7 +107,7 @@ impl Touching {
     pub(super) fn see(&mut self, motion: &Motion, state: &State) {
         // Plain motion keeps a margin from walls; the contacts that tight fits keep are closed.
         let touches =
-            |contact: &Contact| motion.pair.is_tight() || contact.gap <= OVERLAP + 2.0 * margin(contact);
+            |contact: &Contact| motion.pair.is_tight() || contact.gap <= COINCIDENT + 2.0 * margin(contact);
         self.see_those(touches, motion, state);
     }
 
@@ -254,7 +255,8 @@ pub(super) struct HoldingFrictionObserver {
     least: f64,
 }
 
-/// To so much it is found.
+/// Accuracy of the wedging threshold and of thresholds along a motion, a friction coefficient: less accurate,
+/// as it is computed at every step.
 const WAY_HOLDS_TO: f64 = 1e-4;
 
 impl HoldingFrictionObserver {

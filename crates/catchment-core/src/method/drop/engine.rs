@@ -15,6 +15,7 @@ use crate::contact::{Pair, Seat};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Touch};
 use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor, rotation};
+use crate::tolerance::COINCIDENT;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use rapier3d_f64::parry::mass_properties::MassProperties;
 use rapier3d_f64::parry::shape::TriMeshFlags;
@@ -189,7 +190,7 @@ impl<'a> Engine<'a> {
 /// rotation may move the two relative to each other along it.
 pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
     let turns: Vec<Dof> = free.iter().filter(|dof| dof.is_rotation()).collect();
-    let beside = center.truncate().length() > CENTERED;
+    let beside = center.truncate().length() > COINCIDENT;
     let holds = |locked: Dof, axis: Dof| {
         free.contains(locked)
             || match turns[..] {
@@ -198,11 +199,8 @@ pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
                 _ => false,
             }
     };
-    center.length() <= CENTERED || holds(Dof::X, Dof::Roll) && holds(Dof::Y, Dof::Pitch)
+    center.length() <= COINCIDENT || holds(Dof::X, Dof::Roll) && holds(Dof::Y, Dof::Pitch)
 }
-
-/// Positions this close to each other, in D, are equal: a centre of mass and the COR, contacts of two pieces.
-const CENTERED: f64 = 1e-9;
 
 /// z of the lowest corner of a turned half, in D.
 fn lowest(half: &Half, rotation: &DMat3) -> f64 {
@@ -335,7 +333,7 @@ impl<'a> Fall<'a> {
                         Touch { point: place * contact.local_p1, normal: manifold.data.normal * towards };
                     // Several pieces of a half that meet at a point report the same contact.
                     let is_known = |known: &Touch| {
-                        known.point.distance(touch.point) < CENTERED && known.normal.dot(touch.normal) > 0.5
+                        known.point.distance(touch.point) < COINCIDENT && known.normal.dot(touch.normal) > 0.5
                     };
                     if !found.iter().any(is_known) {
                         found.push(touch);

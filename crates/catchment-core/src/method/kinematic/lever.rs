@@ -36,12 +36,10 @@ use crate::connector::{Half, Surface};
 use crate::contact::Contact;
 use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;
+use crate::tolerance::{COINCIDENT, PARALLEL};
 use glam::{DMat3, DVec2, DVec3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
-
-/// Gaps smaller than this, in D, are contacts; directions closer than this, in radians, are equal.
-const SAME: f64 = 1e-9;
 
 /// One of the two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -188,7 +186,7 @@ impl LeverPose {
         let lever = height.and_then(|height| {
             let position = pose.lateral.extend(height);
             let mut contacts = Vec::new();
-            envelope.contacts(position, SAME, &mut contacts);
+            envelope.contacts(position, COINCIDENT, &mut contacts);
             let facing = pose.rotation * DVec3::NEG_Z;
             let pivots = [DVec2::new(0.0, cor), flat(position)];
             let facings = [DVec2::Y, flat(facing)];
@@ -224,7 +222,7 @@ fn corner_of(
     position: DVec3,
     contact: &Contact,
 ) -> Option<LeverBody> {
-    if contact.normal.z <= SAME || contact.normal.y.abs() > SAME {
+    if contact.normal.z <= PARALLEL || contact.normal.y.abs() > PARALLEL {
         return None;
     }
     let back = rotation.transpose();
@@ -239,7 +237,7 @@ fn corner_of(
         [false, false] => None,
         // Flush: the corner that ends the contact.
         [true, true] => {
-            let at = |p: &DVec3| (p.x - seen.x).abs() <= SAME && (p.z - seen.z).abs() <= SAME;
+            let at = |p: &DVec3| (p.x - seen.x).abs() <= COINCIDENT && (p.z - seen.z).abs() <= COINCIDENT;
             let ends_here = moving.surfaces.iter().flat_map(|s| &s.vertices).any(at);
             Some(if ends_here { LeverBody::Moving } else { LeverBody::Base })
         }
@@ -254,10 +252,10 @@ fn has_edge(surface: &Surface, point: DVec3, normal: DVec3) -> bool {
             let (lo, hi) = corners()
                 .map(|p| of(&p))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
-            (lo - SAME..=hi + SAME).contains(&of(&point))
+            (lo - COINCIDENT..=hi + COINCIDENT).contains(&of(&point))
         };
-        facet.normal.dot(normal) > 1.0 - SAME
-            && corners().next().is_some_and(|p| normal.dot(point - p).abs() <= SAME)
+        facet.normal.dot(normal) > 1.0 - PARALLEL
+            && corners().next().is_some_and(|p| normal.dot(point - p).abs() <= COINCIDENT)
             && between(|p| p.x)
             && between(|p| p.y)
             && between(|p| p.z)

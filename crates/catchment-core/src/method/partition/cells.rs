@@ -15,6 +15,7 @@ use super::compose::Compartment;
 use super::space::{Affine, Tile};
 use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint, RESOLUTION};
 use crate::pose::{Dof, DofSet, ROTATIONS, euler_rates};
+use crate::tolerance::PARALLEL;
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 use std::array;
 
@@ -24,9 +25,6 @@ pub(super) const LEVEL: f64 = 100.0 * RESOLUTION;
 /// Cells meet if they are this close, in D and radians: cuts move their corners by a few times the
 /// resolution.
 pub(super) const TOUCH: f64 = 16.0 * RESOLUTION;
-
-/// Largest sine of the angle between motion and a facet along which the motion counts as running, not crossing.
-const GRAZING: f64 = 1e-9;
 
 /// A part of the contact space with the motion over it.
 #[derive(Debug, Clone)]
@@ -176,7 +174,7 @@ impl Cells {
     pub(super) fn on_border(&self, plane: &Halfspace) -> bool {
         self.limits.iter().any(|&(axis, [low, high])| {
             let at = plane.offset * plane.normal[axis];
-            plane.normal[axis].abs() > 1.0 - GRAZING
+            plane.normal[axis].abs() > 1.0 - PARALLEL
                 && ((at - low).abs() <= LEVEL || (at - high).abs() <= LEVEL)
         })
     }
@@ -249,7 +247,7 @@ impl Cell {
     pub(super) fn crosses(&self, plane: &Halfspace) -> bool {
         let speed = dot(&self.velocity, &self.velocity).sqrt();
         // No slope, no motion: below it the height changes by less than its own error over the whole box.
-        self.descent > LEVEL * LEVEL && dot(&self.velocity, &plane.normal) > GRAZING * speed
+        self.descent > LEVEL * LEVEL && dot(&self.velocity, &plane.normal) > PARALLEL * speed
     }
 
     /// The part of the cell that leaves through `through`, a part of the plane of one of its facets.

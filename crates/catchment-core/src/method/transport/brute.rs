@@ -9,9 +9,7 @@ use crate::landscape::{Grid, Landscape};
 use crate::method::descent;
 use crate::method::metric::Metric;
 use crate::pose::CorPose;
-
-/// How near to its plane a contact counts as the carrier, in D.
-const TOUCHING: f64 = 1e-9;
+use crate::tolerance::{COINCIDENT, PARALLEL};
 
 /// Fraction of every cell that arrives; grids as for [`super::run`].
 pub fn fractions(pair: &Pair, landscape: &Landscape, settings: &TransportSettings) -> Vec<f64> {
@@ -75,8 +73,8 @@ fn velocity(pair: &Pair, grid: &Grid, cell: usize) -> Vec<f64> {
     let Some(z) = envelope.height(pose.lateral) else { return vec![0.0; grid.axes.len()] };
     let cor = pose.lateral.extend(z);
     let mut contacts = Vec::new();
-    envelope.contacts(cor, TOUCHING, &mut contacts);
-    let Some(contact) = contacts.iter().find(|c| c.normal.z > TOUCHING) else {
+    envelope.contacts(cor, COINCIDENT, &mut contacts);
+    let Some(contact) = contacts.iter().find(|c| c.normal.z > PARALLEL) else {
         return vec![0.0; grid.axes.len()];
     };
     let ([gx, gy], turn) = contact.gradient(cor);

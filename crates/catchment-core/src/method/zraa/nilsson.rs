@@ -34,11 +34,8 @@ use super::Zraa;
 use super::profile::HeightProfile;
 use crate::contact::Pair;
 use crate::pose::Dof;
+use crate::tolerance::ROUNDING;
 use glam::DVec2;
-
-/// Heights and positions closer than this, in D, are equal, and slopes below it level: above the rounding of
-/// a few sums.
-const LEVEL: f64 = 1e-12;
 
 /// Limit of a side: the moving half's minimum must stay short of the fixed half's maximum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,7 +107,7 @@ impl Nilsson {
 /// The limit of offsets to +x.
 fn reach(profile: &HeightProfile) -> Option<Catch> {
     let curve = Curve(profile.corners());
-    if curve.steepest() <= LEVEL {
+    if curve.steepest() <= ROUNDING {
         return None;
     }
     // Ends are extrema too: the half ends there.
@@ -124,7 +121,7 @@ fn reach(profile: &HeightProfile) -> Option<Catch> {
     pairs.sort_by(|a, b| a.reach().total_cmp(&b.reach()));
     pairs.into_iter().find(|pair| {
         let (height, rises) = curve.climb(pair.reach());
-        !rises && curve.at(pair.maximum) - curve.at(pair.minimum) >= height - LEVEL
+        !rises && curve.at(pair.maximum) - curve.at(pair.minimum) >= height - ROUNDING
     })
 }
 
@@ -136,9 +133,9 @@ impl Curve<'_> {
     /// right.
     fn piece(&self, x: f64, right: bool) -> [DVec2; 2] {
         let before = if right {
-            self.0.partition_point(|p| p.x <= x + LEVEL)
+            self.0.partition_point(|p| p.x <= x + ROUNDING)
         } else {
-            self.0.partition_point(|p| p.x < x - LEVEL)
+            self.0.partition_point(|p| p.x < x - ROUNDING)
         };
         let k = before.clamp(1, self.0.len() - 1);
         [self.0[k - 1], self.0[k]]
@@ -165,18 +162,18 @@ impl Curve<'_> {
         let mut pairs = Vec::new();
         for corner in self.0 {
             let (left, right) = (corner.x - s, corner.x + s);
-            if left >= first - LEVEL {
+            if left >= first - ROUNDING {
                 // A longer climb begins farther left, if there is profile left.
-                let rises = left > first + LEVEL && self.slope(left, false) > LEVEL;
+                let rises = left > first + ROUNDING && self.slope(left, false) > ROUNDING;
                 pairs.push((corner.y - self.at(left), rises));
             }
-            if right <= last + LEVEL {
-                let rises = right < last - LEVEL && self.slope(right, true) > LEVEL;
+            if right <= last + ROUNDING {
+                let rises = right < last - ROUNDING && self.slope(right, true) > ROUNDING;
                 pairs.push((self.at(right) - corner.y, rises));
             }
         }
         let height = pairs.iter().map(|pair| pair.0).fold(f64::NEG_INFINITY, f64::max);
-        (height, pairs.iter().any(|(h, rises)| *rises && *h >= height - LEVEL))
+        (height, pairs.iter().any(|(h, rises)| *rises && *h >= height - ROUNDING))
     }
 }
 
@@ -267,7 +264,7 @@ mod tests {
 
     /// Level segments are seats of their own, or ground on which nothing slides: the theorem excludes them.
     fn has_no_level(profile: &HeightProfile) -> bool {
-        profile.corners().windows(2).all(|w| (w[0].y - w[1].y).abs() > LEVEL)
+        profile.corners().windows(2).all(|w| (w[0].y - w[1].y).abs() > ROUNDING)
     }
 
     proptest! {

@@ -16,7 +16,7 @@
 //!   └───────────────┘
 //! ```
 //!
-//! Positions closer to the region's border than [`MARGIN`] are ignored. Not promised: parts of the region so
+//! Positions closer to the region's border than [`TOUCHING`] are ignored. Not promised: parts of the region so
 //! small that they contain no position are not checked.
 
 use super::Zraa;
@@ -25,14 +25,13 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent;
 use crate::pose::{Dof, DofSet, PoseError};
+use crate::tolerance::TOUCHING;
 use glam::DVec2;
 
 /// Number of boxes, each of half the width of the one before.
 const BOXES: i32 = 4;
 /// Places in each.
 const PLACES: u64 = 150;
-/// Distance from the border of the region within which a position is ignored, in D.
-const MARGIN: f64 = 1e-4;
 /// Of the places.
 const SEED: u64 = 1;
 
@@ -64,7 +63,7 @@ impl Oracle {
     /// Number of checked positions, and number of those that contradict the region.
     pub(super) fn against(&self, region: &Zraa) -> [usize; 2] {
         let aside = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
-            .map(|(x, y)| DVec2::new(x, y) * MARGIN);
+            .map(|(x, y)| DVec2::new(x, y) * TOUCHING);
         let (mut judged, mut differ) = (0, 0);
         for (at, docks) in &self.0 {
             let inside = region.holds(*at);

@@ -17,11 +17,8 @@
 use super::line::{Segment, Top, envelope};
 use crate::connector::{Half, Surface};
 use crate::contact::Pair;
+use crate::tolerance::SINGLE;
 use glam::{DVec2, DVec3};
-
-/// Points closer than this, in widths of the profile, are equal: above single precision, below any drawn
-/// detail.
-const SAME: f64 = 1e-6;
 
 /// A continuous curve z = f(x) of straight pieces.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +34,7 @@ impl HeightProfile {
         if corners.len() < 2 || !rising {
             return None;
         }
-        let tolerance = SAME * (corners[corners.len() - 1].x - corners[0].x);
+        let tolerance = SINGLE * (corners[corners.len() - 1].x - corners[0].x);
         let mut kept: Vec<DVec2> = Vec::with_capacity(corners.len());
         for (k, &corner) in corners.iter().enumerate() {
             let straight = kept.last().zip(corners.get(k + 1)).is_some_and(|(before, after)| {
@@ -56,7 +53,7 @@ impl HeightProfile {
     pub fn of(pair: &Pair) -> Option<Self> {
         let fixed = Self::border(&pair.fixed, 1.0)?;
         let moving = Self::border(&pair.moving, -1.0)?;
-        let tolerance = SAME * fixed.width();
+        let tolerance = SINGLE * fixed.width();
         let close = |a: &DVec2, b: &DVec2| {
             (a.x - b.x).abs() <= tolerance
                 && (a.y + b.y - fixed.corners[0].y - moving.corners[0].y).abs() <= tolerance
@@ -70,7 +67,7 @@ impl HeightProfile {
     fn border(half: &Half, sign: f64) -> Option<Self> {
         let (lo, hi) =
             half.surfaces.iter().map(Surface::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let tolerance = SAME * (hi.x - lo.x);
+        let tolerance = SINGLE * (hi.x - lo.x);
         let in_slab = |p: &DVec3| (p.y - lo.y).abs() <= tolerance || (p.y - hi.y).abs() <= tolerance;
         let mut segments = Vec::new();
         for surface in &half.surfaces {
@@ -79,10 +76,10 @@ impl HeightProfile {
             }
             for facet in &surface.facets {
                 let n = facet.normal;
-                if n.y.abs() > SAME && n.y.abs() < 1.0 - SAME {
+                if n.y.abs() > SINGLE && n.y.abs() < 1.0 - SINGLE {
                     return None;
                 }
-                if n.z * sign > SAME && n.y.abs() <= SAME {
+                if n.z * sign > SINGLE && n.y.abs() <= SINGLE {
                     let corners = || facet.corners.iter().map(|&k| surface.vertices[k as usize]);
                     let from = corners().map(|p| p.x).fold(f64::INFINITY, f64::min);
                     let to = corners().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
@@ -118,7 +115,7 @@ impl HeightProfile {
 
     /// Whether a half turn in the plane maps it onto itself, f(a + b − x) = c − f(x): then both halves are alike.
     pub fn is_point_symmetric(&self) -> bool {
-        let tolerance = 2.0 * SAME * self.width();
+        let tolerance = 2.0 * SINGLE * self.width();
         let sum = self.corners[0] + self.corners[self.corners.len() - 1];
         self.corners.iter().zip(self.corners.iter().rev()).all(|(a, b)| (*a + *b).distance(sum) <= tolerance)
     }

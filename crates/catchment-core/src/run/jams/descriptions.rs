@@ -2,16 +2,13 @@
 
 use super::{Examined, Extent, FeatureContact, NamedFeature, Stability};
 use crate::design::Design;
-use crate::document::{DesignUnits, Document, rounded_down, significant};
+use crate::document::{DesignUnits, Document, NOTHING, rounded_down, significant};
 use crate::method::descent::{Immobility, ImmobilityOrder, Sticking};
 use crate::pose::{Dof, PoseError};
+use crate::tolerance::TOUCHING;
 
 /// Cosine of a pitch at which roll and yaw can no longer be distinguished: 89°.
 const ON_ITS_SIDE: f64 = 0.0175;
-/// Heights below this are nothing, in D: rounding.
-const NOTHING: f64 = 1e-8;
-/// Heights closer than this are equal, in D.
-const ONE_HEIGHT: f64 = 1e-4;
 /// Contacts whose places are shown.
 const MOST_CONTACTS: usize = 4;
 /// Rests within this are at the same place, in D or radians.
@@ -131,7 +128,7 @@ impl<'a> RestDescriptions<'a> {
 
     /// `, 1.2 mm above the mated pose`; empty for equal height.
     fn above(self, above: f64) -> String {
-        if above.abs() < ONE_HEIGHT {
+        if above.abs() < TOUCHING {
             return String::new();
         }
         let side = if above < 0.0 { "below" } else { "above" };

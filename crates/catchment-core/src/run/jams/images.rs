@@ -8,11 +8,10 @@ use crate::connector::HalfRole;
 use crate::contact::Features;
 use crate::design::Alignment;
 use crate::pose::{CorPose, Dof, DofSet, PoseError, ROTATIONS, angle_between, euler_axes, step_length};
+use crate::tolerance::SINGLE;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Largest change of a locked error, in D or radians: rounding.
-const LOCKED: f64 = 1e-6;
 /// Largest number of pairs of symmetries that are tested: those of two round halves.
 const MOST: usize = 600;
 
@@ -66,7 +65,7 @@ impl Images {
             (true, false, true) => x_axis.z.abs(),
             (false, true, true) => y_axis.z.abs(),
         };
-        off < LOCKED && (is(Dof::X) || x.abs() < LOCKED) && (is(Dof::Y) || y.abs() < LOCKED)
+        off < SINGLE && (is(Dof::X) || x.abs() < SINGLE) && (is(Dof::Y) || y.abs() < SINGLE)
     }
 
     /// Distance of two poses in the metric of the motion, in D.

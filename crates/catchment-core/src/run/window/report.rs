@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// Contacts of the worst pose that are shown.
 const MOST_TOUCHES: usize = 4;
-/// Contacts within this are at one place, in D.
+/// Contacts within this are at one place, in D: less than tables show.
 const ONE_PLACE: f64 = 1e-3;
 /// An error that may grow by less than this share while the others stay in the window limits it.
 const LIMITING: f64 = 0.01;

@@ -38,7 +38,8 @@ const LEAST_QUIET: usize = 128;
 /// Largest core-seconds of variations, and of trials along the directions of a single error beside the
 /// others: for very slow motions fewer are tried.
 const LONGEST: f64 = 10.0;
-/// The window is so much smaller than the nearest pose that was seen to fail.
+/// The window is smaller by this share than the nearest pose that was seen to fail, at least and at most: beyond
+/// the accuracy of the bisection.
 const MARGIN: f64 = 1e-3;
 const MOST_MARGIN: f64 = 0.1;
 /// Windows that are tried before it is given up.

@@ -6,6 +6,7 @@ use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{self, hex, mix};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use catchment::tolerance::SINGLE;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
@@ -77,15 +78,13 @@ pub(super) fn corners(shape: AcceptanceShape) -> Vec<DVec2> {
 /// The mating surface of a half as seen along the approach: the facets that face the viewer, the lower parts
 /// first, and the visible edges.
 pub(super) fn face(svg: &mut Svg, view: &View, half: &Half, factor: f64) {
-    /// Facets steeper than this are walls, seen as lines.
-    const FACING: f64 = 1e-6;
     /// Cosine of 20°: facets of a rounding meet at less.
     const BEND: f64 = 0.94;
     let light = DVec3::new(-0.45, 0.55, 0.7).normalize_or_zero();
     let place = |p: DVec3| factor * p.truncate();
     let mut seen: Vec<(f64, DVec3, Vec<DVec2>)> = Vec::new();
     for surface in &half.surfaces {
-        for facet in surface.facets.iter().filter(|facet| facet.normal.z > FACING) {
+        for facet in surface.facets.iter().filter(|facet| facet.normal.z > SINGLE) {
             let at = |k: &u32| surface.vertices[*k as usize];
             let top = facet.corners.iter().map(|k| at(k).z).fold(f64::NEG_INFINITY, f64::max);
             seen.push((top, facet.normal, facet.corners.iter().map(|k| place(at(k))).collect()));
@@ -104,7 +103,7 @@ pub(super) fn face(svg: &mut Svg, view: &View, half: &Half, factor: f64) {
         for edge in &surface.edges {
             let [a, b] = edge.facets.map(|k| surface.facets[k as usize].normal);
             let [from, to] = edge.ends.map(|k| place(surface.vertices[k as usize]));
-            if a.z.max(b.z) > FACING && a.dot(b) < BEND && from.distance(to) > FACING {
+            if a.z.max(b.z) > SINGLE && a.dot(b) < BEND && from.distance(to) > SINGLE {
                 svg.line(view.at(from), view.at(to), &line);
             }
         }

@@ -31,7 +31,7 @@ const HALVINGS: usize = 200;
 /// The steepest end angle that is tried, in rad: beyond it the profile is a wall.
 const STEEPEST: f64 = 89.9 * std::f64::consts::PI / 180.0;
 
-/// Knots closer than this are equal, in mm.
+/// Knots closer than this are equal, in mm: rounding.
 const SAME: f64 = 1e-9;
 
 /// A closed curve, counter-clockwise, without its first point at the end.

@@ -13,22 +13,23 @@
 //! its border, so that it is not active again. At every tried length the step is recomputed: direction at its
 //! own midpoint, then correction.
 
+use super::super::holding::BORDER;
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;
-use super::{BORDER, FAR_SIDE, LANDING, SUPPORT};
+use super::{FAR_SIDE, LANDING, SUPPORT};
 use crate::contact::{Contact, Meeting, chord};
+use crate::tolerance::ROUNDING;
 
-/// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
+/// Most trials of a step: bisection alone takes some 35 to [`ROUNDING`].
 const MOST_TRIALS: usize = 60;
 /// Number of trials for an event alone between two trials with all features: further trials are useless for
 /// events that jump.
 const NARROWINGS: usize = 8;
-/// A step shorter than this leads nowhere, in D.
-const NOWHERE: f64 = 1e-12;
 /// A correction may move a body by this share of its step, and by this much in D, before it is not trusted.
 const TRUSTED_SHARE: f64 = 0.1;
 const TRUSTED: f64 = 1e-6;
-/// A contact that blocks a step at its start is added if it is this close, in D.
+/// A contact that blocks a step at its start is added if it is this close, in D: as far as a correction is
+/// trusted.
 const CLOSE: f64 = 1e-6;
 /// A feature that was open by less than this share of its overlap before a step had been passed earlier,
 /// behind a wall.
@@ -185,7 +186,7 @@ impl Motion<'_> {
                     bracket = None;
                 }
             }
-            if high - low < NOWHERE {
+            if high - low < ROUNDING {
                 break;
             }
             at = match &bracket {
@@ -193,7 +194,7 @@ impl Motion<'_> {
                 None => low + 0.5 * (high - low),
             };
         }
-        if low > NOWHERE && (wary || !self.overlaps(&clear)) {
+        if low > ROUNDING && (wary || !self.overlaps(&clear)) {
             return Reached::At(clear, low);
         }
         Reached::Blocked(bracket.filter(|b| b.event.kind == Kind::Met).and_then(
@@ -217,7 +218,7 @@ impl Motion<'_> {
         for _ in 0..NARROWINGS {
             let Some(next) = self.step_of(state, start, at) else { break };
             let value = self.value(&bracket.event, &next);
-            if bracket.lands(value) || high - low < NOWHERE {
+            if bracket.lands(value) || high - low < ROUNDING {
                 break;
             }
             if value < 0.0 {

@@ -27,7 +27,8 @@
 mod correction;
 mod event;
 
-use super::coulomb::{Contacts, Tangents};
+use super::coulomb::{Contacts, STILL, Tangents};
+use super::holding::BORDER;
 use super::motion::{Motion, State};
 use super::projection::Vector;
 use super::step::{Advance, Pace};
@@ -45,18 +46,12 @@ const LANDING: f64 = 1e-9;
 /// Largest overlap that still counts as contact, in D: that of a height rounded on a steep slope. Deeper
 /// overlaps were passed.
 const DEEPEST: f64 = 1e-7;
-/// A foot counts as on its feature up to this distance beyond the border, in D: above [`ACTIVE`], so that the
-/// facets on both sides of a valley are active together; below the distance at which walls between pieces are
-/// searched (1e-7).
-const BORDER: f64 = 1e-8;
 /// Sine by which a feature may fail to support a normal: that of faces that lie flush.
 const SUPPORT: f64 = FLUSH;
 
-/// The body is at rest if it moves by less than this while the force alone would move it by 1.
-const STILL: f64 = 1e-7;
 /// Largest change of the direction, 1 in its largest part, from the start of a step to its middle.
 const BEND: f64 = 0.05;
-/// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
+/// Steps are not halved below this share of the longest for the sake of the direction: edges that are nearly parallel turn at any scale.
 const LEAST_SHARE: f64 = 1e-6;
 /// After an event the next step is tried with this multiple of the last length, at least this share of the
 /// longest: each trial tests all features nearby.
