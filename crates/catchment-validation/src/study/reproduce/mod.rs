@@ -138,13 +138,13 @@ pub fn reproduce(
     exec: &Exec,
 ) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
-    beside(ReproducibleTable::of(table).ok_or_else(unknown)?, settings, exec)
+    beside(ReproducibleTable::of(table).ok_or_else(unknown)?, *settings, exec)
 }
 
 /// Our values beside those that a table has printed.
 fn beside(
     table: &ReproducibleTable,
-    settings: &ReproduceSettings,
+    settings: ReproduceSettings,
     exec: &Exec,
 ) -> Result<TableComparison, ReproduceError> {
     let published = table.published()?;
