@@ -162,7 +162,7 @@ fn no_motion_contradicts_a_planar_certificate() {
     // Upper bounds on the undecided share, with a margin above the measured share.
     for (family, cor, boxes, most) in [
         (Family::VFace, 0.0, 10_000, 0.3),
-        (Family::XFace, 0.5, 10_000, 0.2),
+        (Family::XFace, 0.5, 20_000, 0.15),
         (Family::SFace, 0.0, 20_000, 0.5),
     ] {
         let pair = pair_of(family, &[], cor);
