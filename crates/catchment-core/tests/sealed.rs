@@ -15,7 +15,7 @@ const CORE: [&str; 20] = [
     "suggest",
     "terminal",
     "tolerance",
-    "advice",
+    "diagnostic",
     "polytope",
     "design",
     "xml",

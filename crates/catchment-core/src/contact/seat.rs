@@ -8,10 +8,9 @@
 //!       └──────┴─┴───── q
 //! ```
 //!
-//! U is the potential energy at first contact, U₀ that at zero error; with the constant push the heights of the
-//! COR. S is entered from above. A half at rest below U₀ − depth
-//! has left the seat through its floor: the mated pose is then not a minimum, and that rest is a different
-//! pose. If the rim of a hollow is lower than the level of its seat, S *leaks*: it extends over the rim to a
+//! U is the potential energy at first contact, U₀ that at zero error; with the constant push both are heights
+//! of the COR. S is entered from above. A half at rest below U₀ − depth has left the seat through its floor: the
+//! mated pose is then not a minimum, and that rest is a different pose. If the rim of a hollow is lower than the level of its seat, S *leaks*: it extends over the rim to a
 //! region below the floor, and a half in it need not stay ([`Seat::leaks`]). Whether a pose is connected with
 //! the mated pose is tested along four paths in the pose error: straight, and with its yaw, its rotation or
 //! its translation first; along each path U must stay at or below U₀ + depth. Poses nearer than [`CORE`]

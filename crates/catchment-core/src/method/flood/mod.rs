@@ -40,7 +40,7 @@
 //! Motion beyond the error box is unknown: a basin whose minimum lies on a border of x or y counts as missed
 //! (the halves slide off), on a border of a rotation as jammed.
 //!
-//! [`Warning::FloodingBias`]: crate::acceptance::Warning::FloodingBias
+//! [`Warning::FloodingBias`]: crate::diagnostic::Warning::FloodingBias
 
 pub mod brute;
 mod drain;
