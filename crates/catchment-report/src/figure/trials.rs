@@ -14,14 +14,16 @@ use catchment_core::method::zraa::Zraa;
 use catchment_core::pose::Dof;
 use catchment_study::trials::{RoundTrial, Trials};
 
+/// Side of a panel, in SVG units; a panel of a single error is low.
+const SIDE: f64 = 360.0;
+const LOW: f64 = 60.0;
 /// A trial on the wrong side.
 const WRONG: &str = "#c62f2f";
 
 /// Draws the exact region and the trials of the last round.
 pub fn trials(report: &TrialsReport) -> Picture {
     let (design, found) = (&report.design, &report.result);
-    const SIDE: f64 = 360.0;
-    let height = if found.grid.axes.len() == 2 { SIDE } else { 60.0 };
+    let height = if found.grid.axes.len() == 2 { SIDE } else { LOW };
     let unit = found.unit;
     let round = found.rounds.last();
     let text = round.map_or_else(String::new, |round| {
