@@ -181,6 +181,8 @@ class CenteredReport(TypedDict):
     followed: bool
     #: Number of sampled poses of the final cube, all of which dock.
     sampled: NotRequired[int | None]
+    #: Errors that limit the cube: with one of them slightly larger and the others inside the cube a pose fails; absent if the cells determined the size.
+    limited_by: NotRequired[list[Literal['x', 'y', 'roll', 'pitch', 'yaw']]]
 
 
 class ToleranceReport(TypedDict):
