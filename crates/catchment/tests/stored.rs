@@ -66,6 +66,12 @@ fn a_report_of_the_last_layout_is_read_and_written_in_this_one() {
     let mut new: Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
     assert_eq!(new["schema"], SCHEMA);
     new["schema"] = 3.into();
+    // What a diagnostic has beside its facts and its sentence is derived from them.
+    for warning in new["warnings"].as_array_mut().unwrap().iter_mut().filter_map(Value::as_object_mut) {
+        assert_eq!(warning.remove("severity"), Some("warning".into()));
+        assert_eq!(warning.remove("code"), Some(warning["warning"]["kind"].clone()));
+        assert!(warning.remove("help").is_some());
+    }
     assert_ne!(new, old);
     assert_eq!(new, renamed(old));
 }
