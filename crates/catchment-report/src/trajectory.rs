@@ -4,6 +4,7 @@ use super::document::Printed;
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::acceptance::{FailureReason, Outcome};
 use catchment_core::design::Design;
+#[cfg(any(feature = "drop", test))]
 use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{Cell, Column, ColumnFormat, Document, Table, decimals, grouped, rounded};
 use catchment_core::method::descent::{DescentSettings, Touch, Trajectory, Waypoint};

@@ -726,13 +726,19 @@ class Seating(TypedDict):
     deeper: NotRequired[Deeper | None]
 
 
-class WarningReport(TypedDict):
-    """A warning, for programs and for people. A kind that this version does not know is read as a `Warning::Note` with its sentence."""
+class Diagnostic(TypedDict):
+    """An error of an input, or a warning or note about a result. A stored warning of a kind that this version does not know is read as a `Warning::Note` with its sentence."""
 
-    #: The warning, with its `kind`.
-    warning: dict[str, Any]
-    #: The warning as a sentence.
+    #: How much it matters.
+    severity: Literal['error', 'warning', 'note']
+    #: Its stable code, in kebab case.
+    code: str
+    #: Its description, a sentence or several.
     message: str
+    #: Advice, as words.
+    help: str | None
+    #: The numbers of a warning, with its `kind`.
+    warning: NotRequired[dict[str, Any] | None]
 
 
 class Timing(TypedDict):
@@ -790,7 +796,7 @@ class RunReport(TypedDict):
     #: The seat, and the residual misalignment of accepted poses; null in reports of older versions.
     seat: Seating | None
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
@@ -833,7 +839,7 @@ class WindowReport(TypedDict):
     #: Number of exact motions in total.
     motions: int
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
@@ -882,7 +888,7 @@ class JamsReport(TypedDict):
     #: Pairs of features in contact in jams, most frequent first.
     features: list[JammingPair]
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
@@ -928,7 +934,7 @@ class TraceReport(TypedDict):
     #: Waypoints from first contact on; for a drop test from the release on.
     waypoints: list[WaypointReport]
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
@@ -994,7 +1000,7 @@ class MethodsReport(TypedDict):
     #: For the methods with a result, in their order: the agreement of each pair.
     agreement: list[list[PairAgreement]]
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
 
@@ -1075,6 +1081,6 @@ class ComparisonReport(TypedDict):
     #: The comparison.
     comparison: Comparison
     #: Warnings about the numbers: a code and a sentence each.
-    warnings: list[WarningReport]
+    warnings: list[Diagnostic]
     #: Wall-clock time and threads; null for reports without a long computation. Never compared.
     timing: Timing | None
