@@ -11,7 +11,7 @@ use catchment_core::design::Design;
 use catchment_core::document::percent;
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::poses::ObservedOutcome;
-use catchment_study::plan::{CELLS, Panel, PlannedPose};
+use catchment_study::plan::{BenchSlice, CELLS, PlannedPose};
 use catchment_study::validate::PredictedTrial;
 
 /// A trial with another outcome than predicted.
@@ -42,7 +42,7 @@ struct Mark {
 }
 
 /// Draws the poses of a plan, with their predictions.
-pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
+pub fn plan(report: &PlanReport, panels: &[BenchSlice]) -> Picture {
     let of = |point: &PlannedPose| Mark {
         error: point.error,
         shape: match (point.prediction.either, point.prediction.docks()) {
@@ -67,7 +67,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
 }
 
 /// Draws the observed outcomes of trials over the predictions.
-pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
+pub fn validation(report: &ValidationReport, panels: &[BenchSlice]) -> Picture {
     let of = |trial: &PredictedTrial| Mark {
         error: trial.point.error,
         shape: match trial.observed {
@@ -103,12 +103,12 @@ fn draw(
     design: &Design,
     story: &str,
     marks: &[Mark],
-    panels: &[Panel],
+    panels: &[BenchSlice],
     words: &[(Shape, bool, &str)],
 ) -> Picture {
     let units = ShownUnits::of(design);
     let height = if panels.iter().any(|panel| panel.across.len() > 1) { SIDE } else { LOW };
-    let panel = |panel: &Panel| layout::Panel::with_axes([SIDE, height]).over(beside(panel, &units));
+    let panel = |panel: &BenchSlice| layout::Panel::with_axes([SIDE, height]).over(beside(panel, &units));
     let (mut svg, frames) = Layout::of(design)
         .story(story)
         .story(note(panels))
@@ -122,9 +122,10 @@ fn draw(
 }
 
 /// Relation of the poses to the background, if it is not obvious.
-fn note(panels: &[Panel]) -> &'static str {
-    let is_near = |panel: &Panel| panel.others.iter().any(|(_, ends)| Panel::middle(*ends).1.is_some());
-    if panels.iter().any(Panel::is_projection) {
+fn note(panels: &[BenchSlice]) -> &'static str {
+    let is_near =
+        |panel: &BenchSlice| panel.others.iter().any(|(_, ends)| BenchSlice::middle(*ends).1.is_some());
+    if panels.iter().any(BenchSlice::is_projection) {
         "projections: the errors that a panel does not show differ from pose to pose, and no region belongs to all of them"
     } else if panels.iter().any(is_near) {
         "a slice lies at the middle of its poses, which are within the robot's accuracy of it"
@@ -151,14 +152,14 @@ fn legend(marks: &[Mark], words: &[(Shape, bool, &str)], has_region: bool) -> Le
 }
 
 /// The errors that a panel does not show: `yaw = 20°`, `yaw = 20° ± 0.3°`, and of a projection `yaw −5 … 12 deg`.
-fn beside(panel: &Panel, units: &ShownUnits) -> String {
+fn beside(panel: &BenchSlice, units: &ShownUnits) -> String {
     let words = |(axis, ends): &(Dof, [f64; 2])| {
         let shown = |value: f64| short(value * units.factor(*axis));
         if panel.is_projection() {
             let unit = if axis.is_rotation() { "deg" } else { units.symbol() };
             return format!("{} {} … {} {unit}", axis.name(), shown(ends[0]), shown(ends[1]));
         }
-        let (middle, off) = Panel::middle(*ends);
+        let (middle, off) = BenchSlice::middle(*ends);
         let unit = if axis.is_rotation() { "°".to_owned() } else { format!(" {}", units.symbol()) };
         let off = off.map_or_else(String::new, |off| format!(" ± {}{unit}", shown(off)));
         units.value(*axis, middle) + &off
@@ -172,7 +173,7 @@ fn region() -> Rgb {
     mix(colour::outcome(Outcome::Aligned), [0xff, 0xff, 0xff], LIGHT)
 }
 
-fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: Rect) {
+fn one(svg: &mut Svg, panel: &BenchSlice, marks: &[Mark], units: &ShownUnits, rect: Rect) {
     let nothing = || AxisScale::new(String::new(), 0.0, 1.0, false);
     let scale = |k: usize| {
         panel.across.get(k).map_or_else(nothing, |(axis, [lo, hi])| {
@@ -207,7 +208,7 @@ fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &ShownUnits, rect: R
 }
 
 /// The accepted set: runs of cells, row by row.
-fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
+fn cells(svg: &mut Svg, panel: &BenchSlice, rect: Rect) {
     let rows = panel.cells.len() / CELLS;
     if rows == 0 {
         return;
@@ -339,7 +340,7 @@ mod tests {
         look("plan-near", &picture);
         assert_eq!(found.iter().map(|panel| panel.poses.len()).collect::<Vec<_>>(), [10, 10, 10]);
         for panel in &found {
-            let (middle, off) = Panel::middle(panel.others[0].1);
+            let (middle, off) = BenchSlice::middle(panel.others[0].1);
             let far = |k: &usize| (yaws[*k] - middle).abs() > accuracy.yaw;
             assert!(off.is_some_and(|off| off <= accuracy.yaw) && !panel.poses.iter().any(far));
         }
@@ -349,7 +350,7 @@ mod tests {
         let yaws: Vec<f64> = (0..30).map(|k| 0.05 * f64::from(k)).collect();
         let (picture, found) = drawn(&yaws);
         look("plan-projected", &picture);
-        assert!(found.len() == 3 && found.iter().all(Panel::is_projection));
+        assert!(found.len() == 3 && found.iter().all(BenchSlice::is_projection));
         assert!(picture.svg().contains("yaw 0 … 83.1 deg") && picture.svg().contains("projections: "));
         assert!(!picture.svg().contains(&region) && !picture.svg().contains("docks, exactly"));
         assert_eq!(dots(&picture), 3 * 30 + 1);

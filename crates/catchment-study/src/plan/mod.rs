@@ -37,7 +37,7 @@ pub use prediction::Prediction;
 pub(crate) use prediction::{for_each, foretell};
 pub(crate) use robot::{PoseColumns, accuracy_words};
 use serde::{Deserialize, Serialize};
-pub use slices::{CELLS, Panel, panels};
+pub use slices::{BenchSlice, CELLS, panels};
 
 use crate::validate::LIMIT;
 

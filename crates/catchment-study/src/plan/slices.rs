@@ -21,7 +21,7 @@ use catchment_core::tolerance::SINGLE;
 
 /// A slice, or a projection.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
+pub struct BenchSlice {
     /// The horizontal and vertical errors, and their ranges in D or radians; a planar panel has a single
     /// error.
     pub across: Vec<(Dof, [f64; 2])>,
@@ -42,7 +42,7 @@ const MOST_PROJECTIONS: usize = 6;
 /// Room around the poses of a panel, as a share of their extent.
 const ROOM: f64 = 0.25;
 
-impl Panel {
+impl BenchSlice {
     /// Whether its poses are projected: they have any values of the others, and no region belongs to all of them.
     pub fn is_projection(&self) -> bool {
         self.cells.is_empty()
@@ -83,7 +83,7 @@ pub fn panels(
     accuracy: &PoseError,
     motions: &descent::DescentSettings,
     exec: &Exec,
-) -> Result<Vec<Panel>, Cancelled> {
+) -> Result<Vec<BenchSlice>, Cancelled> {
     let varies = |axis: &Dof| {
         let value = |pose: &PoseError| pose.to_array()[axis.index()];
         poses.iter().any(|pose| (value(pose) - poses.first().map_or(0.0, value)).abs() > SINGLE)
@@ -96,11 +96,11 @@ pub fn panels(
     let Some(groups) = grouped(poses, beside, accuracy) else {
         let pairs = (0..axes.len()).flat_map(|j| (j + 1..axes.len()).map(move |k| [j, k]));
         let all = || (0..poses.len()).collect();
-        let projection = |[j, k]: [usize; 2]| Panel::of(problem, &[axes[j], axes[k]], all(), poses);
+        let projection = |[j, k]: [usize; 2]| BenchSlice::of(problem, &[axes[j], axes[k]], all(), poses);
         return Ok(pairs.take(MOST_PROJECTIONS).map(projection).collect());
     };
-    let mut panels: Vec<Panel> =
-        groups.into_iter().map(|numbers| Panel::of(problem, across, numbers, poses)).collect();
+    let mut panels: Vec<BenchSlice> =
+        groups.into_iter().map(|numbers| BenchSlice::of(problem, across, numbers, poses)).collect();
     let rows = if across.len() > 1 { CELLS } else { 1 };
     let cells = for_each(
         rows * panels.len(),
@@ -110,7 +110,7 @@ pub fn panels(
             let (panel, row) = (&panels[job / rows], job % rows);
             let mut pose = [0.0; 5];
             for (axis, ends) in &panel.others {
-                pose[axis.index()] = Panel::middle(*ends).0;
+                pose[axis.index()] = BenchSlice::middle(*ends).0;
             }
             let center = |range: &[f64; 2], k: usize| {
                 range[0] + (range[1] - range[0]) * (k as f64 + 0.5) / CELLS as f64
