@@ -51,7 +51,8 @@ class Error(Exception):
     ) -> None:
         message = _escaped(message)
         self.diagnostics = tuple(
-            Diagnostic(_escaped(text), advice and _escaped(advice), *rest) for text, advice, *rest in diagnostics
+            Diagnostic(_escaped(text), advice and _escaped(advice), line, column, severity, code)
+            for text, advice, line, column, severity, code in diagnostics
         )
         super().__init__(message, self.diagnostics, omitted, path)
         #: Number of further errors that are not in `diagnostics`.
