@@ -46,9 +46,9 @@ impl DisplayUnit {
             .into_iter()
             .zip(error.to_array())
             .filter(|(dof, value)| value.abs() >= NONE[usize::from(dof.is_rotation())]);
-        let display_unit: Vec<String> =
+        let parts: Vec<String> =
             parts.map(|(dof, value)| format!("{} {}", dof.name(), self.amount(dof, value))).collect();
-        if display_unit.is_empty() { "no error".to_owned() } else { display_unit.join(", ") }
+        if parts.is_empty() { "no error".to_owned() } else { parts.join(", ") }
     }
 }
 
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_are_reported_in_the_unit_and_angles_in_degrees() {
+    fn lengths_are_in_the_unit_and_angles_in_degrees() {
         let display_unit = DisplayUnit { scale: 50.0, unit: "mm" };
         let error = PoseError { x: 0.2, roll: 1e-9, pitch: -1.0, ..PoseError::default() };
         assert_eq!(display_unit.error(&error), "x 10 mm, pitch -57.30 deg");

@@ -1,4 +1,4 @@
-//! Every error of an input and every doubt of a result, as data for any front end.
+//! Every error of an input and every warning or note about a result, as data for any front end.
 //!
 //! ```text
 //!   reader ──▶ Diagnostic { severity, code, message, advice, span } ──▶ terminal, JSON, Python, page
