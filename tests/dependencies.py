@@ -5,7 +5,7 @@
 What `cargo deny check licenses bans sources` says, where cargo-deny is not: from Cargo.lock as cargo reads it, and from the same deny.toml. Licences are those
 that crates state; that their texts are of these licences is for cargo-deny to say.
 
-The wheel of ./check and the fuzz targets share the dependencies that the tests have compiled only where each has the same features and the same profile.
+The wheel of ./check shares the dependencies that the tests have compiled only where each has the same features.
 """
 
 import collections
@@ -82,35 +82,19 @@ def compiled():
     return [package for package in packages if (package["name"], f"v{package['version']}") in found]
 
 
-FUZZ = ROOT / "fuzz/Cargo.toml"
-#: What only the fuzz targets need.
-FUZZING = {"arbitrary", "cc", "jobserver", "libfuzzer-sys"}
-
-
 def features(*selection):
     """Every dependency that is compiled, as `name version [features]`."""
     tree = cargo("tree", "--locked", "--prefix=none", "--no-dedupe", "--format={p} [{f}]", *selection)
     lines = {line.replace(" (proc-macro)", "") for line in tree.splitlines() if line}
-    return {line for line in lines if not line.startswith("catchment") and line.split()[0] not in FUZZING}
+    return {line for line in lines if not line.startswith("catchment")}
 
 
 def compiled_again():
-    """Dependencies of the wheel and of the fuzz targets that the tests have not compiled in the same way."""
+    """Dependencies of the wheel that the tests have not compiled in the same way."""
     of_tests = features("--workspace", "--all-features", "--edges=normal,build,dev")
     of_wheel = features("--package=catchment-py", "--features=extension-module,as-tests", "--edges=normal,build")
-    of_fuzz = features(f"--manifest-path={FUZZ}", "--edges=normal,build")
-    for name, found in (("the wheel", of_wheel), ("fuzz", of_fuzz)):
-        for line in sorted(found - of_tests):
-            yield f"{name} compiles {line} a second time"
-    ours, fuzz = (tomllib.loads(path.read_text(encoding="utf-8"))["profile"] for path in (ROOT / "Cargo.toml", FUZZ))
-    for key, wanted in (("opt-level", ours["test"]["opt-level"]), ("debug", ours["dev"]["debug"])):
-        if fuzz["dev"][key] != wanted:
-            yield f"[profile.dev] of fuzz has {key} = {fuzz['dev'][key]}, the tests {wanted}"
-    of_both = {line.split()[0] for line in of_fuzz}
-    for name in sorted(of_both):
-        wanted, found = (profile["dev"]["package"].get(name) for profile in (ours, fuzz))
-        if wanted != found:
-            yield f"[profile.dev.package] of fuzz has {found} for {name}, the workspace {wanted}"
+    for line in sorted(of_wheel - of_tests):
+        yield f"the wheel compiles {line} a second time"
 
 
 def main():

@@ -13,43 +13,23 @@ mod systems;
 use libfuzzer_sys::fuzz_target;
 use std::sync::OnceLock;
 
-/// What an input goes to.
-type Target = fn(&[u8]);
-
-/// The targets by their names, which are those of their corpora.
-const TARGETS: [(&str, Target); 18] = [
-    ("arguments", arguments),
-    ("design", readers::design_file),
-    ("drawing", readers::drawing),
-    ("dynamics", readers::dynamics),
-    ("lines", readers::line),
-    ("obj", readers::obj_file),
-    ("ply", readers::ply_file),
-    ("poses", readers::pose_table),
-    ("report", readers::report),
-    ("request", request),
-    ("requirement", readers::requirement),
-    ("resolution", readers::resolution),
-    ("robots", readers::robots),
-    ("step", readers::step_answer),
-    ("stl", readers::stl_file),
-    ("systems", systems::file),
-    ("threemf", readers::threemf_file),
-    ("zarr", readers::group),
-];
+/// Targets beside those of the readers.
+const OTHERS: &[readers::Target] =
+    &[("arguments", arguments), ("request", request), ("systems", systems::file)];
 
 fuzz_target!(|bytes: &[u8]| {
-    static TARGET: OnceLock<Target> = OnceLock::new();
+    static TARGET: OnceLock<fn(&[u8])> = OnceLock::new();
     TARGET.get_or_init(chosen)(bytes);
 });
 
 /// The target that the environment names.
-fn chosen() -> Target {
+fn chosen() -> fn(&[u8]) {
     let name = std::env::var("CATCHMENT_FUZZ").unwrap_or_default();
-    let target = TARGETS.iter().find(|(known, _)| *known == name);
+    let targets = || readers::TARGETS.iter().chain(OTHERS);
+    let target = targets().find(|(known, _)| *known == name);
     target.map_or_else(
         || {
-            let names: Vec<&str> = TARGETS.iter().map(|(known, _)| *known).collect();
+            let names: Vec<&str> = targets().map(|(known, _)| *known).collect();
             eprintln!("CATCHMENT_FUZZ is `{name}`; it names one of {}", names.join(", "));
             std::process::exit(2)
         },

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Spoilt copies; more by the environment variable `READER_RUNS`.
-const RUNS: usize = 2000;
+const RUNS: usize = 6000;
 /// As long as one may take on a busy machine.
 const LONGEST: Duration = Duration::from_secs(10);
 

@@ -18,6 +18,29 @@ use catchment::report::Report;
 use catchment::run::Requirement;
 use std::path::Path;
 
+/// What an input goes to, by the name of its corpus.
+pub(crate) type Target = (&'static str, fn(&[u8]));
+
+/// The readers; their corpora are folders of `fuzz/corpus`.
+pub(crate) const TARGETS: &[Target] = &[
+    ("design", design_file),
+    ("drawing", drawing),
+    ("dynamics", dynamics),
+    ("lines", line),
+    ("obj", obj_file),
+    ("ply", ply_file),
+    ("poses", pose_table),
+    ("report", report),
+    ("requirement", requirement),
+    ("resolution", resolution),
+    ("robots", robots),
+    ("step", step_answer),
+    ("stl", stl_file),
+    ("threemf", threemf_file),
+    #[cfg(feature = "zarr")]
+    ("zarr", group),
+];
+
 /// A design in millimetres, free in all five errors.
 pub(crate) fn design() -> Design {
     let text = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n";
@@ -25,7 +48,7 @@ pub(crate) fn design() -> Design {
 }
 
 /// A design file gives a design that obeys its own rules, or problems whose places lie in the text.
-pub(crate) fn design_file(bytes: &[u8]) {
+fn design_file(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     match read(&text, Path::new("no-such-folder")) {
         Ok(file) => {
@@ -55,7 +78,7 @@ pub(crate) fn design_file(bytes: &[u8]) {
 }
 
 /// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
-pub(crate) fn stl_file(bytes: &[u8]) {
+fn stl_file(bytes: &[u8]) {
     mesh_file("half.stl", bytes);
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
         Ok(half) => {
@@ -69,22 +92,22 @@ pub(crate) fn stl_file(bytes: &[u8]) {
 }
 
 /// What the reader of OBJ files accepts is a closed solid, and what it refuses has few reasons.
-pub(crate) fn obj_file(bytes: &[u8]) {
+fn obj_file(bytes: &[u8]) {
     mesh_file("half.obj", bytes);
 }
 
 /// The same of PLY files.
-pub(crate) fn ply_file(bytes: &[u8]) {
+fn ply_file(bytes: &[u8]) {
     mesh_file("half.ply", bytes);
 }
 
 /// The same of 3MF files.
-pub(crate) fn threemf_file(bytes: &[u8]) {
+fn threemf_file(bytes: &[u8]) {
     mesh_file("half.3mf", bytes);
 }
 
 /// An answer of the interpreter that meshes STEP files: triangles of which closed solids are made as of any others, or a reason.
-pub(crate) fn step_answer(bytes: &[u8]) {
+fn step_answer(bytes: &[u8]) {
     match bodies_of_answer(bytes) {
         Ok(bodies) => {
             let triangles: Vec<_> = bodies.into_iter().flatten().collect();
@@ -107,7 +130,7 @@ pub(crate) fn step_answer(bytes: &[u8]) {
 }
 
 /// What the readers of drawings accept makes a solid when it is extruded.
-pub(crate) fn drawing(bytes: &[u8]) {
+fn drawing(bytes: &[u8]) {
     for name in ["plate.svg", "plate.dxf"] {
         let outline = OutlineSpec::File(FileSpec::new(name, 0.1));
         let shape = ShapeSpec::Profile { outline, height: 0.5, chord_error: 1e-3 };
@@ -153,7 +176,7 @@ fn mesh_treated(name: &str, bytes: &[u8], treatment: MeshPreparation) -> bool {
 }
 
 /// A table of poses has as many errors as rows, all finite, and diagnostics lie in the text; so has one of trials, each of them once.
-pub(crate) fn pose_table(bytes: &[u8]) {
+fn pose_table(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
     for at in [OffsetsAt::Face, OffsetsAt::Cor] {
@@ -192,7 +215,7 @@ pub(crate) fn pose_table(bytes: &[u8]) {
 }
 
 /// A file of robots: finite moments, correlations of which none is beyond 1, or problems whose places lie in the text.
-pub(crate) fn robots(bytes: &[u8]) {
+fn robots(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut table = |name: &str| match name {
         "no.csv" => Err("cannot read no.csv".to_owned()),
@@ -226,7 +249,7 @@ pub(crate) fn robots(bytes: &[u8]) {
 }
 
 /// A file of laws: every value that is drawn lies in the range of what it describes, or problems whose places lie in the text.
-pub(crate) fn dynamics(bytes: &[u8]) {
+fn dynamics(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     match read_dynamics(&SourceText::new("dynamics.toml", text.clone()), &design()) {
         Ok(dynamics) => {
@@ -250,7 +273,7 @@ pub(crate) fn dynamics(bytes: &[u8]) {
 }
 
 /// One line that a person writes: a pose, a quantity, degrees of freedom, a distribution.
-pub(crate) fn line(bytes: &[u8]) {
+fn line(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
     if let Ok(error) = parse_pose(&text, &design) {
@@ -277,7 +300,7 @@ pub(crate) fn line(bytes: &[u8]) {
 }
 
 /// A stored report that is read is written again, and told, whatever its numbers are.
-pub(crate) fn report(bytes: &[u8]) {
+fn report(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(report) = Report::from_json(&text) {
         let again = report.to_json().expect("what was read has a JSON form");
@@ -289,7 +312,7 @@ pub(crate) fn report(bytes: &[u8]) {
 }
 
 /// A requirement is a path and a number.
-pub(crate) fn requirement(bytes: &[u8]) {
+fn requirement(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(requirement) = text.parse::<Requirement>() {
         let report = serde_json::json!({ "onaa": { "edge": 0.25 }, "success": null });
@@ -298,7 +321,7 @@ pub(crate) fn requirement(bytes: &[u8]) {
 }
 
 /// A resolution gives a grid with that many cells, or says why not.
-pub(crate) fn resolution(bytes: &[u8]) {
+fn resolution(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(resolution) = text.parse::<Resolution>()
         && let Ok(grid) = resolution.grid(&design().alignment, &[3; 5])
@@ -313,7 +336,7 @@ pub(crate) const FILES_END: &[u8] = b"\n=====\n";
 
 /// Three files of a group, one behind the other: its metadata, those of its outcomes, and their first chunk.
 #[cfg(feature = "zarr")]
-pub(crate) fn group(bytes: &[u8]) {
+fn group(bytes: &[u8]) {
     use catchment::exec::Exec;
     const NAMES: [&str; 3] = ["zarr.json", "outcome/zarr.json", "outcome/c/0/0"];
     let home = tempfile::tempdir().expect("a folder for a group");
