@@ -83,7 +83,7 @@ fn all_figures(rates: &mut Rates, set: &Acceptance, exec: &Exec) {
     });
     figure("ONAA", &mut || assert_eq!(Onaa::of(set, exec).expect("an edge").edge, 1.0 / 3.0));
     figure("centred cube", &mut || {
-        let scale = centered_cube(set, exec).expect("a cube").scale;
+        let scale = centered_cube(set, exec).expect("a cube").edge;
         assert!((scale - 4.0 / 15.0).abs() < 1e-12, "{scale}");
     });
     figure("tolerances", &mut || assert_eq!(tolerances(set).expect("tolerances").len(), 5));
@@ -91,8 +91,8 @@ fn all_figures(rates: &mut Rates, set: &Acceptance, exec: &Exec) {
     let sigma = PoseError::from_array([0.3, 0.3, 0.5, 0.5, 0.5]);
     let normal = Distribution::Normal { mean: PoseError::default(), sigma };
     figure("success", &mut || {
-        let found = success(set, &normal, exec).expect("a probability");
-        assert!((found.probability - 0.203_515_464_769_75).abs() < 1e-12, "{}", found.probability);
+        let result = success(set, &normal, exec).expect("a probability");
+        assert!((result.probability - 0.203_515_464_769_75).abs() < 1e-12, "{}", result.probability);
     });
 }
 

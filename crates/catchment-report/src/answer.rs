@@ -3,9 +3,7 @@
 use super::Report;
 use super::envelope::{ReportBody, ReportEnvelope};
 use super::json_schema;
-use super::schema::{
-    PartitionReport, RunBody, SuccessReport, Timing, UprightReport, WatershedsReport, WindowSection,
-};
+use super::schema::{PartitionReport, RunBody, SuccessReport, Timing, WatershedsReport, WindowSection};
 use catchment_core::acceptance::Domain;
 use catchment_core::pose::DofSet;
 use catchment_core::problem::Problem;
@@ -31,16 +29,17 @@ impl Report {
             report.partition = Some(PartitionReport::new(partition));
         }
         report = match answer.by_products.certificate {
-            Some(found) => report.with_certificate(found),
+            Some(result) => report.with_certificate(result),
             None => report,
         };
         report.inherited = answer.by_products.inherited;
         if let (Some(distribution), Some(success)) = (&answer.run.errors, &answer.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
-        report.upright = answer.upright.as_ref().map(UprightReport::from);
+        report.upright.clone_from(&answer.upright);
         report.jams.clone_from(&answer.jams);
-        report.window = answer.window.as_ref().and_then(|found| found.as_ref().ok()).map(WindowSection::from);
+        report.window =
+            answer.window.as_ref().and_then(|result| result.as_ref().ok()).map(WindowSection::from);
         report.seat = Some(answer.seating.clone());
         report.warnings = answer.warnings();
         report

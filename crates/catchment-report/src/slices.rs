@@ -1,12 +1,13 @@
 //! Slices as versioned JSON, text and tables.
 
-use super::schema::{AcceptanceReport, AxisReport, OnaaReport, axes};
+use super::schema::{AcceptanceReport, AxisReport, axes};
 use catchment_core::design::Design;
 use catchment_core::diagnostic::Diagnostic;
 use catchment_core::document::{
     Cell, Column, ColumnFormat, Document, Subject, Table, grouped, percent, significant,
 };
 use catchment_core::merit::estimate::Estimate;
+use catchment_core::merit::onaa::Onaa;
 use catchment_study::slices::{Slice, Slices, SlicesSettings};
 use serde::Serialize;
 
@@ -34,18 +35,18 @@ pub struct SliceReport {
     /// The accepted set.
     pub acceptance: AcceptanceReport,
     /// The largest axis-oriented square.
-    pub onaa: OnaaReport,
+    pub onaa: Onaa,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl SlicesResult {
     /// Of slices that were computed with these settings.
-    pub fn of(found: &Slices, settings: SlicesSettings) -> Self {
+    pub fn of(result: &Slices, settings: SlicesSettings) -> Self {
         Self {
             settings,
-            slices: found.slices.iter().map(SliceReport::from).collect(),
-            onaa_estimate: found.estimate,
+            slices: result.slices.iter().map(SliceReport::from).collect(),
+            onaa_estimate: result.estimate,
         }
     }
 
@@ -126,7 +127,7 @@ impl From<&Slice> for SliceReport {
                 sum_bracket: Some(slice.bracket),
                 ..AcceptanceReport::from(slice.sum.clone())
             },
-            onaa: slice.onaa.clone().into(),
+            onaa: slice.onaa.clone(),
             warnings: slice.warnings.clone(),
         }
     }
@@ -167,9 +168,13 @@ mod tests {
         let bracket = [0.9 * sum.sum, 1.1 * sum.sum];
         let slice = Slice { axes: [Dof::Pitch, Dof::Yaw], acceptance, sum, bracket, onaa, warnings };
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });
-        let found = Slices { slices: vec![slice], estimate };
-        let report =
-            SlicesReport::new(&design, SlicesResult::of(&found, SlicesSettings::default()), Vec::new(), None);
+        let result = Slices { slices: vec![slice], estimate };
+        let report = SlicesReport::new(
+            &design,
+            SlicesResult::of(&result, SlicesSettings::default()),
+            Vec::new(),
+            None,
+        );
         let text = report.table();
         for line in text.lines() {
             assert!(line.chars().count() <= 80 && line == line.trim_end(), "{line:?}");

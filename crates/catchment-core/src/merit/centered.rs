@@ -15,29 +15,54 @@
 //!
 //! If poses can be followed singly, a run finds the box by exact motions instead ([`crate::run`]).
 
+use super::onaa::Interval;
 use super::{MeritError, advance, axis_number, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, DofSet, PoseError};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-/// A box with its centre at zero.
-#[derive(Debug, Clone, PartialEq)]
+/// The largest box around zero in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CenteredBox {
-    /// Its size relative to the wanted proportions; for the cube, its edge in [0, 1] of the error box.
-    pub scale: f64,
-    /// Half-width along each axis of the grid, in D and radians.
-    pub half_widths: Vec<(Dof, f64)>,
-    /// The border of the error box stopped it: it may be larger.
+    /// Size relative to the wanted proportions; for the cube, its edge with each axis divided by its range: in
+    /// [0, 1].
+    pub edge: f64,
+    /// Bounds of the box, from −h to h along each axis.
+    pub bounds: Vec<Interval>,
+    /// Whether the border of the error box limits the box, so that it may be larger.
     pub reaches_border: bool,
-    /// Number of sampled poses of it, all of which dock; `None` if it rests on cells.
+    /// Whether exact motions determined the size, independently of the cells; false in reports of older
+    /// versions.
+    #[serde(default)]
+    pub followed: bool,
+    /// Number of sampled poses of the final box, all of which dock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampled: Option<usize>,
-    /// The errors that limit it: with one of them slightly larger and the others inside the box a pose fails. Empty if it rests on
-    /// cells.
-    pub limited_by: DofSet,
+    /// Errors that limit the box: with one of them slightly larger and the others inside it a pose fails; absent if the
+    /// cells determined the size.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limited_by: Vec<Dof>,
 }
 
-/// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
+impl CenteredBox {
+    /// A box of half-widths in D and radians, by as many sampled poses, or by cells.
+    pub(crate) fn of(
+        edge: f64,
+        half_widths: impl IntoIterator<Item = (Dof, f64)>,
+        reaches_border: bool,
+        sampled: Option<usize>,
+        limited_by: DofSet,
+    ) -> Self {
+        let bounds = half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
+        let limited_by = limited_by.iter().collect();
+        Self { edge, bounds, reaches_border, followed: sampled.is_some(), sampled, limited_by }
+    }
+}
+
+/// The largest centred cube after each axis is divided by its range: `edge` = 1 is the whole error box.
 ///
 /// # Errors
 /// If the outcomes are of listed poses, or it is cancelled.
@@ -88,13 +113,8 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64], exec: &Exec) -> Resul
     let scale = exec.install(|| first_rejected(acceptance, &table, border, exec))?;
     // Without any width the box is a point: there or not.
     let scale = if scale.is_finite() { scale } else { 1.0 };
-    Ok(CenteredBox {
-        scale,
-        half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
-        reaches_border: scale >= border,
-        sampled: None,
-        limited_by: DofSet::EMPTY,
-    })
+    let half_widths = grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half));
+    Ok(CenteredBox::of(scale, half_widths, scale >= border, None, DofSet::EMPTY))
 }
 
 /// The least scale, up to `border`, at which the box meets a rejected cell; `table` has the scale at which it
@@ -156,7 +176,7 @@ mod tests {
             }
             let mut proportions = [0.0; 5];
             proportions[..shape.len()].copy_from_slice(&widths[..shape.len()]);
-            let found = centered_box(&accepted, &PoseError::from_array(proportions), &Exec::new()).unwrap();
+            let result = centered_box(&accepted, &PoseError::from_array(proportions), &Exec::new()).unwrap();
             let clean = |scale: f64| (0..g.len()).all(|i| {
                 let cell = g.cell(i);
                 let meets = g.axes.iter().zip(&cell).zip(&widths).all(|((a, k), w)| {
@@ -165,8 +185,8 @@ mod tests {
                 });
                 !meets || accepted.outcomes[i] == crate::acceptance::Outcome::Aligned
             });
-            prop_assert!(found.scale == 0.0 || clean(found.scale));
-            prop_assert!(found.reaches_border || !clean(found.scale + 1e-6));
+            prop_assert!(result.edge == 0.0 || clean(result.edge));
+            prop_assert!(result.reaches_border || !clean(result.edge + 1e-6));
         }
     }
 
@@ -175,7 +195,7 @@ mod tests {
         // Half edge r/√3; it stops at the border of a cell whose centre is outside the ball: within a cell of 0.04.
         for cells in [50, 51] {
             let cube = centered_cube(&ball(&grid(&[cells; 3], &[1.0; 3]), 0.9), &Exec::new()).unwrap();
-            assert!((cube.scale - 0.9 / 3f64.sqrt()).abs() < 0.04, "{cells}: {}", cube.scale);
+            assert!((cube.edge - 0.9 / 3f64.sqrt()).abs() < 0.04, "{cells}: {}", cube.edge);
             assert!(!cube.reaches_border);
         }
     }
@@ -185,10 +205,10 @@ mod tests {
         let g = grid(&[40, 40], &[1.0, 1.0]);
         let accepted = accept(&g, |e| e[0].abs() < 0.5 && e[1].abs() < 0.25);
         let wide = PoseError { x: 4.0, y: 1.0, ..PoseError::default() };
-        let found = centered_box(&accepted, &wide, &Exec::new()).unwrap();
-        assert!((found.scale - 0.125).abs() < 1e-12);
+        let result = centered_box(&accepted, &wide, &Exec::new()).unwrap();
+        assert!((result.edge - 0.125).abs() < 1e-12);
         let line = PoseError { x: 1.0, ..PoseError::default() };
-        assert!((centered_box(&accepted, &line, &Exec::new()).unwrap().scale - 0.5).abs() < 1e-12);
+        assert!((centered_box(&accepted, &line, &Exec::new()).unwrap().edge - 0.5).abs() < 1e-12);
         let unknown = PoseError { yaw: 1.0, ..PoseError::default() };
         assert!(matches!(
             centered_box(&accepted, &unknown, &Exec::new()),
@@ -199,6 +219,6 @@ mod tests {
     #[test]
     fn a_box_stopped_by_the_error_box_says_so() {
         let cube = centered_cube(&accept(&grid(&[6, 7], &[1.0, 1.5]), |_| true), &Exec::new()).unwrap();
-        assert_eq!((cube.scale, cube.reaches_border), (1.0, true));
+        assert_eq!((cube.edge, cube.reaches_border), (1.0, true));
     }
 }

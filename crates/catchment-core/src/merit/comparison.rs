@@ -330,9 +330,9 @@ fn distances(first: &Acceptance, second: &Acceptance, exec: &Exec) -> Result<Opt
     if differing.is_empty() || accepts == 0 || accepts == first.outcomes.len() {
         return Ok(None);
     }
-    let mut found = [Vec::new(), Vec::new()];
+    let mut result = [Vec::new(), Vec::new()];
     let steps = [vec![1.0; grid.axes.len()], grid.axes.iter().map(|axis| 1.0 / axis.cells as f64).collect()];
-    for (found, spacing) in found.iter_mut().zip(&steps) {
+    for (result, spacing) in result.iter_mut().zip(&steps) {
         for side in [true, false] {
             if !differing.iter().any(|cell| accepted(first, *cell) == side) {
                 continue;
@@ -341,10 +341,10 @@ fn distances(first: &Acceptance, second: &Acceptance, exec: &Exec) -> Result<Opt
             let squares =
                 squared_distances(&grid.shape(), spacing, |cell| accepted(first, cell) != side, exec)?;
             let own = differing.iter().filter(|cell| accepted(first, **cell) == side);
-            found.extend(own.map(|cell| f64::from(squares[*cell]).sqrt()));
+            result.extend(own.map(|cell| f64::from(squares[*cell]).sqrt()));
         }
     }
-    let [cells, error_box] = found.map(Quantiles::of);
+    let [cells, error_box] = result.map(Quantiles::of);
     Ok(Some(Distances { cells, error_box }))
 }
 
@@ -381,17 +381,17 @@ mod tests {
     fn concentric_balls_have_their_closed_form() {
         let g = grid(&[200, 200], &[1.0, 1.0]);
         let (small, large) = (ball(&g, 0.5), ball(&g, 0.7));
-        let found = compared(&small, &large);
+        let result = compared(&small, &large);
         let ratio: f64 = 0.49 / 0.25;
-        assert!((found.jaccard * ratio - 1.0).abs() < 0.005, "{}", found.jaccard);
-        assert!((found.sum_ratio.unwrap() / ratio - 1.0).abs() < 0.005);
-        assert!((found.agreement - (1.0 - PI * 0.24 / 4.0)).abs() < 0.002);
-        assert!((found.onaa_ratio.unwrap() - 1.4).abs() < 0.03);
+        assert!((result.jaccard * ratio - 1.0).abs() < 0.005, "{}", result.jaccard);
+        assert!((result.sum_ratio.unwrap() / ratio - 1.0).abs() < 0.005);
+        assert!((result.agreement - (1.0 - PI * 0.24 / 4.0)).abs() < 0.002);
+        assert!((result.onaa_ratio.unwrap() - 1.4).abs() < 0.03);
         assert_eq!(
-            (found.only_first, found.confusion[0][1], found.confusion[1][0]),
-            (0, 0, found.only_second)
+            (result.only_first, result.confusion[0][1], result.confusion[1][0]),
+            (0, 0, result.only_second)
         );
-        let d = found.distances.unwrap();
+        let d = result.distances.unwrap();
         // 0.2 is 20 cells, and 0.1 of the error box. Half of a ring's area lies inside the median radius.
         assert!((d.cells.max - 20.0).abs() < 1.5 && (d.error_box.max - 0.1).abs() < 0.0075, "{d:?}");
         let median = 100.0 * (0.37f64.sqrt() - 0.5);
@@ -401,12 +401,12 @@ mod tests {
     #[test]
     fn an_acceptance_agrees_with_itself() {
         let g = grid(&[9, 8, 7], &[1.0, 1.0, 1.0]);
-        let found = compared(&ball(&g, 0.7), &ball(&g, 0.7));
-        assert_eq!((found.jaccard, found.agreement, found.sum_ratio), (1.0, 1.0, Some(1.0)));
-        assert_eq!(found.distances, None);
+        let result = compared(&ball(&g, 0.7), &ball(&g, 0.7));
+        assert_eq!((result.jaccard, result.agreement, result.sum_ratio), (1.0, 1.0, Some(1.0)));
+        assert_eq!(result.distances, None);
         let nothing = accept(&g, |_| false);
-        let found = compared(&nothing, &ball(&g, 0.5));
-        assert_eq!((found.jaccard, found.sum_ratio, found.distances), (0.0, None, None));
+        let result = compared(&nothing, &ball(&g, 0.5));
+        assert_eq!((result.jaccard, result.sum_ratio, result.distances), (0.0, None, None));
         assert_eq!(compared(&nothing, &nothing).jaccard, 1.0);
     }
 
@@ -434,8 +434,8 @@ mod tests {
     #[test]
     fn a_grid_finer_by_odd_factors_is_compared_at_the_centres_that_both_have() {
         let (coarse, fine) = (grid(&[6, 10], &[1.0, 1.0]), grid(&[18, 10], &[1.0, 1.0]));
-        let found = compared(&ball(&coarse, 0.7), &ball(&fine, 0.7));
-        assert_eq!((found.poses, found.jaccard), (60, 1.0));
+        let result = compared(&ball(&coarse, 0.7), &ball(&fine, 0.7));
+        assert_eq!((result.poses, result.jaccard), (60, 1.0));
         assert_eq!(compared(&ball(&fine, 0.7), &ball(&coarse, 0.7)).poses, 60);
         let mixed = compared(&ball(&grid(&[18, 10], &[1.0; 2]), 0.7), &ball(&grid(&[6, 50], &[1.0; 2]), 0.7));
         assert_eq!((mixed.poses, mixed.jaccard), (60, 1.0));
@@ -466,7 +466,7 @@ mod tests {
         let lists = Paired::of(&listed(3), &listed(4)).unwrap_err();
         assert_eq!(lists, ComparisonError::Poses { first_difference: None });
         let three = listed(3);
-        let found = compared(&three, &three);
-        assert_eq!((found.poses, found.onaa_edges, found.distances), (3, None, None));
+        let result = compared(&three, &three);
+        assert_eq!((result.poses, result.onaa_edges, result.distances), (3, None, None));
     }
 }

@@ -105,11 +105,11 @@ mod tests {
         ) {
             let g = grid(&shape, &vec![1.0; shape.len()]);
             let defined = brute::squared_distances(&g, &spacing, &marks[..g.len()]);
-            let found = squared_distances(&shape, &spacing, |cell| marks[cell], &Exec::new()).unwrap();
-            for (found, defined) in found.into_iter().zip(defined) {
-                let found = f64::from(found);
+            let result = squared_distances(&shape, &spacing, |cell| marks[cell], &Exec::new()).unwrap();
+            for (result, defined) in result.into_iter().zip(defined) {
+                let result = f64::from(result);
                 // Rounded to single precision once per axis.
-                prop_assert!(found == defined || (found / defined - 1.0).abs() < 5e-7, "{found} for {defined}");
+                prop_assert!(result == defined || (result / defined - 1.0).abs() < 5e-7, "{result} for {defined}");
             }
         }
     }

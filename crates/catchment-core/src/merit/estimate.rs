@@ -47,16 +47,16 @@ mod tests {
 
     #[test]
     fn the_published_slices_give_the_published_estimates() {
-        let found = Estimate::of(0.390, &[0.536, 0.415, 0.524]);
-        assert_eq!(found.optimistic, 0.390);
-        assert!((found.conservative - 0.204).abs() < 0.0005, "{}", found.conservative);
+        let result = Estimate::of(0.390, &[0.536, 0.415, 0.524]);
+        assert_eq!(result.optimistic, 0.390);
+        assert!((result.conservative - 0.204).abs() < 0.0005, "{}", result.conservative);
     }
 
     #[test]
     fn equal_slices_give_the_diamond_and_empty_ones_nothing() {
         // n is the same along all five axes: 2 n = 1/e, and 5 n d = 1.
-        let found = Estimate::of(0.5, &[0.5; 3]);
-        assert!((found.conservative - 0.4 * 0.5).abs() < 1e-15);
+        let result = Estimate::of(0.5, &[0.5; 3]);
+        assert!((result.conservative - 0.4 * 0.5).abs() < 1e-15);
         assert_eq!(Estimate::of(0.0, &[0.5; 3]), Estimate { optimistic: 0.0, conservative: 0.0 });
         assert_eq!(Estimate::of(0.5, &[0.5, 0.0]).conservative, 0.0);
         // Here the plane lies beyond the smallest slice, or is not met at all.

@@ -22,18 +22,33 @@ use crate::landscape::{Grid, GridAxis};
 use crate::pose::Dof;
 use crate::tolerance::ROUNDING;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// The largest axis-oriented cube.
-#[derive(Debug, Clone, PartialEq)]
+/// The largest axis-oriented n-cube in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Onaa {
-    /// Its edge, in [0, 1]: 1 is the whole error box.
+    /// Edge of the cube, with each axis divided by its range: in [0, 1].
     pub edge: f64,
-    /// Bounds of the cube: `(axis, lower border, upper border)` in D and radians, in the order of the grid's
-    /// axes. Of several cubes, the one with its centre nearest to zero. Empty if the edge is 0.
-    pub bounds: Vec<(Dof, f64, f64)>,
-    /// Whether its size was found by following poses, so that it does not rest on cells.
-    pub is_followed: bool,
+    /// Bounds of the cube, of several the one with its centre nearest to zero; empty if the edge is 0.
+    pub bounds: Vec<Interval>,
+    /// Whether exact motions determined the size, independently of the cells; false in reports of older
+    /// versions.
+    #[serde(default)]
+    pub followed: bool,
+}
+
+/// An interval along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Interval {
+    /// The error.
+    pub axis: Dof,
+    /// Lower end, D or rad.
+    pub lo: f64,
+    /// Upper end, D or rad.
+    pub hi: f64,
 }
 
 impl Onaa {
@@ -46,7 +61,7 @@ impl Onaa {
         let accepted = Mask::of(&grid.shape(), &acceptance.outcomes, |o| o == Outcome::Aligned, exec)?;
         let fitting = Fitting::largest(&grid.shape(), accepted, exec)?;
         let bounds = fitting.nearest_to_zero(grid, exec);
-        Ok(Self { edge: fitting.edge.value(), bounds, is_followed: false })
+        Ok(Self { edge: fitting.edge.value(), bounds, followed: false })
     }
 
     /// The form that the dissertation's planar tables print.
@@ -112,7 +127,7 @@ impl Fitting {
     }
 
     /// The position of the cube nearest to zero: among equals, the first in memory.
-    fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<(Dof, f64, f64)> {
+    fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<Interval> {
         if self.edge.cells == 0 {
             return Vec::new();
         }
@@ -148,7 +163,7 @@ impl Fitting {
         });
         let bounds = |((axis, centers), k): ((&GridAxis, &Vec<f64>), usize)| {
             let half = 0.5 * self.edge.value() * (axis.hi - axis.lo);
-            (axis.dof, centers[k] - half, centers[k] + half)
+            Interval { axis: axis.dof, lo: centers[k] - half, hi: centers[k] + half }
         };
         let cell = corner.map(|index| grid.cell(index)).unwrap_or_default();
         grid.axes.iter().zip(&centers).zip(cell).map(bounds).collect()
@@ -223,7 +238,7 @@ mod tests {
             prop_assert_eq!(onaa.bounds.is_empty(), onaa.edge == 0.0);
             let g = acceptance.grid().unwrap();
             for index in (0..accepted.len()).filter(|_| onaa.edge > 0.0) {
-                let meets = g.axes.iter().zip(g.cell(index)).zip(&onaa.bounds).all(|((a, k), (_, lo, hi))| {
+                let meets = g.axes.iter().zip(g.cell(index)).zip(&onaa.bounds).all(|((a, k), Interval { lo, hi, .. })| {
                     *lo < a.lo + (k + 1) as f64 * a.step() - 1e-9 && *hi > a.lo + k as f64 * a.step() + 1e-9
                 });
                 prop_assert!(!meets || accepted[index]);
@@ -238,8 +253,8 @@ mod tests {
         let accepted = accept(&g, |e| e[0].abs() < 0.3 && e[1].abs() < 0.7 && e[2].abs() < 0.9);
         let onaa = Onaa::of(&accepted, &Exec::new()).unwrap();
         assert!((onaa.edge - 0.3).abs() < 1e-15);
-        let (dof, lo, hi) = onaa.bounds[2];
-        assert_eq!(dof, Dof::Roll);
+        let Interval { axis, lo, hi } = onaa.bounds[2];
+        assert_eq!(axis, Dof::Roll);
         assert!((lo + 0.45).abs() < 1e-12 && (hi - 0.45).abs() < 1e-12, "{lo} {hi}");
     }
 
@@ -256,7 +271,7 @@ mod tests {
     fn nothing_accepted_has_no_cube_and_everything_is_the_whole_box() {
         let g = grid(&[5, 5], &[1.0, 1.0]);
         let of = |all| Onaa::of(&accept(&g, |_| all), &Exec::new()).unwrap();
-        assert_eq!(of(false), Onaa { edge: 0.0, bounds: Vec::new(), is_followed: false });
+        assert_eq!(of(false), Onaa { edge: 0.0, bounds: Vec::new(), followed: false });
         assert_eq!(of(true).edge, 1.0);
     }
 }

@@ -270,30 +270,30 @@ mod tests {
 
     #[test]
     fn of_a_box_it_is_the_product_of_error_functions() {
-        let found = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma: SIGMA }).unwrap();
+        let result = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma: SIGMA }).unwrap();
         let exact = within(0.3, 0.3) * within(0.4, 0.2) * within(0.9, 0.5);
         let inside = within(1.0, 0.3) * within(1.0, 0.2) * within(1.5, 0.5);
-        assert!((found.probability - exact).abs() < 1e-13, "{} for {exact}", found.probability);
-        assert!((found.outside - (1.0 - inside)).abs() < 1e-13);
-        assert!(found.bracket[0] < exact && exact < found.bracket[1]);
-        assert_eq!(found.ci95, None);
+        assert!((result.probability - exact).abs() < 1e-13, "{} for {exact}", result.probability);
+        assert!((result.outside - (1.0 - inside)).abs() < 1e-13);
+        assert!(result.bracket[0] < exact && exact < result.bracket[1]);
+        assert_eq!(result.ci95, None);
     }
 
     #[test]
     fn uniform_errors_count_overlapping_volume() {
         let half_width = PoseError { x: 0.6, y: 2.0, roll: 0.45, ..ZERO };
         let mean = PoseError { x: 0.3, ..ZERO };
-        let found = success(&boxed(), &Distribution::Uniform { mean, half_width }).unwrap();
+        let result = success(&boxed(), &Distribution::Uniform { mean, half_width }).unwrap();
         // x: [−0.3, 0.9] ∩ [−0.3, 0.3] is half; y: 0.8 of 4; roll: all. Outside: half of y.
-        assert!((found.probability - 0.5 * 0.2).abs() < 1e-13, "{}", found.probability);
-        assert!((found.outside - 0.5).abs() < 1e-13);
+        assert!((result.probability - 0.5 * 0.2).abs() < 1e-13, "{}", result.probability);
+        assert!((result.outside - 0.5).abs() < 1e-13);
     }
 
     #[test]
     fn an_error_that_never_varies_is_a_point() {
         let sigma = PoseError { x: 0.3, ..ZERO };
-        let found = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma }).unwrap();
-        assert!((found.probability - within(0.3, 0.3)).abs() < 1e-13, "{}", found.probability);
+        let result = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma }).unwrap();
+        assert!((result.probability - within(0.3, 0.3)).abs() < 1e-13, "{}", result.probability);
     }
 
     /// The sample agrees with the exact sum to four standard errors (one in 16 000 seeds would fail; this
@@ -307,13 +307,13 @@ mod tests {
         let samples = 100_000;
         let sampled = Distribution::Correlated { mean: ZERO, covariance, samples, seed: 1 };
         let exact = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma: SIGMA }).unwrap();
-        let found = success(&boxed(), &sampled).unwrap();
+        let result = success(&boxed(), &sampled).unwrap();
         let standard_error = (exact.probability * (1.0 - exact.probability) / f64::from(samples)).sqrt();
-        assert!((found.probability - exact.probability).abs() < 4.0 * standard_error);
-        assert!((found.outside - exact.outside).abs() < 0.002);
-        let [lo, hi] = found.ci95.unwrap();
-        assert!(lo < found.probability && found.probability < hi);
-        assert_eq!(success(&boxed(), &sampled).unwrap(), found);
+        assert!((result.probability - exact.probability).abs() < 4.0 * standard_error);
+        assert!((result.outside - exact.outside).abs() < 0.002);
+        let [lo, hi] = result.ci95.unwrap();
+        assert!(lo < result.probability && result.probability < hi);
+        assert_eq!(success(&boxed(), &sampled).unwrap(), result);
     }
 
     #[test]

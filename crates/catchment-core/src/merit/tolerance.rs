@@ -17,26 +17,31 @@
 use super::{MeritError, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, ErrorUnit, PoseError};
+use serde::{Deserialize, Serialize};
 
 /// Single-axis limits of an error, in D or radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Tolerance {
-    /// Which error.
-    pub dof: Dof,
+    /// The error.
+    pub axis: Dof,
+    /// `D` or `rad`.
+    pub unit: ErrorUnit,
     /// Limit below zero; not negative.
     pub minus: f64,
     /// Limit above zero; not negative.
     pub plus: f64,
-    /// The border of the error box stopped `minus`: it may be larger.
-    pub minus_reaches_border: bool,
-    /// The border of the error box stopped `plus`: it may be larger.
-    pub plus_reaches_border: bool,
-    /// The uncertainty of `minus` and `plus`: half the width of a cell, or half the distance between the last pose that was seen to dock and
-    /// the first that does not.
+    /// Uncertainty of both: half a cell, or half the distance between a success and a failure.
     pub half_cell: f64,
-    /// Whether it was found by following poses, without a grid.
-    pub is_followed: bool,
+    /// Whether exact motions along the axis determined the limits, independently of the cells; false in
+    /// reports of older versions.
+    #[serde(default)]
+    pub followed: bool,
+    /// Whether `minus` ends at the border of the error box, so that it may be larger.
+    pub minus_reaches_border: bool,
+    /// Whether `plus` ends at the border of the error box, so that it may be larger.
+    pub plus_reaches_border: bool,
 }
 
 impl Tolerance {
@@ -76,13 +81,14 @@ fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Toleranc
     let below = (0..=lowest).rev().take_while(|k| accepted(*k)).last();
     let above = (highest..axis.cells).take_while(|k| accepted(*k)).last();
     Some(Tolerance {
-        dof: axis.dof,
+        axis: axis.dof,
+        unit: ErrorUnit::of(axis.dof),
         minus: below.map_or(0.0, |k| -(axis.lo + k as f64 * step)).max(0.0),
         plus: above.map_or(0.0, |k| axis.lo + (k as f64 + 1.0) * step).max(0.0),
         minus_reaches_border: below == Some(0),
         plus_reaches_border: above == Some(axis.cells - 1),
         half_cell: 0.5 * step,
-        is_followed: false,
+        followed: false,
     })
 }
 
@@ -123,18 +129,18 @@ pub fn followed<E>(
     let at = |side: &Side, step: f64| pose(side.dof, side.border * (step / whole));
     let scan = sides.iter().flat_map(|side| (1..=steps.max(1)).map(move |k| at(side, k as f64)));
     let docks = |outcome: &Outcome| *outcome == Outcome::Aligned;
-    let found = decide([PoseError::default()].into_iter().chain(scan).collect())?;
-    let is_home = found.first().is_some_and(docks);
-    for (side, found) in sides.iter_mut().zip(found.get(1..).unwrap_or_default().chunks(steps.max(1))) {
-        let reached = if is_home { found.iter().take_while(|outcome| docks(outcome)).count() } else { 0 };
+    let result = decide([PoseError::default()].into_iter().chain(scan).collect())?;
+    let is_home = result.first().is_some_and(docks);
+    for (side, result) in sides.iter_mut().zip(result.get(1..).unwrap_or_default().chunks(steps.max(1))) {
+        let reached = if is_home { result.iter().take_while(|outcome| docks(outcome)).count() } else { 0 };
         side.between = [reached as f64, (reached + 1) as f64];
     }
     let is_open = |side: &Side| is_home && side.between[0] < whole;
     for _ in 0..BISECTIONS {
         let middle = |side: &Side| 0.5 * (side.between[0] + side.between[1]);
         let poses = sides.iter().filter(|side| is_open(side)).map(|side| at(side, middle(side))).collect();
-        let found = decide(poses)?;
-        for (side, outcome) in sides.iter_mut().filter(|side| is_open(side)).zip(&found) {
+        let result = decide(poses)?;
+        for (side, outcome) in sides.iter_mut().filter(|side| is_open(side)).zip(&result) {
             side.between[usize::from(!docks(outcome))] = middle(side);
         }
     }
@@ -145,13 +151,14 @@ pub fn followed<E>(
     Ok(sides
         .chunks_exact(2)
         .map(|sides| Tolerance {
-            dof: sides[0].dof,
+            axis: sides[0].dof,
+            unit: ErrorUnit::of(sides[0].dof),
             minus: reach(&sides[0]),
             plus: reach(&sides[1]),
             minus_reaches_border: sides[0].between[0] >= whole,
             plus_reaches_border: sides[1].between[0] >= whole,
             half_cell: doubt(&sides[0]).max(doubt(&sides[1])),
-            is_followed: true,
+            followed: true,
         })
         .collect())
 }
@@ -182,9 +189,9 @@ mod tests {
             let label = |e: &PoseError| if inside(e) { Outcome::Aligned } else { Outcome::Missed };
             Ok::<_, ()>(poses.iter().map(label).collect())
         };
-        let found = followed(&g, 40, decide).unwrap();
-        for (tolerance, exact) in found.iter().zip([[0.5, 0.3], [0.25, 0.25]]) {
-            assert!(tolerance.is_followed && !tolerance.plus_reaches_border && tolerance.half_cell < 3e-4);
+        let result = followed(&g, 40, decide).unwrap();
+        for (tolerance, exact) in result.iter().zip([[0.5, 0.3], [0.25, 0.25]]) {
+            assert!(tolerance.followed && !tolerance.plus_reaches_border && tolerance.half_cell < 3e-4);
             for (side, exact) in [tolerance.minus, tolerance.plus].into_iter().zip(exact) {
                 assert!((exact - side).abs() <= 2.0 * tolerance.half_cell + 1e-12, "{side} for {exact}");
             }
@@ -204,11 +211,11 @@ mod tests {
         // Borders of the box lie on cell borders for 40 cells over [−1, 1], so the tolerances are exact.
         let g = grid(&[40, 40], &[1.0, 1.0]);
         let t = tolerances(&accept(&g, |e| (-0.5..0.3).contains(&e[0]) && e[1].abs() < 0.25)).unwrap();
-        assert_eq!((t[0].dof, t[1].dof), (Dof::X, Dof::Y));
-        for (found, exact) in
+        assert_eq!((t[0].axis, t[1].axis), (Dof::X, Dof::Y));
+        for (result, exact) in
             [(t[0].minus, 0.5), (t[0].plus, 0.3), (t[1].minus, 0.25), (t[1].symmetric(), 0.25)]
         {
-            assert!((found - exact).abs() < 1e-12, "{found} for {exact}");
+            assert!((result - exact).abs() < 1e-12, "{result} for {exact}");
         }
     }
 

@@ -184,6 +184,24 @@ impl<'de> Deserialize<'de> for DofSet {
     }
 }
 
+/// Unit of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum ErrorUnit {
+    /// Widths of the connector.
+    D,
+    /// Radians.
+    #[serde(rename = "rad")]
+    Rad,
+}
+
+impl ErrorUnit {
+    /// The unit of an error.
+    pub const fn of(dof: Dof) -> Self {
+        if dof.is_rotation() { Self::Rad } else { Self::D }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -110,8 +110,8 @@ mod tests {
                 turned[k] += STEP;
                 // R(a + δ)·R(a)ᵀ = 1 + δ·[axis]× to second order.
                 let turn = (at(turned) * at(angles).transpose() - DMat3::IDENTITY) * (1.0 / STEP);
-                let found = DVec3::new(turn.y_axis.z, turn.z_axis.x, turn.x_axis.y);
-                prop_assert!((found - axis).length() < 2e-6, "{k}: {found} {axis}");
+                let result = DVec3::new(turn.y_axis.z, turn.z_axis.x, turn.x_axis.y);
+                prop_assert!((result - axis).length() < 2e-6, "{k}: {result} {axis}");
             }
         }
 

@@ -25,6 +25,6 @@ mod dof;
 mod frame;
 mod metric;
 
-pub use dof::{Dof, DofSet, UnknownDof};
+pub use dof::{Dof, DofSet, ErrorUnit, UnknownDof};
 pub use frame::{CorPose, Mount, PoseError, euler_angles, face_from_cor, rotation, rotation_angle};
 pub use metric::{ROTATIONS, angle_between, descent_map, euler_axes, euler_rates, step_length};

@@ -83,8 +83,8 @@ pub(super) fn finish(
     }
     let corrected = stages.corrected(&mut acceptance, doubts, started, &part(0.0, sum))?;
     if stages.follower.own.is_some() || corrected.is_some() || doubts.is_some() {
-        let found = stages.follower.as_follow().step_warning(problem, run.seed, &part(sum, step))?;
-        acceptance.warnings.extend(found.map(Diagnostic::from));
+        let result = stages.follower.as_follow().step_warning(problem, run.seed, &part(sum, step))?;
+        acceptance.warnings.extend(result.map(Diagnostic::from));
     }
     let of_boxes = part(limit, boxes);
     let window = stages.window(&of_boxes)?;
@@ -144,7 +144,7 @@ impl Stages<'_> {
         let corrected = sample.map(correct).transpose()?;
         if let Some(doubts) = doubts {
             // The number of settled cells depends on the number of sampled poses, not on their time.
-            let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
+            let most = corrected.as_ref().map_or(0, |corrected| corrected.estimate.descents);
             settle(&plan.method, problem, grid, doubts, acceptance, most, exec)?;
         }
         Ok(corrected)
@@ -157,7 +157,7 @@ impl Stages<'_> {
         }
         match window::by(self.problem, &self.run.window_settings(), &self.motions, exec) {
             Err(WindowError::Cancelled(error)) => Err(error.into()),
-            found => Ok(Some(found)),
+            result => Ok(Some(result)),
         }
     }
 
@@ -191,7 +191,7 @@ impl Stages<'_> {
         }
         if follower.is_descent() {
             let centered = window.and_then(|window| window.as_ref().ok()).map(window::ToleranceWindow::cube);
-            let drawn = corrected.map_or(random, |corrected| corrected.found.descents);
+            let drawn = corrected.map_or(random, |corrected| corrected.estimate.descents);
             let random = random.min(drawn);
             let by = window::Effort { seed: run.seed, random, motions };
             window::follow_cubes(&mut merits, centered, problem, grid, &by, of_boxes)?;
@@ -206,9 +206,9 @@ const SMALL: f64 = 0.2;
 /// Warning that a small part of the error box docks, for results from samples.
 fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Diagnostic> {
     let share = |tolerance: &Tolerance| {
-        let axis = grid.axes.iter().find(|axis| axis.dof == tolerance.dof)?;
+        let axis = grid.axes.iter().find(|axis| axis.dof == tolerance.axis)?;
         let share = tolerance.minus.max(tolerance.plus) / axis.lo.abs().max(axis.hi.abs());
-        (share < SMALL).then(|| format!("{} at {:.0} %", tolerance.dof.name(), 100.0 * share))
+        (share < SMALL).then(|| format!("{} at {:.0} %", tolerance.axis.name(), 100.0 * share))
     };
     let shares: Vec<String> = tolerances.iter().filter_map(share).collect();
     let text = format!(
@@ -248,7 +248,7 @@ pub fn correct(
         Ok(decided.map_err(CorrectionError::from)?.0.outcomes)
     };
     let shape = grid.shape();
-    let found = if let Some(doubts) = doubts {
+    let estimate = if let Some(doubts) = doubts {
         let by = ByFraction::new(|cell| doubts.fraction(cell), shape);
         correction::estimate(grid, &by, settings, exec, follow)
     } else {
@@ -256,7 +256,7 @@ pub fn correct(
         correction::estimate(grid, &by, settings, exec, follow)
     }?;
     Ok(RunCorrection {
-        found,
+        estimate,
         seed: settings.seed,
         method: follower.info().name,
         settings: follower.settings(),

@@ -23,14 +23,17 @@ use crate::merit::tolerance::{Tolerance, followed};
 use crate::method::descent;
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
+use serde::{Deserialize, Serialize};
 
-/// Tolerances of a connector with roll and pitch locked.
-#[derive(Debug, Clone, PartialEq)]
+/// Figures of merit of the connector with roll and pitch locked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Upright {
+    /// The largest box around zero in which every sampled pose docks, in the proportions of the tolerances;
+    /// its edge is a multiple of these.
+    pub window: CenteredBox,
     /// Single-axis limits of each error.
     pub tolerances: Vec<Tolerance>,
-    /// The largest box around zero, in their proportions.
-    pub window: CenteredBox,
 }
 
 /// Errors that stay free.
@@ -62,7 +65,7 @@ impl Upright {
         })?;
         let mut proportions = [0.0; 5];
         for tolerance in &tolerances {
-            proportions[tolerance.dof.index()] = tolerance.symmetric();
+            proportions[tolerance.axis.index()] = tolerance.symmetric();
         }
         let settings = WindowSettings {
             proportions: Some(PoseError::from_array(proportions)),

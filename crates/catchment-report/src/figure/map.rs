@@ -5,9 +5,9 @@ use super::draw::colour::{self, Rgb};
 use super::draw::layout::{Legend, filled};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 use super::{FigureError, raster};
-use crate::schema::Interval;
 use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::landscape::Grid;
+use catchment_core::merit::onaa::Interval;
 use catchment_core::merit::slice::GridSlice;
 use catchment_core::pose::{Dof, PoseError};
 
@@ -65,7 +65,7 @@ impl Map {
 
     /// The share of its cells with an outcome.
     pub(super) fn share(&self, outcome: Outcome) -> f64 {
-        let count = self.outcomes.iter().filter(|found| **found == outcome).count();
+        let count = self.outcomes.iter().filter(|result| **result == outcome).count();
         count as f64 / self.outcomes.len().max(1) as f64
     }
 
@@ -101,14 +101,14 @@ impl Map {
 
 /// The maximal runs `from..to` of 0..n in which `holds` is true.
 fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
-    let mut found: Vec<(usize, usize)> = Vec::new();
+    let mut result: Vec<(usize, usize)> = Vec::new();
     for k in (0..n).filter(|k| holds(*k)) {
-        match found.last_mut() {
+        match result.last_mut() {
             Some((_, to)) if *to == k => *to = k + 1,
-            _ => found.push((k, k + 1)),
+            _ => result.push((k, k + 1)),
         }
     }
-    found
+    result
 }
 
 /// Paints outcomes, border, zero lines, the ONAA cube (nothing without bounds), and the axes.

@@ -7,7 +7,6 @@ use super::map::{self, Map};
 use super::section::MovingHalfPose;
 use super::triangle::Triangle;
 use super::{FigureError, Picture, solid};
-use crate::schema::OnaaReport;
 use catchment_core::connector::Connector;
 use catchment_core::design::Design;
 use catchment_core::document::{percent, significant};
@@ -40,7 +39,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
     for (slice, rect) in found.slices.iter().zip(&frames) {
         let map = Map::of(&slice.acceptance, slice.axes, &PoseError::default())?;
         let frame = map.frame(*rect, &units);
-        map::inside(&mut svg, &map, &frame, &units, &OnaaReport::from(slice.onaa.clone()).bounds)?;
+        map::inside(&mut svg, &map, &frame, &units, &slice.onaa.bounds)?;
         triangle.draw(&mut svg, slice.axes, &frame);
         caption(&mut svg, slice, *rect);
     }

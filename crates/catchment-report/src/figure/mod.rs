@@ -111,10 +111,10 @@ pub use trajectory::trajectory;
 pub use trials::trials;
 pub use watersheds::watersheds;
 
-use super::schema::Interval;
 use super::{Report, run};
 use catchment_core::document::percent;
 use catchment_core::merit::MeritError;
+use catchment_core::merit::onaa::Interval;
 
 /// Why a picture cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -165,12 +165,12 @@ impl Picture {
 /// The numbers of a run in a line: `Sum 12.587 ± 0.023 D²·rad³  ·  16.32 % of the error box  ·  ONAA edge 0.3100  ·
 /// by transport`.
 fn headline(report: &Report) -> String {
-    let found = &report.acceptance;
-    let sum = run::sum(found);
-    let share = if run::upper_end(found).is_some() {
+    let result = &report.acceptance;
+    let sum = run::sum(result);
+    let share = if run::upper_end(result).is_some() {
         String::new()
     } else {
-        format!("  ·  {} of the error box", percent(found.fraction))
+        format!("  ·  {} of the error box", percent(result.fraction))
     };
     let onaa =
         report.onaa.as_ref().map_or_else(String::new, |onaa| format!("  ·  ONAA edge {:.4}", onaa.edge));

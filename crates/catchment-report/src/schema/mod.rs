@@ -13,7 +13,7 @@ use catchment_core::merit::tolerance::Tolerance;
 use catchment_core::merit::{MeritError, Merits};
 use catchment_core::method::certified::BoxCertificate;
 use catchment_core::method::confluence::InheritedLabels;
-use catchment_core::pose::Dof;
+use catchment_core::pose::{Dof, ErrorUnit};
 use catchment_core::run::jams::Jams;
 use catchment_core::run::window::{HalfWidths, ToleranceWindow, WindowDetails};
 use catchment_core::run::{Seating, Upright};
@@ -37,15 +37,15 @@ pub struct RunBody {
     /// The accepted set.
     pub acceptance: AcceptanceReport,
     /// The largest axis-oriented cube; null for listed poses.
-    pub onaa: Option<OnaaReport>,
+    pub onaa: Option<Onaa>,
     /// The largest cube around zero; null for listed poses.
-    pub centered: Option<CenteredReport>,
+    pub centered: Option<CenteredBox>,
     /// Single-axis limits of each error; empty for listed poses.
-    pub tolerances: Vec<ToleranceReport>,
+    pub tolerances: Vec<Tolerance>,
     /// Figures of merit with roll and pitch locked, if all five errors are free and motions were followed;
     /// null if not, and in reports of older versions.
     #[serde(default)]
-    pub upright: Option<UprightReport>,
+    pub upright: Option<Upright>,
     /// Success probability for the given errors; null if no errors were given.
     pub success: Option<SuccessReport>,
     /// The basins behind the outcomes; null for methods without basins.
@@ -84,12 +84,12 @@ pub struct WindowSection {
     pub half_widths: HalfWidths,
     /// The settings of the search and all its other results.
     #[serde(flatten)]
-    pub found: WindowDetails,
+    pub details: WindowDetails,
 }
 
 impl From<&ToleranceWindow> for WindowSection {
     fn from(window: &ToleranceWindow) -> Self {
-        Self { half_widths: window.window.clone(), found: window.found.clone() }
+        Self { half_widths: window.window.clone(), details: window.details.clone() }
     }
 }
 
@@ -111,24 +111,6 @@ pub struct AxisReport {
     pub hi: f64,
     /// Number of equal cells, each sampled at its centre.
     pub cells: usize,
-}
-
-/// Unit of an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum ErrorUnit {
-    /// Widths of the connector.
-    D,
-    /// Radians.
-    #[serde(rename = "rad")]
-    Rad,
-}
-
-impl ErrorUnit {
-    /// The unit of an error.
-    pub const fn of(dof: Dof) -> Self {
-        if dof.is_rotation() { Self::Rad } else { Self::D }
-    }
 }
 
 /// Measures of the accepted set.
@@ -172,90 +154,6 @@ pub struct Outcomes {
     pub missed: usize,
     /// The step budget ended before the motion did.
     pub undecided: usize,
-}
-
-/// An interval along an axis.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Interval {
-    /// The error.
-    pub axis: Dof,
-    /// Lower end, D or rad.
-    pub lo: f64,
-    /// Upper end, D or rad.
-    pub hi: f64,
-}
-
-/// The largest axis-oriented n-cube in the accepted set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OnaaReport {
-    /// Edge of the cube, with each axis divided by its range: in [0, 1].
-    pub edge: f64,
-    /// Bounds of the cube; empty if the edge is 0.
-    pub bounds: Vec<Interval>,
-    /// Whether exact motions determined the size, independently of the cells; false in reports of older
-    /// versions.
-    #[serde(default)]
-    pub followed: bool,
-}
-
-/// The largest n-cube around zero in the accepted set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CenteredReport {
-    /// Edge of the cube, with each axis divided by its range: in [0, 1].
-    pub edge: f64,
-    /// Bounds of the cube.
-    pub bounds: Vec<Interval>,
-    /// Whether the border of the error box limits the cube, so that it may be larger.
-    pub reaches_border: bool,
-    /// Whether exact motions determined the size, independently of the cells; false in reports of older
-    /// versions.
-    #[serde(default)]
-    pub followed: bool,
-    /// Number of sampled poses of the final cube, all of which dock.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sampled: Option<usize>,
-    /// Errors that limit the cube: with one of them slightly larger and the others inside the cube a pose fails; absent if the
-    /// cells determined the size.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub limited_by: Vec<Dof>,
-}
-
-/// Figures of merit of the connector with roll and pitch locked.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct UprightReport {
-    /// The largest box around zero in which every sampled pose docks, in the proportions of the tolerances;
-    /// its edge is a multiple of these.
-    pub window: CenteredReport,
-    /// Single-axis limits of each error.
-    pub tolerances: Vec<ToleranceReport>,
-}
-
-/// Single-axis limits of an error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ToleranceReport {
-    /// The error.
-    pub axis: Dof,
-    /// `D` or `rad`.
-    pub unit: ErrorUnit,
-    /// Limit below zero; not negative.
-    pub minus: f64,
-    /// Limit above zero; not negative.
-    pub plus: f64,
-    /// Uncertainty of both: half a cell, or half the distance between a success and a failure.
-    pub half_cell: f64,
-    /// Whether exact motions along the axis determined the limits, independently of the cells; false in
-    /// reports of older versions.
-    #[serde(default)]
-    pub followed: bool,
-    /// Whether `minus` ends at the border of the error box, so that it may be larger.
-    pub minus_reaches_border: bool,
-    /// Whether `plus` ends at the border of the error box, so that it may be larger.
-    pub plus_reaches_border: bool,
 }
 
 /// Success probability for a distribution of errors.
@@ -328,9 +226,9 @@ impl Report {
             settings,
             axes: axes(acceptance),
             acceptance: AcceptanceReport { sum_bracket: bracket, ..AcceptanceReport::from(sum) },
-            onaa: onaa.map(OnaaReport::from),
-            centered: centered.map(CenteredReport::from),
-            tolerances: tolerances.into_iter().map(ToleranceReport::from).collect(),
+            onaa,
+            centered,
+            tolerances,
             upright: None,
             success: None,
             basins: None,
@@ -403,53 +301,6 @@ impl Outcomes {
     /// From counts in the order of [`Outcome::ALL`].
     const fn new([aligned, jammed, missed, undecided]: [usize; 4]) -> Self {
         Self { aligned, jammed, missed, undecided }
-    }
-}
-
-impl From<Onaa> for OnaaReport {
-    fn from(onaa: Onaa) -> Self {
-        let bounds = onaa.bounds.into_iter().map(|(axis, lo, hi)| Interval { axis, lo, hi }).collect();
-        Self { edge: onaa.edge, bounds, followed: onaa.is_followed }
-    }
-}
-
-impl From<&Upright> for UprightReport {
-    fn from(found: &Upright) -> Self {
-        Self {
-            window: found.window.clone().into(),
-            tolerances: found.tolerances.iter().copied().map(ToleranceReport::from).collect(),
-        }
-    }
-}
-
-impl From<CenteredBox> for CenteredReport {
-    fn from(found: CenteredBox) -> Self {
-        let bounds =
-            found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
-        let CenteredBox { scale: edge, reaches_border, sampled, limited_by, .. } = found;
-        Self {
-            edge,
-            bounds,
-            reaches_border,
-            followed: sampled.is_some(),
-            sampled,
-            limited_by: limited_by.iter().collect(),
-        }
-    }
-}
-
-impl From<Tolerance> for ToleranceReport {
-    fn from(t: Tolerance) -> Self {
-        Self {
-            axis: t.dof,
-            unit: ErrorUnit::of(t.dof),
-            minus: t.minus,
-            plus: t.plus,
-            half_cell: t.half_cell,
-            followed: t.is_followed,
-            minus_reaches_border: t.minus_reaches_border,
-            plus_reaches_border: t.plus_reaches_border,
-        }
     }
 }
 

@@ -23,13 +23,14 @@ pub use read::{read, read_heights};
 #[cfg(feature = "figure")]
 pub(super) use sweep::fill as fill_sweep;
 
-use super::schema::{ErrorUnit, Report};
+use super::schema::Report;
 use super::write::{self, WriteError};
 use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::landscape::{Grid, GridAxis};
 use catchment_core::merit::MeritError;
 use catchment_core::method::flood::{DAM, Watersheds};
+use catchment_core::pose::ErrorUnit;
 use catchment_core::terminal::shown;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -365,7 +366,7 @@ mod tests {
     }
 
     fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         let mut open = vec![folder.to_owned()];
         while let Some(next) = open.pop() {
             for entry in std::fs::read_dir(next).unwrap() {
@@ -374,12 +375,12 @@ mod tests {
                     open.push(path);
                 } else {
                     let name = path.strip_prefix(folder).unwrap().display().to_string();
-                    found.push((name, std::fs::read(&path).unwrap()));
+                    result.push((name, std::fs::read(&path).unwrap()));
                 }
             }
         }
-        found.sort();
-        found
+        result.sort();
+        result
     }
 
     #[test]

@@ -75,9 +75,9 @@ fn cells<T, const N: usize>(
     let cut = chunk.iter().zip(shape).rposition(|(c, n)| c < n).unwrap_or_default();
     let row: usize = chunk[cut + 1..].iter().product();
     let cells: usize = chunk.iter().product();
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let most: usize = shape.iter().product();
-    if found.try_reserve_exact(most).is_err() {
+    if result.try_reserve_exact(most).is_err() {
         return Err(OutcomesError::Content(folder, format!("there is no memory for its {most} cells")));
     }
     for number in 0..grid.iter().product() {
@@ -88,10 +88,10 @@ fn cells<T, const N: usize>(
         let bytes = unpacked(&path, cells, N).map_err(refused)?;
         let inside = (shape[cut] - place[cut] * chunk[cut]).min(chunk[cut]) * row;
         for bytes in bytes.as_chunks().0.iter().take(inside) {
-            found.push(value(*bytes).map_err(refused)?);
+            result.push(value(*bytes).map_err(refused)?);
         }
     }
-    Ok(found)
+    Ok(result)
 }
 
 /// The bytes of a chunk, `width` of every cell.
@@ -101,9 +101,9 @@ fn unpacked(path: &Path, cells: usize, width: usize) -> Result<Vec<u8>, String> 
     let unpacking = GzDecoder::new(&packed[..]).take((cells * width) as u64 + 1).read_to_end(&mut bytes);
     unpacking.map_err(|error| format!("it is no gzip stream: {error}"))?;
     match bytes.len() {
-        found if found == cells * width => Ok(bytes),
-        found if found > cells * width => Err(format!("it unpacks to more than its {cells} cells")),
-        found => Err(format!("it unpacks to {} of {cells} cells", found / width)),
+        result if result == cells * width => Ok(bytes),
+        result if result > cells * width => Err(format!("it unpacks to more than its {cells} cells")),
+        result => Err(format!("it unpacks to {} of {cells} cells", result / width)),
     }
 }
 
@@ -111,23 +111,23 @@ fn unpacked(path: &Path, cells: usize, width: usize) -> Result<Vec<u8>, String> 
 fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), OutcomesError> {
     let bad = |reason: String| OutcomesError::Content(path.to_owned(), reason);
     let bytes = bounded::read(path, METADATA_BYTES).map_err(|error| bad(error.to_string()))?;
-    let found: Value = serde_json::from_slice(&bytes).map_err(|error| bad(error.to_string()))?;
-    if found["shape"] != json!(shape) {
-        let given = short(&found["shape"]);
+    let result: Value = serde_json::from_slice(&bytes).map_err(|error| bad(error.to_string()))?;
+    if result["shape"] != json!(shape) {
+        let given = short(&result["shape"]);
         return Err(bad(format!("its outcomes are over {given} cells, its report says {shape:?}")));
     }
     let codecs: Option<Vec<&Value>> =
-        found["codecs"].as_array().map(|all| all.iter().map(|c| &c["name"]).collect());
+        result["codecs"].as_array().map(|all| all.iter().map(|c| &c["name"]).collect());
     for (what, given, expected) in [
-        ("zarr_format", &found["zarr_format"], json!(3)),
-        ("node_type", &found["node_type"], json!("array")),
-        ("data_type", &found["data_type"], json!(kind)),
-        ("chunk_grid", &found["chunk_grid"]["name"], json!("regular")),
-        ("chunk_shape", &found["chunk_grid"]["configuration"]["chunk_shape"], json!(chunk_shape(shape))),
-        ("chunk_key_encoding", &found["chunk_key_encoding"]["name"], json!("default")),
-        ("separator", &found["chunk_key_encoding"]["configuration"]["separator"], json!("/")),
+        ("zarr_format", &result["zarr_format"], json!(3)),
+        ("node_type", &result["node_type"], json!("array")),
+        ("data_type", &result["data_type"], json!(kind)),
+        ("chunk_grid", &result["chunk_grid"]["name"], json!("regular")),
+        ("chunk_shape", &result["chunk_grid"]["configuration"]["chunk_shape"], json!(chunk_shape(shape))),
+        ("chunk_key_encoding", &result["chunk_key_encoding"]["name"], json!("default")),
+        ("separator", &result["chunk_key_encoding"]["configuration"]["separator"], json!("/")),
         ("codecs", &json!(codecs), json!(["bytes", "gzip"])),
-        ("storage_transformers", found.get("storage_transformers").unwrap_or(&json!([])), json!([])),
+        ("storage_transformers", result.get("storage_transformers").unwrap_or(&json!([])), json!([])),
     ] {
         if *given != expected {
             let given = short(given);

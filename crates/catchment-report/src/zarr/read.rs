@@ -152,8 +152,8 @@ mod tests {
         assert!(read.iter().zip(&heights).all(|(a, b)| a == b || (a.is_nan() && b.is_infinite())));
         let chunk = path.join("height/c/0/0");
         std::fs::write(&chunk, packed(&[0; 4 * 49 + 1])).unwrap();
-        let said = read_heights(&path, grid, &Exec::new()).unwrap_err().to_string();
-        assert!(said.contains("unpacks to more than its 49 cells"), "{said}");
+        let stated = read_heights(&path, grid, &Exec::new()).unwrap_err().to_string();
+        assert!(stated.contains("unpacks to more than its 49 cells"), "{stated}");
         std::fs::remove_dir_all(path.join("height")).unwrap();
         assert!(read_heights(&path, grid, &Exec::new()).unwrap().is_none());
     }

@@ -30,8 +30,8 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
     let folder = &folder.join("sweep.zarr");
     write::permit().step(folder, || std::fs::create_dir_all(folder).map_err(ZarrError::from))?;
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
-    let found = &report.result;
-    let (axes, names) = (&found.settings.axes, names(&found.settings.axes));
+    let results = &report.result;
+    let (axes, names) = (&results.settings.axes, names(&results.settings.axes));
     let mut arrays = Map::new();
     for (axis, name) in axes.iter().zip(&names) {
         let (values, unit) = axis
@@ -45,7 +45,7 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
     // The fastest first, as in a grid.
     let designs: Vec<(&str, usize)> =
         names.iter().map(String::as_str).zip(axes.iter().map(|axis| axis.values.len())).rev().collect();
-    let figures: Vec<Option<&Figures>> = found.designs.iter().map(|trial| trial.found.figures()).collect();
+    let figures: Vec<Option<&Figures>> = results.designs.iter().map(|trial| trial.result.figures()).collect();
     for (name, unit, of) in variables(report) {
         let attributes = json!({ "units": unit });
         let plan = Plan {
@@ -80,16 +80,16 @@ pub(crate) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) -> Result<(
             folder,
             exec,
         };
-        let attributes = outcome_attributes(found.settings.run.method.name());
+        let attributes = outcome_attributes(results.settings.run.method.name());
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, digit)?);
     }
     // All numbers are arrays; the report contains the rest.
     let head = json!({
         "design": report.design,
-        "settings": found.settings,
-        "largest": found.largest,
-        "smallest": found.smallest,
-        "refused": found.designs.iter().filter(|trial| trial.found.figures().is_none()).collect::<Vec<_>>(),
+        "settings": results.settings,
+        "largest": results.largest,
+        "smallest": results.smallest,
+        "refused": results.designs.iter().filter(|trial| trial.result.figures().is_none()).collect::<Vec<_>>(),
     });
     finish(folder, &head, &arrays)
 }
@@ -120,7 +120,7 @@ fn variables(report: &SweepReport) -> Vec<(String, String, Variable)> {
     add("onaa_edge", "1", Box::new(|f| f.onaa_edge));
     add("centered_edge", "1", Box::new(|f| f.centered_edge));
     add("success", "1", Box::new(|f| f.success));
-    let first = report.designs.iter().find_map(|trial| trial.found.figures());
+    let first = report.designs.iter().find_map(|trial| trial.result.figures());
     for error in first.into_iter().flat_map(|figures| figures.tolerances.iter().map(|along| along.axis)) {
         let unit = if error.is_rotation() { "rad" } else { "D" };
         let along = move |f: &Figures| f.tolerances.iter().find(|along| along.axis == error).copied();

@@ -25,7 +25,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::merit::Merits;
 use crate::merit::centered::CenteredBox;
-use crate::merit::onaa::Onaa;
+use crate::merit::onaa::{Interval, Onaa};
 use crate::merit::tolerance::Tolerance;
 use crate::method::descent;
 use crate::pose::{Dof, DofSet, PoseError};
@@ -58,38 +58,44 @@ pub(in crate::run) fn follow(
         known
     } else {
         let Cube { scale, reaches_border, limited_by } = about([0.0; 5], 0.0)?;
-        CenteredBox { scale, half_widths: sides(scale), reaches_border, sampled: Some(by.random), limited_by }
+        CenteredBox::of(scale, sides(scale), reaches_border, Some(by.random), limited_by)
     };
     let centered = within(&centered, &merits.tolerances);
     let mut center = [0.0; 5];
     let of_cells = merits.onaa.take().map(|onaa| onaa.bounds);
-    for (axis, lo, hi) in of_cells.iter().flatten() {
+    for Interval { axis, lo, hi } in of_cells.iter().flatten() {
         center[axis.index()] = 0.5 * (lo + hi);
     }
     // A box no larger than the centred box is not reported.
     let is_elsewhere = center.iter().any(|middle| middle.abs() > 1e-9);
-    let elsewhere = if is_elsewhere { about(center, centered.scale)?.scale } else { 0.0 };
+    let elsewhere = if is_elsewhere { about(center, centered.edge)?.scale } else { 0.0 };
     let (edge, center) =
-        if centered.scale >= elsewhere { (centered.scale, [0.0; 5]) } else { (elsewhere, center) };
-    let bounds = |(axis, half): (Dof, f64)| (axis, center[axis.index()] - half, center[axis.index()] + half);
+        if centered.edge >= elsewhere { (centered.edge, [0.0; 5]) } else { (elsewhere, center) };
+    let bounds = |(axis, half): (Dof, f64)| {
+        let middle = center[axis.index()];
+        Interval { axis, lo: middle - half, hi: middle + half }
+    };
     let bounds = if edge > 0.0 { sides(edge).into_iter().map(bounds).collect() } else { Vec::new() };
-    merits.onaa = of_cells.is_some().then_some(Onaa { edge, bounds, is_followed: true });
+    merits.onaa = of_cells.is_some().then_some(Onaa { edge, bounds, followed: true });
     merits.centered = Some(centered);
     Ok(())
 }
 
 /// The box, reduced if a single-axis limit is smaller than its extent.
-pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> CenteredBox {
+pub(in crate::run) fn within(result: &CenteredBox, limits: &[Tolerance]) -> CenteredBox {
     let share = |limit: &Tolerance| {
-        let half_width = found.half_widths.iter().find(|(axis, _)| *axis == limit.dof)?.1;
-        (half_width > limit.symmetric()).then(|| (limit.symmetric() / half_width, limit.dof))
+        let half_width = result.bounds.iter().find(|side| side.axis == limit.axis)?.hi;
+        (half_width > limit.symmetric()).then(|| (limit.symmetric() / half_width, limit.axis))
     };
     let Some((share, tightest)) = limits.iter().filter_map(share).min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return found.clone();
+        return result.clone();
     };
-    let half_widths = found.half_widths.iter().map(|(axis, half)| (*axis, share * half)).collect();
-    let limited_by = DofSet::EMPTY.with(tightest);
-    CenteredBox { scale: share * found.scale, half_widths, limited_by, ..*found }
+    let bounds = result.bounds.iter().map(|side| Interval {
+        axis: side.axis,
+        lo: share * side.lo,
+        hi: share * side.hi,
+    });
+    CenteredBox { edge: share * result.edge, bounds: bounds.collect(), limited_by: vec![tightest], ..*result }
 }
 
 /// The largest box in the proportions of `settings`, by as many motions as a cube; `None` if there is none.
@@ -101,15 +107,11 @@ pub(in crate::run) fn window_of(
 ) -> Result<Option<CenteredBox>, Cancelled> {
     let Ok(space) = Space::of(problem, settings) else { return Ok(None) };
     let mut search = Search::new(problem, space, by.seed, by.motions).within(2 * by.random);
-    let Some(found) = search.shrink(by.random, exec)? else { return Ok(None) };
-    let half_widths = search.space().half_widths(found.scale);
-    Ok(Some(CenteredBox {
-        scale: found.scale,
-        half_widths: problem.alignment().free.iter().map(|axis| (axis, half_widths[axis.index()])).collect(),
-        reaches_border: search.worst().is_none(),
-        sampled: Some(by.random),
-        limited_by: search.limiting(found.scale),
-    }))
+    let Some(result) = search.shrink(by.random, exec)? else { return Ok(None) };
+    let half_widths = search.space().half_widths(result.scale);
+    let half_widths = problem.alignment().free.iter().map(|axis| (axis, half_widths[axis.index()]));
+    let (is_open, limited_by) = (search.worst().is_none(), search.limiting(result.scale));
+    Ok(Some(CenteredBox::of(result.scale, half_widths, is_open, Some(by.random), limited_by)))
 }
 
 /// A cube: its edge as a share of the error box.
@@ -135,8 +137,8 @@ fn about(
     }
     let search = Search::new(problem, space, by.seed, by.motions);
     let mut search = search.above(least).within(2 * by.random);
-    let found = search.shrink(by.random, exec)?;
-    Ok(found.map_or(none, |Shrunk { scale, .. }| {
+    let result = search.shrink(by.random, exec)?;
+    Ok(result.map_or(none, |Shrunk { scale, .. }| {
         let limited_by = if center == [0.0; 5] { search.limiting(scale) } else { DofSet::EMPTY };
         Cube { scale, reaches_border: search.worst().is_none(), limited_by }
     }))
@@ -146,30 +148,29 @@ fn about(
 mod tests {
     use super::*;
     use crate::design::Family;
-    use crate::pose::DofSet;
+    use crate::pose::{DofSet, ErrorUnit};
     use crate::problem::testing::problem;
 
     #[test]
     fn a_box_reaches_no_further_than_what_each_error_alone_tolerates() {
-        let limit = |dof, minus, plus| Tolerance {
-            dof,
+        let limit = |axis, minus, plus| Tolerance {
+            axis,
+            unit: ErrorUnit::of(axis),
             minus,
             plus,
             minus_reaches_border: false,
             plus_reaches_border: false,
             half_cell: 0.0,
-            is_followed: true,
+            followed: true,
         };
-        let half_widths = vec![(Dof::X, 0.2), (Dof::Yaw, 0.4)];
-        let limited_by = DofSet::EMPTY.with(Dof::X);
-        let found =
-            CenteredBox { scale: 0.8, half_widths, reaches_border: false, sampled: Some(7), limited_by };
+        let half_widths = [(Dof::X, 0.2), (Dof::Yaw, 0.4)];
+        let result = CenteredBox::of(0.8, half_widths, false, Some(7), DofSet::EMPTY.with(Dof::X));
         let wide = [limit(Dof::X, 0.3, 0.2), limit(Dof::Yaw, 0.5, 0.5)];
-        assert_eq!(within(&found, &wide), found);
+        assert_eq!(within(&result, &wide), result);
         let tight = [limit(Dof::X, 0.3, 0.3), limit(Dof::Yaw, 0.5, 0.3)];
-        let smaller = within(&found, &tight);
-        assert!((smaller.scale - 0.6).abs() < 1e-12 && (smaller.half_widths[0].1 - 0.15).abs() < 1e-12);
-        assert_eq!((smaller.sampled, smaller.limited_by), (Some(7), DofSet::EMPTY.with(Dof::Yaw)));
+        let smaller = within(&result, &tight);
+        assert!((smaller.edge - 0.6).abs() < 1e-12 && (smaller.bounds[0].hi - 0.15).abs() < 1e-12);
+        assert_eq!((smaller.sampled, smaller.limited_by), (Some(7), vec![Dof::Yaw]));
     }
 
     /// A search that has used its motions on the first directions is still certified by samples: other
@@ -179,17 +180,17 @@ mod tests {
         let problem = problem(Family::Pyramid, DofSet::ALL);
         let motions = descent::DescentSettings::default();
         let by = Effort { seed: 1, random: 200, motions: &motions };
-        let found = window_of(&problem, &WindowSettings::default(), &by, &Exec::new()).unwrap().unwrap();
+        let result = window_of(&problem, &WindowSettings::default(), &by, &Exec::new()).unwrap().unwrap();
         let stream = crate::acceptance::Stream::new(5);
         let fails = (0..200).filter(|k| {
             let mut error = [0.0; 5];
-            for (axis, half) in &found.half_widths {
+            for Interval { axis, hi: half, .. } in &result.bounds {
                 error[axis.index()] = half * (2.0 * stream.uniform(5 * k + axis.index() as u64) - 1.0);
             }
             let end = descent::outcome(problem.pair(), &PoseError::from_array(error), &motions);
             end.outcome != Outcome::Aligned
         });
         // 0 failures in 200 samples leave a failure rate of up to 1.5 %, which is three of another 200.
-        assert!(found.scale > 0.0 && fails.count() <= 6);
+        assert!(result.edge > 0.0 && fails.count() <= 6);
     }
 }

@@ -3,8 +3,10 @@
 
 mod parts;
 
-use super::{ErrorUnit, Interval, RunBody};
+use super::RunBody;
+use catchment_core::merit::onaa::Interval;
 use catchment_core::pose::Dof;
+use catchment_core::pose::ErrorUnit;
 
 /// A number in a report that cannot be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -50,8 +52,8 @@ impl RunBody {
         self.check_axes()?;
         self.check_acceptance()?;
         for (edge, sides, name) in [
-            self.onaa.as_ref().map(|found| (found.edge, &found.bounds, "onaa")),
-            self.centered.as_ref().map(|found| (found.edge, &found.bounds, "centered")),
+            self.onaa.as_ref().map(|result| (result.edge, &result.bounds, "onaa")),
+            self.centered.as_ref().map(|result| (result.edge, &result.bounds, "centered")),
         ]
         .into_iter()
         .flatten()
@@ -63,7 +65,7 @@ impl RunBody {
             not_negative(upright.window.edge, "upright.window.edge")?;
             bounds(&upright.window.bounds, "upright.window.bounds")?;
         }
-        let upright = self.upright.iter().flat_map(|found| &found.tolerances);
+        let upright = self.upright.iter().flat_map(|result| &result.tolerances);
         for tolerance in self.tolerances.iter().chain(upright) {
             let sound = [tolerance.minus, tolerance.plus, tolerance.half_cell].iter().all(|v| *v >= 0.0);
             hold(sound, format!("tolerances of {}", tolerance.axis.name()), "must not be negative")?;
@@ -108,16 +110,16 @@ impl RunBody {
     }
 
     fn check_acceptance(&self) -> Result<(), UnsoundError> {
-        let found = &self.acceptance;
-        not_negative(found.sum, "acceptance.sum")?;
-        not_negative(found.sum_grid, "acceptance.sum_grid")?;
-        share(found.fraction, "acceptance.fraction")?;
-        ordered(found.sum_bracket, "acceptance.sum_bracket")?;
-        ordered(found.sum_ci95, "acceptance.sum_ci95")?;
-        let counts = found.outcomes;
+        let result = &self.acceptance;
+        not_negative(result.sum, "acceptance.sum")?;
+        not_negative(result.sum_grid, "acceptance.sum_grid")?;
+        share(result.fraction, "acceptance.fraction")?;
+        ordered(result.sum_bracket, "acceptance.sum_bracket")?;
+        ordered(result.sum_ci95, "acceptance.sum_ci95")?;
+        let counts = result.outcomes;
         let counts = [counts.aligned, counts.jammed, counts.missed, counts.undecided];
         let all = counts.into_iter().try_fold(0usize, usize::checked_add);
-        hold(all == Some(found.cells), "acceptance.outcomes", "must add up to acceptance.cells")
+        hold(all == Some(result.cells), "acceptance.outcomes", "must add up to acceptance.cells")
     }
 }
 
@@ -126,7 +128,7 @@ mod tests {
     use crate::schema::testing::{blob, design};
     use crate::schema::{Report, RunBody};
     use catchment_core::exec::Exec;
-    use catchment_core::pose::Dof;
+    use catchment_core::pose::{Dof, ErrorUnit};
 
     type Spoil = fn(&mut RunBody);
 
@@ -147,7 +149,7 @@ mod tests {
             ("axes must each be there once", |b| b.axes.swap(0, 1)),
             ("axes: yaw: lo and hi must be in order", |b| b.axes[1].hi = -9.0),
             ("axes: x: cells must be above 0", |b| b.axes[0].cells = 0),
-            ("axes: x: unit must be that of the error", |b| b.axes[0].unit = super::ErrorUnit::Rad),
+            ("axes: x: unit must be that of the error", |b| b.axes[0].unit = ErrorUnit::Rad),
             ("acceptance.outcomes must add up", |b| b.acceptance.outcomes.jammed = usize::MAX),
             ("acceptance.sum_bracket must be in order", |b| b.acceptance.sum_bracket = Some([2.0, 1.0])),
             ("onaa.edge must lie between 0 and 1", |b| b.onaa.as_mut().unwrap().edge = 1e300),

@@ -61,46 +61,46 @@ impl RunBody {
     }
 }
 
-fn check_certificate(found: &BoxCertificate) -> Result<(), UnsoundError> {
+fn check_certificate(result: &BoxCertificate) -> Result<(), UnsoundError> {
     let shares =
-        [(found.yes, "yes"), (found.no, "no"), (found.undecided, "undecided"), (found.window, "window")];
+        [(result.yes, "yes"), (result.no, "no"), (result.undecided, "undecided"), (result.window, "window")];
     for (value, name) in shares {
         share(value, &format!("certificate.{name}"))?;
     }
     // Shares are sums over boxes: they make 1 but for rounding.
-    let whole = found.yes + found.no + found.undecided;
+    let whole = result.yes + result.no + result.undecided;
     hold((whole - 1.0).abs() <= 1e-9, "certificate.undecided", "must make 1 with yes and no")?;
-    for measure in found.measures {
+    for measure in result.measures {
         not_negative(measure, "certificate.measures")?;
     }
-    not_negative(found.retention_at_least, "certificate.retention_at_least")?;
-    let ordered = found.retention_at_most.is_none_or(|most| most >= found.retention_at_least);
+    not_negative(result.retention_at_least, "certificate.retention_at_least")?;
+    let ordered = result.retention_at_most.is_none_or(|most| most >= result.retention_at_least);
     hold(ordered, "certificate.retention_at_most", "must be no less than retention_at_least")
 }
 
-fn check_window(found: &WindowSection) -> Result<(), UnsoundError> {
-    let widths = found.half_widths.0.values().copied();
-    let reaches = found.found.sides.iter().flat_map(|side| [side.half_width, side.alone, side.beside]);
+fn check_window(result: &WindowSection) -> Result<(), UnsoundError> {
+    let widths = result.half_widths.0.values().copied();
+    let reaches = result.details.sides.iter().flat_map(|side| [side.half_width, side.alone, side.beside]);
     for width in widths.chain(reaches) {
         not_negative(width, "window: a half-width")?;
     }
-    share(found.found.certificate.failing_at_most, "window.certificate.failing_at_most")
+    share(result.details.certificate.failing_at_most, "window.certificate.failing_at_most")
 }
 
-fn check_jams(found: &Jams) -> Result<(), UnsoundError> {
+fn check_jams(result: &Jams) -> Result<(), UnsoundError> {
     let followed: Option<usize> =
-        found.outcomes.values().try_fold(0usize, |sum, share| sum.checked_add(share.count));
-    hold(followed == Some(found.motions), "jams.motions", "must be those of jams.outcomes")?;
-    let drawn = found.outcomes.values().chain(found.expected.iter().flat_map(|of| of.values()));
-    for of in drawn.chain(found.jams.iter().map(|jam| &jam.of_box)) {
+        result.outcomes.values().try_fold(0usize, |sum, share| sum.checked_add(share.count));
+    hold(followed == Some(result.motions), "jams.motions", "must be those of jams.outcomes")?;
+    let drawn = result.outcomes.values().chain(result.expected.iter().flat_map(|of| of.values()));
+    for of in drawn.chain(result.jams.iter().map(|jam| &jam.of_box)) {
         share(of.share, "jams: a share")?;
         interval(of.ci95, "jams: an interval")?;
     }
-    let shares = found.jams.iter().flat_map(|jam| [jam.of_jams, jam.of_failures]);
-    for of in shares.chain(found.features.iter().flat_map(|pair| [pair.of_jams, pair.of_failures])) {
+    let shares = result.jams.iter().flat_map(|jam| [jam.of_jams, jam.of_failures]);
+    for of in shares.chain(result.features.iter().flat_map(|pair| [pair.of_jams, pair.of_failures])) {
         share(of, "jams: a share")?;
     }
-    for jam in &found.jams {
+    for jam in &result.jams {
         let ordered = jam.extent.iter().all(|extent| extent.from <= extent.to);
         hold(ordered, "jams.jams.extent", "must be in order")?;
     }
@@ -164,22 +164,22 @@ mod tests {
 
     /// A run with every part that a report may have.
     fn body() -> RunBody {
-        let (design, found) = basins::tests::flooded();
+        let (design, result) = basins::tests::flooded();
         let null = serde_json::Value::Null;
-        let report = Report::new(&design, &found.acceptance, null.clone(), None, &Exec::new()).unwrap();
-        let mut body = report.with_basins(&found.acceptance, &found.hierarchy).body;
+        let report = Report::new(&design, &result.acceptance, null.clone(), None, &Exec::new()).unwrap();
+        let mut body = report.with_basins(&result.acceptance, &result.hierarchy).body;
         body.partition = Some(PartitionReport::default());
         body.certificate =
             Some(BoxCertificate { yes: 0.3, no: 0.6, undecided: 0.1, ..BoxCertificate::default() });
         body.inherited =
             Some(InheritedLabels { cells: 9, inherited: 7, tried: 5, ..InheritedLabels::default() });
         let problem = Problem::of(design.clone()).unwrap();
-        let asked = jams::JamsSettings { motions: Some(300), ..jams::JamsSettings::default() };
-        let found = jams::run(&problem, &asked, &Exec::new()).unwrap();
-        body.jams = Some(found);
-        let asked = window::WindowSettings { motions: Some(100), ..window::WindowSettings::default() };
-        let found = window::run(&problem, &asked, &Exec::new()).unwrap();
-        body.window = Some(WindowSection::from(&found));
+        let requested = jams::JamsSettings { motions: Some(300), ..jams::JamsSettings::default() };
+        let result = jams::run(&problem, &requested, &Exec::new()).unwrap();
+        body.jams = Some(result);
+        let requested = window::WindowSettings { motions: Some(100), ..window::WindowSettings::default() };
+        let result = window::run(&problem, &requested, &Exec::new()).unwrap();
+        body.window = Some(WindowSection::from(&result));
         let stratum = |share| Stratum {
             name: "all".to_owned(),
             share,
@@ -233,9 +233,9 @@ mod tests {
             ("jams.motions must", |b| b.jams.as_mut().unwrap().motions = 7),
             ("jams: a share must", |b| b.jams.as_mut().unwrap().jams[0].of_failures = 7.0),
             ("jams: an interval must", |b| b.jams.as_mut().unwrap().jams[0].of_box.ci95.reverse()),
-            ("window: a half-width must", |b| b.window.as_mut().unwrap().found.sides[0].alone = -1.0),
+            ("window: a half-width must", |b| b.window.as_mut().unwrap().details.sides[0].alone = -1.0),
             ("window.certificate.failing_at_most must", |b| {
-                b.window.as_mut().unwrap().found.certificate.failing_at_most = f64::NAN;
+                b.window.as_mut().unwrap().details.certificate.failing_at_most = f64::NAN;
             }),
             ("acceptance.sample.misclassified must", |b| sample(b).misclassified = 1.5),
             ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
