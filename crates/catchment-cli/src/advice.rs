@@ -15,6 +15,7 @@ pub(crate) fn flags(advice: &Advice) -> Option<String> {
         Advice::FewerPoses => "try fewer poses at a time".to_owned(),
         Advice::FewerSlices => "use fewer --slices or --strips".to_owned(),
         Advice::FewerThreads => "use fewer --threads".to_owned(),
+        Advice::FinerGrid => "raise --resolution".to_owned(),
         Advice::MissingPart => "add what is missing with --with-fixed or --with-moving".to_owned(),
         Advice::Method(name) => format!("--method {name}"),
         Advice::MoreMemory => "allow more with --memory".to_owned(),
@@ -40,8 +41,8 @@ pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<String> {
             None => next = error.source(),
         }
     };
-    let said: Vec<String> = advised.0.iter().filter_map(flags).collect();
-    (!said.is_empty()).then(|| said.join(", or "))
+    let message: Vec<String> = advised.0.iter().filter_map(flags).collect();
+    (!message.is_empty()).then(|| message.join(", or "))
 }
 
 #[cfg(test)]

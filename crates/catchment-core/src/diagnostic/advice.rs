@@ -21,6 +21,8 @@ pub enum Advice {
     FewerSlices,
     /// Fewer threads.
     FewerThreads,
+    /// A finer grid.
+    FinerGrid,
     /// A magnet, a pin, a stop: a part that belongs to a half and is not in its file.
     MissingPart,
     /// This method instead.
@@ -47,6 +49,7 @@ impl fmt::Display for Advice {
             Self::FewerPoses => f.write_str("try fewer poses at a time"),
             Self::FewerSlices => f.write_str("use fewer slices or strips"),
             Self::FewerThreads => f.write_str("use fewer threads"),
+            Self::FinerGrid => f.write_str("use a finer grid"),
             Self::MissingPart => f.write_str("add what a half has beside its file"),
             Self::Method(name) => write!(f, "use the method {name}"),
             Self::MoreMemory => f.write_str("allow more memory"),

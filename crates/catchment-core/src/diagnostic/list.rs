@@ -189,14 +189,14 @@ mod tests {
 
     #[test]
     fn the_first_diagnostics_are_kept_and_the_others_counted() {
-        let mut found = DiagnosticCollector::default();
-        assert!(found.is_empty());
+        let mut result = DiagnosticCollector::default();
+        assert!(result.is_empty());
         for k in (0..30).rev() {
-            found.push(Diagnostic::error("design", k.to_string(), None).at(Some(k..k + 1)));
+            result.push(Diagnostic::error("design", k.to_string(), None).at(Some(k..k + 1)));
         }
-        found.push_with(|| panic!("nobody reads it"));
-        assert_eq!(found.len(), 31);
-        let diagnostics = found.of(SourceText::new("d.toml", ""));
+        result.push_with(|| panic!("nobody reads it"));
+        assert_eq!(result.len(), 31);
+        let diagnostics = result.of(SourceText::new("d.toml", ""));
         assert_eq!((diagnostics.list.len(), diagnostics.omitted), (Diagnostics::MOST, 11));
         assert!(
             diagnostics.list.is_sorted_by_key(|diagnostic| diagnostic.span.clone().map(|span| span.start))

@@ -156,13 +156,17 @@ struct Stored {
     message: String,
     #[serde(default)]
     help: Option<String>,
-    warning: serde_json::Value,
+    #[serde(default)]
+    warning: Option<serde_json::Value>,
 }
 
 impl From<Stored> for Diagnostic {
     fn from(Stored { severity, code, message, help, warning }: Stored) -> Self {
-        let facts = serde_json::from_value(warning).unwrap_or(Warning::Note { text: message.clone() });
-        let known = Self::from(facts);
+        let sentence = || Warning::Note { text: message.clone() };
+        let known = match warning {
+            Some(facts) => Self::from(serde_json::from_value(facts).unwrap_or_else(|_| sentence())),
+            None => Self { facts: None, ..Self::from(sentence()) },
+        };
         Self {
             severity: severity.unwrap_or(known.severity),
             code: code.map_or_else(|| known.code.clone(), Cow::Owned),
@@ -219,6 +223,8 @@ mod tests {
         assert_eq!(json["warning"], serde_json::json!({ "kind": "note", "text": "it lies loose" }));
         assert_eq!((&json["code"], &json["help"]), (&"loose".into(), &"turn it".into()));
         assert_eq!(serde_json::from_value::<Diagnostic>(json).unwrap(), loose);
+        let note = Diagnostic::note("mirror-image", "the half is mirrored");
+        assert_eq!(serde_json::from_str::<Diagnostic>(&serde_json::to_string(&note).unwrap()).unwrap(), note);
     }
 
     #[test]

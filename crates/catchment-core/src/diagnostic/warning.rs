@@ -104,6 +104,7 @@ impl Warning {
         match self {
             Self::TouchesBorder { .. } => Some(Advice::EnlargeErrors),
             Self::FloodingBias | Self::LevelGround { .. } => Some(Advice::Method("descent")),
+            Self::OutsideSample { .. } => Some(Advice::FinerGrid),
             Self::NoInterval => Some(Advice::Samples),
             _ => None,
         }
@@ -145,8 +146,8 @@ impl fmt::Display for Warning {
             Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
                 f,
                 "the AA by the grid, {sum_grid:.4}, lies outside the 95 % CI {lo:.4} … {hi:.4} of the sampled poses: the grid is too \
-                 coarse or its method biased; do not rely on slices, pictures and shares of jams and misses, which use the grid, or raise its \
-                 resolution; the docked share and the AA (both corrected by the sampled poses), window and limits stay valid"
+                 coarse or its method biased. Slices, pictures and shares of jams and misses use the grid: do not rely on them. The docked \
+                 share and the AA (both corrected by the sampled poses), window and limits stay valid"
             ),
             Self::NoInterval => write!(
                 f,
