@@ -152,11 +152,11 @@ impl Seat<'_> {
                 && Tree::is_divisible(cell)
                 && cell.height.is_some_and(|height| height.lo < home.level)
         };
-        let mut found: Vec<(f64, usize)> =
+        let mut result: Vec<(f64, usize)> =
             tree.leaves().filter(|(_, cell)| may(cell)).map(|(number, cell)| (off(cell), number)).collect();
-        found.retain(|(off, _)| *off < 1.0);
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.into_iter().map(|(_, number)| number).collect()
+        result.retain(|(off, _)| *off < 1.0);
+        result.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        result.into_iter().map(|(_, number)| number).collect()
     }
 
     /// Whether a box lies so deep in the neighbourhood of the mated pose that nothing leaves it.
@@ -221,7 +221,7 @@ impl EscapeRoute {
     /// The blocking boxes that may be halved: each blocking box or, if it may not, the last box that may on
     /// the path to it, whose floor may be too low.
     pub(super) fn in_the_way(&self, may: impl Fn(usize) -> bool) -> Vec<usize> {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         let mut seen = BTreeSet::new();
         for blocking in &self.blocking {
             let mut at = *blocking;
@@ -229,10 +229,10 @@ impl EscapeRoute {
                 at = self.came_from[at];
             }
             if may(at) && seen.insert(at) {
-                found.push(at);
+                result.push(at);
             }
         }
-        found
+        result
     }
 }
 

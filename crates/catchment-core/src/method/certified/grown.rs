@@ -70,7 +70,7 @@ impl Growth<'_> {
     /// # Errors
     /// [`Cancelled`] if a stop is requested.
     pub(super) fn of(&self, home: Home) -> Result<(Home, usize), Cancelled> {
-        let (mut found, mut spent) = (home, 0);
+        let (mut result, mut spent) = (home, 0);
         let mut poses = home.poses;
         while spent < self.pieces {
             let outer = self.scaled(&poses, GROWTH);
@@ -88,11 +88,11 @@ impl Growth<'_> {
             poses = outer;
             let (level, taken) = self.level(&poses)?;
             spent += taken;
-            if level > found.level {
-                found = Home { poses, level };
+            if level > result.level {
+                result = Home { poses, level };
             }
         }
-        Ok((found, spent))
+        Ok((result, spent))
     }
 
     /// A neighbourhood, larger by a factor, within the error box.

@@ -68,9 +68,9 @@ impl Home {
                 let reach = range.up.min(-range.lo) * 0.5f64.powi(halvings);
                 if reach > 0.0 { Interval::new(-reach, reach) } else { Interval::ZERO }
             });
-            let found = Self::about(bodies, &poses, mated, nearby, exec)?;
-            if found.is_some() {
-                return Ok(found);
+            let result = Self::about(bodies, &poses, mated, nearby, exec)?;
+            if result.is_some() {
+                return Ok(result);
             }
         }
         Ok(None)

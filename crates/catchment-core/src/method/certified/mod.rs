@@ -40,6 +40,7 @@ mod tests;
 mod touch;
 mod tree;
 mod tube;
+mod window;
 
 use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::contact::{Nearby, Pair, SEAT_CORE};
@@ -154,8 +155,6 @@ const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D: each halving
 /// doubles their number or more.
 const FINEST: f64 = 3e-4;
-/// How often a window is halved.
-const WINDOW_HALVINGS: usize = 24;
 /// Part of the budget that is spent finally on the blocking boxes of the seat's part, and its upper limit:
 /// doubling it hardly improves the bound.
 const AT_LAST: usize = 8;
@@ -193,15 +192,15 @@ pub(crate) fn certify(
     let sits = SeatBoxes { pair, rho: alignment.rotation_length };
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
     let mated = pair.mated_height();
-    let mut home = Home::find(&bodies, &tree.asked, mated, &mut pair.about(REACH), exec)?;
+    let mut home = Home::find(&bodies, &tree.error_box, mated, &mut pair.about(REACH), exec)?;
     let pieces = settings.boxes.saturating_sub(tree.cells.len()) / 2;
-    let growth = Growth { pair, bodies: &bodies, errors: tree.asked, pieces, exec };
+    let growth = Growth { pair, bodies: &bodies, errors: tree.error_box, pieces, exec };
     let (mut grown, mut window) = (0, 0.0);
-    if let Some(found) = &mut home
+    if let Some(result) = &mut home
         && tree.axes.len() > MOST_IN_THE_WAY
     {
-        (*found, grown) = growth.of(*found)?;
-        window = growth.window(found)?;
+        (*result, grown) = growth.of(*result)?;
+        window = growth.window(result)?;
     }
     let boxes = settings.boxes.saturating_sub(grown);
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, home, meets: &meets };
@@ -306,8 +305,8 @@ fn chosen(
     let mut chosen = in_the_way;
     chosen.extend(seat.about(tree).into_iter().take(AT_HOME));
     let ahead = ahead(tree, exec)?.into_iter();
-    let (asked, beyond) = ahead.partition(|number| tree.is_asked(&tree.cells[*number]));
-    chosen.extend(by_size(asked).take(most));
+    let (inside, beyond) = ahead.partition(|number| tree.is_in_error_box(&tree.cells[*number]));
+    chosen.extend(by_size(inside).take(most));
     chosen.extend(by_size(beyond).take(most));
     let mut seen = BTreeSet::new();
     chosen.retain(|number| seen.insert(*number));
@@ -354,11 +353,11 @@ fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Ex
     // Retry a box once the number of boxes has grown enough for many new labels.
     let boxes = tree.cells.len();
     let is_open = |cell: &Cell| {
-        cell.label.is_none() && !cell.sudden && tree.is_asked(cell) && boxes >= again * cell.followed
+        cell.label.is_none() && !cell.sudden && tree.is_in_error_box(cell) && boxes >= again * cell.followed
     };
     let open: Vec<usize> =
         tree.leaves().filter(|(_, cell)| is_open(cell)).map(|(number, _)| number).collect();
-    let found: Vec<Option<Label>> = exec.install(|| {
+    let result: Vec<Option<Label>> = exec.install(|| {
         let tube = Tube { bodies, tree };
         let follow = |nearby: &mut Nearby<'_>, number: &usize| {
             exec.check()?;
@@ -366,7 +365,7 @@ fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Ex
         };
         open.par_iter().map_init(|| pair.about(REACH), follow).collect::<Result<_, Cancelled>>()
     })?;
-    for (number, label) in open.into_iter().zip(found) {
+    for (number, label) in open.into_iter().zip(result) {
         tree.cells[number].label = label;
         tree.cells[number].followed = boxes;
     }
@@ -437,74 +436,6 @@ impl Certified {
             Some(Label::Jams) => Outcome::Jammed,
             Some(Label::Leaves) => Outcome::Missed,
             None => Outcome::Undecided,
-        }
-    }
-}
-
-impl Tree {
-    /// Share of the error box without a label.
-    fn undecided(&self) -> f64 {
-        let open = self.leaves().filter(|(_, cell)| cell.label.is_none() && self.is_asked(cell));
-        open.map(|(_, cell)| self.share(cell)).sum()
-    }
-
-    /// The label that holds all over a box of poses.
-    fn label_over(&self, poses: &PoseBox) -> Option<Label> {
-        self.common_label(&self.inner_places(poses)?)
-    }
-
-    /// The error box, smaller by a factor.
-    fn window_of(&self, scale: f64) -> PoseBox {
-        self.asked.map(|errors| {
-            if errors.up > 0.0 { Interval::new(-scale * errors.up, scale * errors.up) } else { errors }
-        })
-    }
-
-    /// Whether a box lies in the error box made smaller by a factor.
-    fn is_within(&self, poses: &PoseBox, scale: f64) -> bool {
-        let window = self.window_of(scale);
-        self.axes.iter().all(|dof| {
-            let (own, whole) = (poses[dof.index()], window[dof.index()]);
-            whole.lo <= own.lo && own.up <= whole.up
-        })
-    }
-
-    /// By which factor the error box may be made smaller, at least, to hold but boxes that dock.
-    fn window(&self) -> f64 {
-        let docks = |scale: f64| self.label_over(&self.window_of(scale)) == Some(Label::Yes);
-        if docks(1.0) {
-            return 1.0;
-        }
-        let (mut yes, mut no) = (0.0, 1.0);
-        for _ in 0..WINDOW_HALVINGS {
-            let scale = f64::midpoint(yes, no);
-            if docks(scale) { yes = scale } else { no = scale }
-        }
-        yes
-    }
-
-    /// The shares of labels, of a tree and a window; the seat is not spoken of.
-    fn certificate(&self, window: f64) -> BoxCertificate {
-        let [mut yes, mut no] = [0.0; 2];
-        for (_, cell) in self.leaves().filter(|(_, cell)| self.is_asked(cell)) {
-            match cell.label {
-                Some(Label::Yes) => yes += self.share(cell),
-                Some(Label::Jams | Label::Leaves) => no += self.share(cell),
-                None => {}
-            }
-        }
-        // Boxes may be larger than a window that is certain by itself.
-        yes = yes.max(self.axes.iter().map(|_| window).product());
-        let undecided = (1.0 - yes - no).max(0.0);
-        let measure: f64 = self.axes.iter().map(|dof| self.asked[dof.index()].width()).product();
-        BoxCertificate {
-            yes,
-            no,
-            undecided,
-            measures: [yes, no, undecided].map(|share| share * measure),
-            window,
-            boxes: self.cells.len(),
-            ..BoxCertificate::default()
         }
     }
 }

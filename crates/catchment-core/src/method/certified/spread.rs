@@ -176,8 +176,8 @@ impl SourceChains<'_> {
 /// # Errors
 /// [`Cancelled`] if a stop is requested.
 pub(super) fn ahead(tree: &Tree, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
-    let asked = tree.leaves().filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell));
-    let sources: Vec<usize> = asked.map(|(number, _)| number).collect();
+    let requested = tree.leaves().filter(|(_, cell)| cell.label.is_none() && tree.is_in_error_box(cell));
+    let sources: Vec<usize> = requested.map(|(number, _)| number).collect();
     let leads_on =
         |from: &Cell, to: &Cell, face: Face| to.label.is_none() && goes(from, to, face.axis(), face.above);
     let seen = chained(tree, &sources, leads_on, exec)?;

@@ -128,7 +128,7 @@ impl Survey {
             let Interval { lo, up } = poses[k];
             for (upper, at) in [(false, lo), (true, up)] {
                 let all = Ways::of(&self.pushes, k);
-                let found = if all == Ways::default() || all.is_along() {
+                let result = if all == Ways::default() || all.is_along() {
                     all
                 } else {
                     let mut face = *poses;
@@ -136,7 +136,7 @@ impl Survey {
                     let (_, pushes) = Self::among(bodies, &face, &self.touches, self.sudden, nearby);
                     Ways::of(&pushes, k)
                 };
-                flows.0[k][usize::from(upper)] = found;
+                flows.0[k][usize::from(upper)] = result;
             }
         }
         flows
@@ -275,7 +275,7 @@ impl Rims {
             body.ridges.iter().map(|ridge| sides(ridge.normals.map(facing))).collect()
         };
         let (own_sides, its_sides) = (rims(fixed, &own), rims(moving, &its));
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         // Corners of the moving half at rims of the fixed half.
         for (ridge, sides) in fixed.ridges.iter().zip(&own_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
             let [a, b] = ridge.ends.map(|k| fixed.at(k));
@@ -292,7 +292,7 @@ impl Rims {
                 rim.meet(at.lateral[k], &sheet, |outward, level, facet, sheet| {
                     let lift = level - at.turned[k][2];
                     let apart = moved(bodies, at, k, outward);
-                    found.push(Meet { lift, apart, facet, of_fixed: true, sheet });
+                    result.push(Meet { lift, apart, facet, of_fixed: true, sheet });
                 });
             }
         }
@@ -317,11 +317,11 @@ impl Rims {
                     // velocities between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
                     let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
-                    found.push(Meet { lift, apart, facet, of_fixed: false, sheet });
+                    result.push(Meet { lift, apart, facet, of_fixed: false, sheet });
                 });
             }
         }
-        found
+        result
     }
 }
 

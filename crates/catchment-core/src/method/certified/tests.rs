@@ -495,7 +495,7 @@ fn it_ends_soon_when_asked_to() {
     let pair = pair_of(Family::Pyramid, &[], 0.0);
     let exec = Exec::new();
     let flag = exec.cancel_flag();
-    let asked = std::thread::spawn(move || {
+    let requested = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(300));
         flag.store(true, Ordering::Relaxed);
         Instant::now()
@@ -503,5 +503,5 @@ fn it_ends_soon_when_asked_to() {
     let settings = CertifiedSettings { gap: 0.0, boxes: 10_000_000, ..CertifiedSettings::default() };
     let found = certify(&pair, &settings, &exec);
     assert!(matches!(found, Err(CertifiedError::Cancelled(_))));
-    assert!(asked.join().unwrap().elapsed() < Duration::from_secs(1));
+    assert!(requested.join().unwrap().elapsed() < Duration::from_secs(1));
 }

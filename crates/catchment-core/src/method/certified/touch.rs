@@ -224,18 +224,18 @@ impl<'a> Touching<'a> {
             Plane { normal: up, fixed: a, moving: its.ends[0] }
         };
         let planar = straight.then_some(plane);
-        let found = match planar {
+        let result = match planar {
             Some(plane) => self.touch_by(number, plane, among, |_| beyond, arm)?,
             None => self.touch_with(number, normal, among, arm),
         };
         // For nearly parallel lines the cross product is imprecise; their facets bound the normal better.
-        let arc = (spread(&found.normal) > PRECISE).then(|| Arc::of(own)).flatten();
-        let Some(arc) = arc.map(|arc| arc.normal(its, &self.over)) else { return Some(found) };
+        let arc = (spread(&result.normal) > PRECISE).then(|| Arc::of(own)).flatten();
+        let Some(arc) = arc.map(|arc| arc.normal(its, &self.over)) else { return Some(result) };
         let arc = arc.filter(|normal| normal[2].up > 0.0)?;
-        Some(if spread(&arc) < spread(&found.normal) {
-            self.touch_with(number, arc, found.height, arm)
+        Some(if spread(&arc) < spread(&result.normal) {
+            self.touch_with(number, arc, result.height, arm)
         } else {
-            found
+            result
         })
     }
 

@@ -264,13 +264,13 @@ impl Tube<'_> {
                 }
             }
             ends |= survey.sudden;
-            let found = if survey.touches.is_empty() {
+            let result = if survey.touches.is_empty() {
                 Some(vec![Interval::ZERO; bundle.len() - 1])
             } else {
                 slopes(&frame, &survey.pushes)
             };
             let bends = |slopes: &Vec<Interval>| slopes.iter().any(|slope| slope.middle().abs() > BENT);
-            let Some(all) = found.filter(|slopes| fresh || !entered || !bends(slopes)) else {
+            let Some(all) = result.filter(|slopes| fresh || !entered || !bends(slopes)) else {
                 // Once more, in coordinates of the descent there.
                 if fresh || !entered {
                     return None;

@@ -110,7 +110,7 @@ pub(super) struct Tree {
     clear: [bool; 5],
     pub(super) bearings: Bearings,
     /// The error box, and its position in the root.
-    pub(super) asked: PoseBox,
+    pub(super) error_box: PoseBox,
     errors: Span,
     /// Length of a unit of each error in the ρ-metric, in D.
     units: [f64; 5],
@@ -125,14 +125,14 @@ impl Tree {
     pub(super) fn over(alignment: &Alignment, bodies: &Bodies) -> Self {
         let axes: Vec<Dof> = alignment.free.iter().collect();
         let wide = alignment.free.rotations() <= 1;
-        let [mut root, mut asked] = [[Interval::ZERO; 5]; 2];
+        let [mut root, mut error_box] = [[Interval::ZERO; 5]; 2];
         let [mut closed, mut clear] = [[false; 5]; 2];
         let passing = passing(bodies);
         let mut errors = [[0, WHOLE]; 5];
         for dof in &axes {
             let k = dof.index();
             let half = alignment.half_range(*dof);
-            asked[k] = Interval::new(-half, half);
+            error_box[k] = Interval::new(-half, half);
             let beyond = if dof.is_rotation() { PI } else { (2.0 * half).max(passing) };
             let reach = if wide { half.max(beyond) } else { half };
             root[k] = Interval::new(-reach, reach);
@@ -163,7 +163,7 @@ impl Tree {
         };
         let bearings = Bearings::of(&axes, &units);
         let (upright, cells) = (bodies.upright, vec![whole]);
-        Self { axes, root, closed, clear, bearings, asked, errors, units, upright, cells }
+        Self { axes, root, closed, clear, bearings, error_box, errors, units, upright, cells }
     }
 
     /// Size of a box along an axis, in smallest boxes.
@@ -183,13 +183,13 @@ impl Tree {
 
     /// The stretch of an axis that holds a place: places and errors of both of its ends. Below the error box, in it, or above it.
     fn stretch(&self, axis: usize, above: impl Fn(u32, f64) -> bool) -> ([u32; 2], Interval) {
-        let (root, asked, [from, to]) = (self.root[axis], self.asked[axis], self.errors[axis]);
-        if above(to, asked.up) {
-            ([to, WHOLE], Interval::new(asked.up, root.up))
-        } else if above(from, asked.lo) {
-            ([from, to], asked)
+        let (root, error_box, [from, to]) = (self.root[axis], self.error_box[axis], self.errors[axis]);
+        if above(to, error_box.up) {
+            ([to, WHOLE], Interval::new(error_box.up, root.up))
+        } else if above(from, error_box.lo) {
+            ([from, to], error_box)
         } else {
-            ([0, from], Interval::new(root.lo, asked.lo))
+            ([0, from], Interval::new(root.lo, error_box.lo))
         }
     }
 
@@ -282,7 +282,7 @@ impl Tree {
     }
 
     /// Whether a box lies in the error box.
-    pub(super) fn is_asked(&self, cell: &Cell) -> bool {
+    pub(super) fn is_in_error_box(&self, cell: &Cell) -> bool {
         let span = self.span(cell);
         self.axes.iter().all(|dof| {
             let ([a, b], [c, d]) = (span[dof.index()], self.errors[dof.index()]);
