@@ -185,6 +185,15 @@ fn parts_of_a_few_millimetres_may_be_in_inches() {
     assert!(printout.contains("is the file in inches? Then it is "), "{printout}");
 }
 
+/// Files in metres that are read as millimetres get one note, which names the metre.
+#[test]
+fn parts_of_a_few_hundredths_of_a_millimetre_may_be_in_metres() {
+    let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
+    let printout = run(home.path(), &TWO).unbroken();
+    assert_eq!(printout.matches("Then it is ").count(), 1, "{printout}");
+    assert!(printout.contains("in m? Then it is "), "{printout}");
+}
+
 /// Lengths of parts of millimetres are told in mm where their files are in metres.
 #[test]
 fn metres_are_reported_in_millimetres() {
@@ -193,7 +202,7 @@ fn metres_are_reported_in_millimetres() {
     assert!(
         printout.starts_with("exit 0")
             && printout.contains("6 mm deep along the approach, ±0.")
-            && printout.contains(" mm of sideways play at half depth"),
+            && printout.contains(" mm of sideways play at half of that depth"),
         "{printout}"
     );
 }

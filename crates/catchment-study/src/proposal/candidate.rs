@@ -139,7 +139,7 @@ impl Candidate {
         let Self { lie, score, climb, shared, seat, .. } = self;
         if let Some([deep, play]) = self.sunk {
             return format!(
-                "{score:.2} (0: no seat, 1: steep seat without play): {lie}{}; sits {} deep along the approach, ±{} of sideways play at half depth; {seat}",
+                "{score:.2} (0: no seat, 1: steep seat without play): {lie}{}; sits {} deep along the approach, ±{} of sideways play at half of that depth; {seat}",
                 self.place_among(all, unit),
                 shown_length(deep, unit),
                 shown_length(play, unit)

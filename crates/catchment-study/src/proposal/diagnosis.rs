@@ -44,12 +44,12 @@ pub(super) enum Frame {
 
 /// How parts are drawn.
 pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
-    let found = together(parts, grain);
-    if found.shared >= MOST_SHARED {
+    let result = together(parts, grain);
+    if result.shared >= MOST_SHARED {
         Frame::Own
-    } else if found.near * found.inside >= LEAST_NEAR {
+    } else if result.near * result.inside >= LEAST_NEAR {
         Frame::Assembly
-    } else if found.inside >= LEAST_INSIDE {
+    } else if result.inside >= LEAST_INSIDE {
         Frame::Perhaps
     } else {
         Frame::Own
@@ -170,7 +170,7 @@ pub(super) fn of_files(
             ));
         }
     }
-    inches(halves, settings, scale)
+    unit(halves, settings, scale)
 }
 
 /// Bodies whose boxes are compared in pairs, at most.
@@ -187,12 +187,12 @@ fn bodies(half: &Half) -> usize {
                 body.join(facet.corners[0], *corner);
             }
         }
-        let mut found: HashMap<u32, (DVec3, DVec3)> = HashMap::new();
+        let mut result: HashMap<u32, (DVec3, DVec3)> = HashMap::new();
         for (k, p) in (0..).zip(&surface.vertices) {
-            let (low, high) = found.entry(body.find(k)).or_insert((*p, *p));
+            let (low, high) = result.entry(body.find(k)).or_insert((*p, *p));
             (*low, *high) = (low.min(*p), high.max(*p));
         }
-        boxes.extend(found.into_values());
+        boxes.extend(result.into_values());
     }
     if boxes.len() > MOST_COMPARED {
         return boxes.len();
@@ -212,21 +212,19 @@ fn is_same(one: &Half, other: &Half) -> bool {
         })
 }
 
-/// Parts that are no longer than this, in millimetres, are rather in inches.
+/// Parts that are no longer than this, in millimetres, are rather in inches or metres.
 const SHORT: f64 = 6.0;
 
-/// A note that files without a unit, read as millimetres, are probably in inches.
-pub(super) fn inches(halves: [&Half; 2], settings: &ProposalSettings, scale: f64) -> Option<String> {
+/// That files without a unit, read as millimetres, are probably in inches or, if the parts would still be short, in metres.
+pub(super) fn unit(halves: [&Half; 2], settings: &ProposalSettings, scale: f64) -> Option<String> {
     let longest = halves.map(|half| {
         let (low, high) = half.bounds();
         (high - low).max_element() * scale
     });
     let longest = longest[0].max(longest[1]);
     (file_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
-        format!(
-            "the larger part is {} mm long: is the file in inches? Then it is {} mm long",
-            number(longest),
-            number(longest * 25.4)
-        )
+        let (unit, larger) = if longest * 25.4 < SHORT { ("m", 1e3) } else { ("inches", 25.4) };
+        let [read, would_be] = [longest, longest * larger].map(number);
+        format!("the larger part is {read} mm long: is the file in {unit}? Then it is {would_be} mm long")
     })
 }

@@ -39,7 +39,7 @@ fn ranges(pair: &Pair, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     let free = pair.alignment.free;
     let free: Vec<Dof> = free.iter().collect();
     let motions = descent::DescentSettings::default();
-    let found = exec.each(free.len(), usize::MAX, "errors", |k, exec| {
+    let result = exec.each(free.len(), usize::MAX, "errors", |k, exec| {
         let whole = if free[k].is_rotation() { FRAC_PI_2 } else { 1.0 };
         let mut follower = descent::Follower::new(pair, &motions);
         let mut docks = |sign: f64, share: f64| {
@@ -54,7 +54,7 @@ fn ranges(pair: &Pair, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     });
     exec.check()?;
     let mut ranges = [1.0; 5];
-    for (dof, range) in free.iter().zip(found) {
+    for (dof, range) in free.iter().zip(result) {
         ranges[dof.index()] = range;
     }
     Ok(ranges)

@@ -229,8 +229,8 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &ProposalSetting
         "# Your mount decides: rho = sqrt(rotational / lateral damping of the mount); results depend on it.",
     );
     line("rotation_length = 0.5");
-    let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
-    for (k, (dof, play)) in said.enumerate() {
+    let message = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
+    for (k, (dof, play)) in message.enumerate() {
         if k == 0 {
             line(
                 "\n# The seat has this play; any pose in it counts as docked. Pins or plugs behind the face may need less.",

@@ -23,7 +23,7 @@ pub(super) fn read(
         (Ok(fixed), Ok(moving)) => [fixed, moving],
         (fixed, moving) => {
             let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
-            return Err(ProposalError::Problem(said_once(diagnostics(&all)).into()));
+            return Err(ProposalError::Problem(without_duplicates(diagnostics(&all)).into()));
         }
     };
     if settings.unit.is_none() {
@@ -51,12 +51,12 @@ pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &ProposalSettin
 }
 
 /// Errors that both files share are reported only for the first.
-fn said_once(mut diagnostics: Diagnostics) -> Diagnostics {
-    let mut said = HashSet::new();
+fn without_duplicates(mut diagnostics: Diagnostics) -> Diagnostics {
+    let mut stated = HashSet::new();
     diagnostics.list.retain(|diagnostic| {
         let reason =
             diagnostic.message.split_once(": ").map_or(diagnostic.message.as_str(), |(_, reason)| reason);
-        said.insert(reason.to_owned())
+        stated.insert(reason.to_owned())
     });
     diagnostics
 }

@@ -157,7 +157,10 @@ impl fmt::Display for PartLayout {
         match self {
             Self::Assembled { approach } => write!(f, "docked as drawn, approach {approach}"),
             Self::Facing { fixed, moving, turned } => {
-                write!(f, "fixed part faces {fixed}, moving part {moving} in its file")?;
+                write!(
+                    f,
+                    "the fixed half's face looks along {fixed}, the moving half's along {moving}, each in its file"
+                )?;
                 if *turned > 0 { write!(f, ", turned by {} deg", u32::from(*turned) * 90) } else { Ok(()) }
             }
         }

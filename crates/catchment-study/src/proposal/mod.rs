@@ -332,9 +332,11 @@ pub fn propose(
         let text = "in doubt: the file holds more than two separate bodies; the two largest were taken";
         notes.push(Diagnostic::note("several-bodies", text));
     }
-    notes.extend(diagnosis::inches(both.halves, settings, unit).map(|text| Diagnostic::note("unit", text)));
     let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;
-    notes.extend(problem.design().unit.and_then(|unit| warnings::of_size(problem.design().width, unit)));
+    let by_width = problem.design().unit.and_then(|unit| warnings::of_size(problem.design().width, unit));
+    let by_length =
+        || diagnosis::unit(both.halves, settings, unit).map(|text| Diagnostic::note("unit", text));
+    notes.extend(by_width.or_else(by_length));
     Ok(Proposal { text, problem, candidates, notes })
 }
 

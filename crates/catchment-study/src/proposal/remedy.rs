@@ -30,15 +30,15 @@ pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancel
 pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, String)>, Cancelled> {
     let [fixed, moving] = both.halves;
     let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
-    let found = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.display), exec)?;
-    let mut judged = found.into_iter().filter_map(Result::ok).collect();
+    let result = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.display), exec)?;
+    let mut judged = result.into_iter().filter_map(Result::ok).collect();
     rank(&mut judged, both.settings.free, both.display, exec)?;
     let best = judged.into_iter().next().filter(is_seat);
-    Ok(best.filter(|found| found.score() >= WEAK).map(|found| {
-        let score = found.score();
+    Ok(best.filter(|result| result.score() >= WEAK).map(|result| {
+        let score = result.score();
         let words = format!(
             "a mirror image of the moving part would dock ({}; {score:.2}): was one of the two exported mirrored?",
-            found.lie
+            result.lie
         );
         (score, words)
     }))
@@ -52,13 +52,13 @@ fn obstacle(
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {
     let facing = settings.facing.map(ways);
-    let found = search::obstacle(pair, [&facing[0], &facing[1]], exec)?;
-    Ok(found.map(|(lie, found)| {
+    let result = search::obstacle(pair, [&facing[0], &facing[1]], exec)?;
+    Ok(result.map(|(lie, result)| {
         let turns = lie.turns();
         let at = [0, 1].map(|k| {
-            let [x, y, z] = (display.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
+            let [x, y, z] = (display.scale * (turns[k].transpose() * result.at[k])).to_array().map(number);
             format!("({x}, {y}, {z}) {}", display.unit)
         });
-        format!("{} ({lie})", height_map::in_words(&found, &at, display))
+        format!("{} ({lie})", height_map::in_words(&result, &at, display))
     }))
 }

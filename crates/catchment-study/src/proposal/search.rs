@@ -48,8 +48,8 @@ pub(super) fn places(
     exec: &Exec,
 ) -> Result<Vec<SeatPlace>, Cancelled> {
     let cell = cell(halves, facing);
-    let found = scan(halves, facing, None, cell, exec)?;
-    let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined(halves, found[k], cell));
+    let result = scan(halves, facing, None, cell, exec)?;
+    let finer = exec.each(result.len(), usize::MAX, "places", |k, _| refined(halves, result[k], cell));
     exec.check()?;
     Ok(finer)
 }
@@ -66,8 +66,8 @@ pub(super) fn obstacle(
         for SeatPlace { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
             let [top, bottom] = height_maps(halves, lie, cell);
             let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
-            if let Some(found) = height_map::in_the_way(&top, &bottom, moved, cell) {
-                return Ok(Some((lie, found)));
+            if let Some(result) = height_map::in_the_way(&top, &bottom, moved, cell) {
+                return Ok(Some((lie, result)));
             }
         }
     }
@@ -95,11 +95,11 @@ fn scan(
     };
     let lies: Vec<[AxisDirection; 2]> =
         facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
-    let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
+    let result = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
         let [f, m] = lies[number];
         let top =
             seen(fixed, HalfRole::Fixed, &PartLayout::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
-        let (mut found, mut met): (Vec<SeatPlace>, Vec<HeightMap>) = (Vec::new(), Vec::new());
+        let (mut result, mut met): (Vec<SeatPlace>, Vec<HeightMap>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
@@ -107,19 +107,19 @@ fn scan(
             let lie = PartLayout::Facing { fixed: f, moving: m, turned };
             let bottom = seen(moving, HalfRole::Moving, &lie.turns()[1]);
             if !met.iter().any(|map| map.is_like(&bottom)) {
-                found.extend(height_map::with(&top, &bottom, |both| {
+                result.extend(height_map::with(&top, &bottom, |both| {
                     hollows(lie, [&top, &bottom], both, cell, broad)
                 }));
                 met.push(bottom);
             }
         }
-        found
+        result
     });
     exec.check()?;
-    let mut found: Vec<SeatPlace> = found.into_iter().flatten().collect();
-    found.sort_by(|a, b| b.score.total_cmp(&a.score));
-    found.truncate(PLACES);
-    Ok(found)
+    let mut result: Vec<SeatPlace> = result.into_iter().flatten().collect();
+    result.sort_by(|a, b| b.score.total_cmp(&a.score));
+    result.truncate(PLACES);
+    Ok(result)
 }
 
 /// The cell with which all offsets are not too much work.
@@ -163,18 +163,18 @@ fn hollows(
         if inside { heights[(j * size[0] + i) as usize] } else { None }
     };
     let share = (cell * cell / broad) as f32;
-    let mut found: Vec<(f32, [i32; 2])> = Vec::new();
+    let mut result: Vec<(f32, [i32; 2])> = Vec::new();
     for (i, j) in (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j))) {
         let Some((height, count)) = at(i, j) else { continue };
         let (climb, worst) = height_map::climb([i, j], height, |[i, j]| Some(at(i, j)?.0));
         let score = climb * (count as f32 * share).min(1.0);
         if score > 0.0 && worst > -0.1 * MOST_RISE {
-            found.push((score, [i, j]));
+            result.push((score, [i, j]));
         }
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    result.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<(f32, [i32; 2])> = Vec::new();
-    for (score, [i, j]) in found {
+    for (score, [i, j]) in result {
         const APART: i32 = 5;
         if kept.iter().all(|(_, [a, b])| (a - i).abs().max((b - j).abs()) > APART) {
             kept.push((score, [i, j]));

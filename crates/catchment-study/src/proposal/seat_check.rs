@@ -245,7 +245,7 @@ pub(super) fn judge(
     let scaled = |half: &Half| half.mapped(|p| p - center.extend(0.0)).scaled(1.0 / width);
     let nothing = || HalfSpec::Pieces(Vec::new());
     let own = OwnSpec { drawn, face_height: None, ..OwnSpec::new(0.0, nothing(), nothing()) };
-    let connector = face::found(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
+    let connector = face::with_derived_face(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
     let climb = climb(&Pair::new(&connector, &nothing_free()));
     Ok(SeatCandidate {
         lie,

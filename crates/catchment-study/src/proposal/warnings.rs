@@ -98,12 +98,12 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<D
     }
     if matches!(best.lie, PartLayout::Facing { .. }) && best.score < WEAK {
         notes.push(look("weak-seat", format!(
-            "in doubt: the score {:.2} is low (below {WEAK}): look at the picture; if the parts dock otherwise, state how they face",
+            "in doubt: the score {:.2} is low (below {WEAK}): look at the picture; if the parts dock differently, state how they face",
             best.score
         )));
     }
     if best.is_loose {
-        let text = "in doubt: the moving part lies loose, as in a tray: look at the picture; if the parts dock otherwise, state how they face";
+        let text = "in doubt: the moving part lies loose, as in a tray: look at the picture; if the parts dock differently, state how they face";
         notes.push(look("loose-seat", text.to_owned()));
     }
     if best.sunk.is_none() && best.climb < 0.1 {

@@ -31,16 +31,16 @@ pub(in crate::proposal) fn classes(moving: &Triangles, sunk: &[Sunk], grain: Gra
         PartLayout::Facing { fixed, moving, .. } => Some((fixed, moving)),
         PartLayout::Assembled { .. } => None,
     };
-    let mut found: Vec<Class> = Vec::new();
+    let mut result: Vec<Class> = Vec::new();
     for one in sunk {
         let same = |class: &&mut Class| {
             sides(&class.best) == sides(one) && at(&class.best).distance(at(one)) < ONE_PLACE * grain.small
         };
-        match found.iter_mut().find(same) {
+        match result.iter_mut().find(same) {
             Some(class) if class.turned.is_none() && class.best.lie != one.lie => class.turned = Some(*one),
             Some(_) => {}
-            None => found.push(Class { best: *one, turned: None }),
+            None => result.push(Class { best: *one, turned: None }),
         }
     }
-    found
+    result
 }

@@ -44,7 +44,7 @@ pub(super) fn basins(z: &[f32], wide: usize, least: f32) -> Vec<Basin> {
     let mut lowest: Vec<u32> = (0..=z.len() as u32).collect();
     parent[outside] = outside as u32;
     let level = |k: u32| if k as usize == outside { NOTHING } else { z[k as usize] };
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for k in order {
         let (i, j) = (k as usize % wide, k as usize / wide);
         parent[k as usize] = k;
@@ -66,13 +66,13 @@ pub(super) fn basins(z: &[f32], wide: usize, least: f32) -> Vec<Basin> {
                 if level(a) < level(b) { (own, other, a, b) } else { (other, own, b, a) };
             let climb = z[k as usize] - level(ends);
             if climb >= least {
-                found.push(Basin { at: ends as usize, climb });
+                result.push(Basin { at: ends as usize, climb });
             }
             parent[end as usize] = keep;
             lowest[keep as usize] = deeper;
             own = keep;
         }
     }
-    found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
-    found
+    result.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+    result
 }

@@ -343,25 +343,25 @@ pub(super) fn deciding_blocks(map: &PartHeights, [small, large]: [usize; 2], ste
     let middle = |[is, js]: &[Range<usize>; 2], z: f32| {
         ([is.start.midpoint(is.end) as u32, js.start.midpoint(js.end) as u32], z)
     };
-    let mut found = Groups::new();
+    let mut result = Groups::new();
     for outer in blocks(map.counts, large) {
         aside.clear();
         match block(map, outer.clone(), step, &mut aside) {
             Block::Nothing => {}
-            Block::Level((_, z)) => found.entry(large).or_default().push(middle(&outer, z)),
+            Block::Level((_, z)) => result.entry(large).or_default().push(middle(&outer, z)),
             Block::Stepped => {
                 let [is, js] = &outer;
                 for [i, j] in blocks([is.len(), js.len()], small) {
                     let inner = [is.start + i.start..is.start + i.end, js.start + j.start..js.start + j.end];
                     if let Block::Level((_, z)) = block(map, inner.clone(), step, &mut points) {
-                        found.entry(small).or_default().push(middle(&inner, z));
+                        result.entry(small).or_default().push(middle(&inner, z));
                     }
                 }
             }
         }
     }
-    found.insert(1, points);
-    found
+    result.insert(1, points);
+    result
 }
 
 /// Points by the side of the block that each stands for.

@@ -145,8 +145,8 @@ mod tests {
         for lead_mm in [1.6, 2.4] {
             let nut = thread([0.0, 12.0], lead_mm, 0.05, true);
             let bolt = thread([-2.0, 20.0], lead_mm, -0.05, false);
-            let found = lead([&nut, &bolt], down(), GRAIN).unwrap();
-            assert!((found.abs() - lead_mm).abs() < 0.11, "{lead_mm}: {found}");
+            let result = lead([&nut, &bolt], down(), GRAIN).unwrap();
+            assert!((result.abs() - lead_mm).abs() < 0.11, "{lead_mm}: {result}");
         }
         // A round pin turns freely; a square pin does not turn.
         let smooth = |grown, is_hole| thread([0.0, 12.0], 1e6, grown, is_hole);
@@ -166,9 +166,9 @@ mod tests {
         socket.extend(block([-20.0, -20.0, -20.0], [20.0, 20.0, -12.0]));
         let mut pin = block([-5.0, -5.0, -12.0], [5.0, 5.0, -2.2]);
         pin.extend(block([-4.5, -4.5, -2.2], [4.5, 4.5, 10.0]));
-        let found = undercut([&socket, &pin], down(), GRAIN).unwrap();
+        let result = undercut([&socket, &pin], down(), GRAIN).unwrap();
         // 0.4 mm on each side, in cells of 0.1 mm, rounded up to the next tested offset.
-        assert!((0.4..0.61).contains(&found), "{found}");
+        assert!((0.4..0.61).contains(&result), "{result}");
         // Three millimetres are no snap.
         let mut wide = block([-5.0, -5.0, -12.0], [5.0, 5.0, -2.2]);
         wide.extend(block([-1.5, -1.5, -2.2], [1.5, 1.5, 10.0]));

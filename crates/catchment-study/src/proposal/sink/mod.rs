@@ -123,25 +123,25 @@ pub(super) fn sinks(
     // Very different parts: no more cells than time allows.
     let cell = cell.max((extent(fixed) + extent(moving)) / (6.0 * CELLS));
     let views = views(moving, facing[1], cell, exec)?;
-    let found = exec.each(facing[0].len(), usize::MAX, "facings", |k, exec| {
+    let result = exec.each(facing[0].len(), usize::MAX, "facings", |k, exec| {
         let way = facing[0][k];
         let turn = PartLayout::Facing { fixed: way, moving: way, turned: 0 }.turns()[0];
         let mut tops = Tops::of(fixed, &turn, cell);
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         for view in &views {
             if exec.is_cancelled() {
                 break;
             }
-            found.extend(tops.seen(way, view, cell, grain));
+            result.extend(tops.seen(way, view, cell, grain));
         }
-        found
+        result
     });
     exec.check()?;
-    let mut found: Vec<Sunk> = found.into_iter().flatten().collect();
-    found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
-    found.truncate(MOST);
-    let fine = exec.each(found.len(), usize::MAX, "places", |k, exec| {
-        if exec.is_cancelled() { None } else { refine::refined([fixed, moving], found[k], cell, grain) }
+    let mut result: Vec<Sunk> = result.into_iter().flatten().collect();
+    result.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+    result.truncate(MOST);
+    let fine = exec.each(result.len(), usize::MAX, "places", |k, exec| {
+        if exec.is_cancelled() { None } else { refine::refined([fixed, moving], result[k], cell, grain) }
     });
     exec.check()?;
     let mut fine: Vec<Sunk> = fine.into_iter().flatten().collect();
@@ -257,7 +257,7 @@ impl Tops {
     fn seen(&mut self, way: AxisDirection, view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
         let lie = PartLayout::Facing { fixed: way, moving: view.way, turned: view.turned };
         let heights = self.heights(view);
-        let mut found: Vec<Sunk> = Vec::new();
+        let mut result: Vec<Sunk> = Vec::new();
         for (map, h) in self.maps.iter().zip(&heights) {
             let mut places = basins(&h.z, h.wide, grain.least_climb() as f32);
             // With few points a rim may be missed, so the basin is checked against all points.
@@ -273,17 +273,26 @@ impl Tops {
             for basin in places.into_iter().take(2 * OF_ONE) {
                 let cells = DVec2::new((basin.at % h.wide) as f64, (basin.at / h.wide) as f64) - h.before;
                 let offset = self.first - view.bottom.first + cell * cells;
-                if found.iter().any(|other| (other.offset - offset).abs().max_element() < 2.0 * cell) {
+                if result.iter().any(|other| (other.offset - offset).abs().max_element() < 2.0 * cell) {
                     continue;
                 }
                 let climb = f64::from(basin.climb);
                 let height = f64::from(h.z[basin.at]);
-                found.push(Sunk { lie, offset, height, climb, play: 0.0, is_loose: false, steep: 0.0, cell });
+                result.push(Sunk {
+                    lie,
+                    offset,
+                    height,
+                    climb,
+                    play: 0.0,
+                    is_loose: false,
+                    steep: 0.0,
+                    cell,
+                });
             }
         }
-        found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
-        found.truncate(OF_ONE);
-        found
+        result.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+        result.truncate(OF_ONE);
+        result
     }
 }
 

@@ -100,11 +100,11 @@ impl Window {
     /// The region connected with a point and not above `level`; whether it reaches the border, or points
     /// without contact.
     pub(super) fn below(&self, start: usize, level: f32) -> (Vec<usize>, bool) {
-        let (mut seen, mut stack, mut found) = (vec![false; self.z.len()], vec![start], Vec::new());
+        let (mut seen, mut stack, mut result) = (vec![false; self.z.len()], vec![start], Vec::new());
         seen[start] = true;
         let mut leaves = false;
         while let Some(k) = stack.pop() {
-            found.push(k);
+            result.push(k);
             let (i, j) = (k % self.wide, k / self.wide);
             if i == 0 || j == 0 || i + 1 == self.wide || j + 1 == self.wide {
                 leaves = true;
@@ -118,7 +118,7 @@ impl Window {
                 }
             }
         }
-        (found, leaves)
+        (result, leaves)
     }
 
     /// Climb from a point until it reaches the border, by bisection.
@@ -139,12 +139,12 @@ impl Window {
     /// The floor around a point.
     pub(super) fn floor(&self, start: usize, climb: f64, grain: Grain) -> Floor {
         let half = 0.5 * climb.min(TALL * grain.small);
-        let (found, _) = self.below(start, self.z[start] + half as f32);
+        let (result, _) = self.below(start, self.z[start] + half as f32);
         let level = self.z[start] + (0.25 * self.cell) as f32;
         let (mut sum, mut count) = (DVec2::ZERO, 0.0);
         let mut boxes = [[DVec2::INFINITY, DVec2::NEG_INFINITY]; 2];
         let little = self.z[start] + (0.5 * half).min(0.5 * grain.small) as f32;
-        for k in found {
+        for k in result {
             let at = self.at(k);
             for (is_in, [low, high]) in [true, self.z[k] <= little].into_iter().zip(&mut boxes) {
                 if is_in {

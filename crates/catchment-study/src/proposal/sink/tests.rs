@@ -68,8 +68,8 @@ fn a_pin_in_its_hole_holds_as_drawn() {
 #[test]
 fn a_pin_as_wide_as_its_hole_still_sinks() {
     let (plate, pin) = (plate(5.0, 12.0, [0.0; 2]), pin([0.0, 0.0, -12.0]));
-    let found = drawn([&plate, &pin], down(), false, GRAIN);
-    assert!(matches!(found, ApproachResult::Holds(sunk) if sunk.play < 0.16), "{found:?}");
+    let result = drawn([&plate, &pin], down(), false, GRAIN);
+    assert!(matches!(result, ApproachResult::Holds(sunk) if sunk.play < 0.16), "{result:?}");
 }
 
 #[test]
@@ -88,8 +88,8 @@ fn a_turned_pin_is_found_with_its_twin() {
     let lying =
         [block([30.0, 5.0, 7.0], [50.0, 15.0, 17.0]), block([50.0, 2.0, 4.0], [54.0, 18.0, 20.0])].concat();
     let exec = Exec::new();
-    let found = sinks([&plate, &lying], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
-    let classes = classes(&lying, &found, GRAIN);
+    let result = sinks([&plate, &lying], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
+    let classes = classes(&lying, &result, GRAIN);
     let best = classes[0].best;
     let faces = |fixed: &str, moving: &str, lie: PartLayout| matches!(lie, PartLayout::Facing { fixed: f, moving: m, .. } if f.name() == fixed && m.name() == moving);
     assert!(faces("+z", "-x", best.lie), "{best:?}");
@@ -101,8 +101,8 @@ fn a_turned_pin_is_found_with_its_twin() {
     );
     // Without its head either end goes in.
     let plain = block([30.0, 5.0, 7.0], [54.0, 15.0, 17.0]);
-    let found = sinks([&plate, &plain], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
-    let classes = super::classes(&plain, &found, GRAIN);
+    let result = sinks([&plate, &plain], [&AxisDirection::ALL, &AxisDirection::ALL], GRAIN, &exec).unwrap();
+    let classes = super::classes(&plain, &result, GRAIN);
     let mut ends: Vec<bool> = classes[..2].iter().map(|class| faces("+z", "+x", class.best.lie)).collect();
     ends.sort_unstable();
     assert_eq!(ends, [false, true]);
@@ -125,11 +125,11 @@ fn what_is_drawn_at_45_degrees_is_found_along_diagonals() {
     let steepest = |facing: [&[AxisDirection]; 2]| {
         sinks([&plate, &pin], facing, GRAIN, &Exec::new()).unwrap().first().copied()
     };
-    let found = steepest([&fixed, &moving]).unwrap();
-    assert!(matches!(found.lie, PartLayout::Facing { fixed, .. } if fixed.name() == "-y+z"), "{found:?}");
-    assert!((found.climb - 12.0).abs() < 0.1, "{found:?}");
+    let result = steepest([&fixed, &moving]).unwrap();
+    assert!(matches!(result.lie, PartLayout::Facing { fixed, .. } if fixed.name() == "-y+z"), "{result:?}");
+    assert!((result.climb - 12.0).abs() < 0.1, "{result:?}");
     let along_axes = steepest([&AxisDirection::ALL, &AxisDirection::ALL]).map_or(0.0, |sunk| sunk.steep);
-    assert!(along_axes < 0.5 * found.steep, "{along_axes} {found:?}");
+    assert!(along_axes < 0.5 * result.steep, "{along_axes} {result:?}");
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn what_two_parts_share_is_measured() {
 #[test]
 fn basins_climb_to_their_passes() {
     let rows: [[f32; 7]; 3] = [[9.0; 7], [9.0, 1.0, 5.0, 3.0, 9.0, 2.0, NOTHING], [9.0; 7]];
-    let found = basins(&rows.concat(), 7, 0.5);
-    let printed: Vec<(usize, f32)> = found.iter().map(|basin| (basin.at, basin.climb)).collect();
+    let result = basins(&rows.concat(), 7, 0.5);
+    let printed: Vec<(usize, f32)> = result.iter().map(|basin| (basin.at, basin.climb)).collect();
     assert_eq!(printed, [(8, 8.0), (10, 2.0)]);
 }
