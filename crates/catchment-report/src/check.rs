@@ -1,10 +1,12 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
-use super::document::{Printed, characteristic_length, error_box};
+use super::document::{Printed, characteristic_length, error_box, pose_errors};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
-use catchment_core::design::{ConnectorSpec, Design, DrawnFrames, FileSpec, HalfSpec, OutlineSpec, OwnSpec};
-use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
+use catchment_core::design::{
+    ConnectorSpec, Design, DrawnFrames, FileSpec, HalfSpec, LengthUnit, OutlineSpec,
+};
+use catchment_core::design::{OwnSpec, PartSpec, ShapeSpec, SourceText, WidthFrom};
 use catchment_core::diagnostic::{Diagnostic, Diagnostics};
 use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
 use catchment_core::pose::{Dof, PoseError};
@@ -61,6 +63,8 @@ pub struct DrawingReport {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrawnReport {
+    /// Unit of these coordinates, such as `mm` or `D`; `None` if the design has none.
+    pub unit: Option<&'static str>,
     /// The face centre.
     pub face_center: [f64; 3],
     /// The centre of rotation, in the mated pose.
@@ -71,8 +75,23 @@ pub struct DrawnReport {
     pub y: [f64; 3],
 }
 
+/// Unit of the coordinates that a frame maps to D.
+fn unit_of(frame: &DAffine3, design: &Design) -> Option<&'static str> {
+    let in_d = frame.matrix3.determinant().abs().cbrt();
+    let is_about = |a: f64, b: f64| (a / b - 1.0).abs() < UNIT_ACCURACY;
+    if is_about(in_d, 1.0) {
+        return Some("D");
+    }
+    let metres = in_d * design.width * design.unit?.metres();
+    LengthUnit::ALL.into_iter().find(|unit| is_about(metres, unit.metres())).map(LengthUnit::symbol)
+}
+
+/// Relative accuracy at which a scale is that of a unit.
+const UNIT_ACCURACY: f64 = 1e-6;
+
 impl DrawingReport {
-    fn of(origin: &Origin, center_of_rotation: f64) -> Self {
+    fn of(origin: &Origin, design: &Design) -> Self {
+        let center_of_rotation = design.alignment.center_of_rotation;
         let drawn = |frame: &DAffine3| {
             let back = frame.inverse();
             let place = |z: f64| back.transform_point3(DVec3::new(0.0, 0.0, z)).to_array();
@@ -80,6 +99,7 @@ impl DrawingReport {
             let along =
                 |axis| back.transform_vector3(axis).normalize_or_zero().map(|c| rounded(c) + 0.0).to_array();
             DrawnReport {
+                unit: unit_of(frame, design),
                 face_center: place(0.0),
                 // In front of the moving face, which faces down.
                 center_of_rotation: place(-center_of_rotation),
@@ -132,7 +152,7 @@ impl CheckReport {
             ok: true,
             design: Some(design.clone()),
             drawing: matches!(design.connector, ConnectorSpec::Own(_))
-                .then(|| DrawingReport::of(&problem.connector().origin, design.alignment.center_of_rotation)),
+                .then(|| DrawingReport::of(&problem.connector().origin, design)),
             ungendered: Some(problem.connector().ungendered(design.alignment.mount)),
             problems: Vec::new(),
             omitted: 0,
@@ -260,14 +280,14 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         _ => "",
     };
     row("width D", &format!("{} {unit}{from}", design.width));
-    row("free errors", &alignment.free.to_string());
+    row("pose errors", &pose_errors(design));
     if !alignment.dont_care.is_empty() {
         row("ignored", &alignment.dont_care.to_string());
     }
     row(
         "COR",
         &format!(
-            "centre of rotation: {} ahead of the centre of the moving half's mating face",
+            "centre of rotation: {} in front of the centre of the moving half's mating face, towards the fixed half",
             length(alignment.center_of_rotation)
         ),
     );
@@ -306,18 +326,17 @@ fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingR
     let mut row = |name: &str, value: &str| {
         document.row(name, value);
     };
-    let point = |p: [f64; 3]| {
+    let point = |half: &DrawnReport, p: [f64; 3]| {
         let [x, y, z] = p.map(|c| rounded(c) + 0.0);
-        format!("({x}, {y}, {z})")
+        let unit = half.unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+        format!("({x}, {y}, {z}){unit}")
     };
-    let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
-        row(
-            name,
-            &format!("fixed half {}, moving half {}; they coincide when mated", point(fixed), point(moving)),
-        );
+    let mut places = |name: &str, what: &str, of: fn(&DrawnReport) -> [f64; 3]| {
+        let [f, m] = [fixed, moving].map(|half| point(half, of(half)));
+        row(name, &format!("{what}fixed half {f}, moving half {m}; they coincide when mated"));
     };
-    places("face centre", fixed.face_center, moving.face_center);
-    places("COR, as drawn", fixed.center_of_rotation, moving.center_of_rotation);
+    places("face centre", "of the mating face: ", |half| half.face_center);
+    places("COR, as drawn", "", |half| half.center_of_rotation);
     let along = format!("{} and {} of the fixed half's drawing", direction(fixed.x), direction(fixed.y));
     row("errors in x and y", &format!("along {along}"));
     let is_assembled =

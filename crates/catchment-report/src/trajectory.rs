@@ -168,7 +168,7 @@ impl Printed for TraceBody {
             };
             document.table(shown);
             document.paragraph(format!(
-                "{poses}; path: distance travelled sideways, a turn counted as ρ × its angle, ρ = {} D; height: of the COR above the face centre of the fixed half",
+                "{poses}; path: length of the way in x, y and angles, of each step √(Δx² + Δy² + (ρ Δangle)²), ρ = {} D; height: of the COR above the face centre of the fixed half",
                 rounded(self.design.alignment.rotation_length)
             ));
         }

@@ -179,7 +179,7 @@ pub(crate) fn characteristic_length(rho: &str, turns: bool) -> String {
 }
 
 /// Which errors are free, and what each is: `x, y (shifts); yaw (turn about approach axis z); roll, pitch locked at 0`.
-fn pose_errors(design: &Design) -> String {
+pub(crate) fn pose_errors(design: &Design) -> String {
     let free = design.alignment.free;
     let kinds = [
         ("shift", &[(Dof::X, ""), (Dof::Y, "")][..]),

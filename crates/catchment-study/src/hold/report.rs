@@ -46,7 +46,7 @@ impl Subject for HoldingForces {
         let free = design.alignment.free;
         document.section(None).paragraph(format!(
             "Forces act {at} the face centre of the moving half{torques}. guided: the half can move only along this force{axis}, and up. free: it can move in \
-             {free} at once, and up."
+             {free} at once, and up. Limits by statics: no contact forces balance a larger load."
         ));
         if self.slides() {
             let gap = units.fine(self.settings.play);

@@ -55,7 +55,7 @@ impl Success {
         let all = grouped(self.motions);
         if sampled < self.motions {
             format!(
-                "{all} poses ({} sampled errors; the others for the largest σ and the nearest failure)",
+                "{all} poses ({} sampled errors; the others to search the largest σ and the nearest failure)",
                 grouped(sampled)
             )
         } else {

@@ -225,6 +225,6 @@ fn levels(rests: &[RestEnd], places: &[usize], images: &Images) -> usize {
     let level = level.as_slice();
     let of = |set: u32| (0..places.len()).filter(move |k| level[*k] == set);
     let is_image = |k: usize| of(level[0]).any(|to| images.nearest(pose(k), pose(to)).1 <= NEAR);
-    let found: BTreeSet<u32> = level.iter().copied().collect();
-    if found.iter().all(|set| of(*set).any(is_image)) { found.len() } else { 1 }
+    let result: BTreeSet<u32> = level.iter().copied().collect();
+    if result.iter().all(|set| of(*set).any(is_image)) { result.len() } else { 1 }
 }

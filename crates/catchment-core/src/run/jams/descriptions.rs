@@ -165,7 +165,7 @@ impl<'a> RestDescriptions<'a> {
     /// The stability, and the friction thresholds: with friction, or if the contacts alone do not hold the
     /// half.
     pub(in crate::run) fn held(self, document: &mut Document, examined: &Examined) {
-        document.row("  neighbours", self.stability(examined));
+        document.row("  if displaced", self.stability(examined));
         let matters = self.friction > 0.0 || examined.immobility.is_none();
         if let Some(sticks) = examined.sticks.filter(|_| matters) {
             document.row("  friction", sticks.words());
@@ -177,7 +177,7 @@ impl<'a> RestDescriptions<'a> {
         let Examined { returned, displaced, .. } = examined;
         if examined.is_held_by_friction(self.friction) {
             return format!(
-                "held by friction alone; {returned} of {displaced} small random displacements end in the same group of rests"
+                "held by friction alone; {returned} of {displaced} random displacements by half of {push} end in the same group of rests"
             );
         }
         let rise = match (examined.stability, examined.rise_at_most_d) {
@@ -187,20 +187,22 @@ impl<'a> RestDescriptions<'a> {
                 } else {
                     ("almost level", format!("rises only {}", self.units.fine(rise)))
                 };
-                format!("{level}: displaced by {push} in its easiest direction, the COR {rises}")
+                format!("{level}: by {push} in the direction of least rise, the COR {rises}")
             }
             (Stability::Ridge, _) => {
                 format!(
-                    "unstable: displaced by {push} in its easiest direction, the COR falls; the rest is on a ridge"
+                    "unstable: by {push} in the direction of least rise, the COR falls; the rest is on a ridge"
                 )
             }
             (_, Some(rise)) => {
                 let rise = self.units.fine(rise);
-                format!("stable: displaced by {push} in its easiest direction, the COR rises {rise}")
+                format!("stable: by {push} in the direction of least rise, the COR rises {rise}")
             }
             (_, None) => "stable: walls all around".to_owned(),
         };
-        format!("{rise}; {returned} of {displaced} small random displacements end in the same group of rests")
+        format!(
+            "{rise}; {returned} of {displaced} random displacements of half this size end in the same group of rests"
+        )
     }
 
     /// The escape height, with the end of the escape path.
@@ -248,7 +250,8 @@ impl<'a> RestDescriptions<'a> {
             let mut is_listed = false;
             for contact in contacts.iter().filter(pair) {
                 let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-                let place = format!("at {fixed} in the fixed half's drawing, {moving} in the moving half's");
+                let place =
+                    format!("at {fixed} of the fixed half as drawn, {moving} of the moving half as drawn");
                 if places.contains(&place) {
                     is_listed = true;
                 } else if places.len() < MOST_CONTACTS {
@@ -258,7 +261,7 @@ impl<'a> RestDescriptions<'a> {
             }
             document.row(if k == 0 { "  contact" } else { "" }, words);
             if at.is_empty() && is_listed {
-                document.more("at the same place");
+                document.more("at the same point as above");
             }
             for place in at {
                 document.more(place);
@@ -267,9 +270,8 @@ impl<'a> RestDescriptions<'a> {
     }
 
     fn drawn(self, feature: &NamedFeature) -> String {
-        let part = feature
-            .part
-            .map_or_else(String::new, |part| format!(", on part {part} of its parts (numbered from 0),"));
+        let part =
+            feature.part.map_or_else(String::new, |part| format!(" (its part {part}, counted from 0)"));
         format!("{}{part}", self.units.point(feature.drawn_d))
     }
 }

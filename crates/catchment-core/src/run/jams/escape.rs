@@ -145,7 +145,7 @@ impl Search<'_> {
     /// Looks along a way, no higher than the best so far.
     fn try_way(&mut self, way: &[f64; 5]) {
         let most = self.best.map_or(f64::INFINITY, |best| best.out.climb);
-        let (mut top, mut climbing, mut asked) = (0.0f64, false, 0.0);
+        let (mut top, mut climbing, mut requested) = (0.0f64, false, 0.0);
         let (mut height, mut last) = (self.rest.height, self.rest.energy);
         for k in 1..=(FARTHEST / STEP) as usize {
             let length = k as f64 * STEP;
@@ -168,9 +168,9 @@ impl Search<'_> {
             let is_level = self.leaving != EscapeCriterion::Jam
                 && top > LOWER
                 && energy <= last + LOWER * STEP
-                && (climbing || length - asked > ELSEWHERE);
+                && (climbing || length - requested > ELSEWHERE);
             if energy < self.rest.energy - LOWER || falls && climbing || is_level {
-                (climbing, asked) = (false, length);
+                (climbing, requested) = (false, length);
                 if let Some(to) = self.leads_out(way, length) {
                     return self.found(way, length, top, to);
                 }

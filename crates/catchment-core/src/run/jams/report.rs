@@ -37,8 +37,8 @@ impl Subject for Jams {
         let mut document = Document::default();
         document.table(self.outcome_table());
         document.paragraph(format!(
-            "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: no result within the step limit. A jam is a group of rests on the same \
-             features, near each other; symmetric copies count as one. {FACES}"
+            "jammed: at rest elsewhere; missed: no contact, or slid off; undecided: still moving after the largest number of simulated steps. A jam is a \
+             group of neighbouring rests on the same features; symmetric copies are mapped onto one, also in its range. {FACES}"
         ));
         let places = RestDescriptions::of(design, self.settings.friction);
         for (number, jam) in (1..).zip(self.jams.iter().take(SHOWN)) {

@@ -237,9 +237,9 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
     let ways = space.axes().into_iter().chain((0..tries).map(|k| space.random(stream, k)));
     let mut best = ([0.0; 5], f64::INFINITY);
     for way in ways {
-        let found = rise(&way, PUSH);
-        if found < best.1 {
-            best = (way, found);
+        let result = rise(&way, PUSH);
+        if result < best.1 {
+            best = (way, result);
         }
     }
     if best.1 == f64::INFINITY {
@@ -253,9 +253,9 @@ pub(in crate::run) fn held(pair: &Pair, rest: &RestEnd, seed: u64) -> RestStabil
             // With a single free error a move may lead back to the start.
             continue;
         }
-        let found = rise(&way, PUSH);
-        if found < best.1 {
-            best = (way, found);
+        let result = rise(&way, PUSH);
+        if result < best.1 {
+            best = (way, result);
         }
     }
     let (way, least) = best;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::design::read;
+use crate::method::descent::Sticking;
 use crate::pose::DofSet;
 use std::f64::consts::PI;
 use std::path::Path;
