@@ -70,8 +70,8 @@ impl DrawnFigures {
         if let Some(partition) = &answer.by_products.partition {
             drawn.keep("partition", super::partition(&report, partition, acceptance))?;
         }
-        if let Some(found) = &report.jams {
-            drawn.keep("jams", super::jams(design, found, connector))?;
+        if let Some(result) = &report.jams {
+            drawn.keep("jams", super::jams(design, result, connector))?;
         }
         exec.check()?;
         let lifted = MovingHalfPose::mated(design, LIFT);

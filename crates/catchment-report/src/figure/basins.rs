@@ -103,9 +103,8 @@ pub fn basins(
         format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
     let drawn = if minima > DOTS { format!(" (the {DOTS} largest are drawn)") } else { String::new() };
-    let counts = format!(
-        "{minima} minima{drawn}, {merged} basins after merging; what lies left of the line is merged"
-    );
+    let counts =
+        format!("{minima} minima{drawn}, {merged} basins after merging; minima left of the line are merged");
     let panel = |height: f64| Panel::of([WIDTH, height]).beside().with_room([8.0, 0.0, 0.0, 0.0]);
     let (mut svg, frames) = Layout::of(design)
         .story(headline(report))
@@ -253,7 +252,7 @@ fn legend(acceptance: &Acceptance, hierarchy: &Hierarchy) -> Legend {
     let has = |wanted: &dyn Fn((Outcome, bool)) -> bool| {
         hierarchy.tree.minima.iter().any(|minimum| wanted(kind(minimum, acceptance, hierarchy)))
     };
-    let kept = Outcome::ALL.into_iter().filter(|outcome| has(&|found| found == (*outcome, true)));
+    let kept = Outcome::ALL.into_iter().filter(|outcome| has(&|result| result == (*outcome, true)));
     let legend =
         kept.fold(Legend::default(), |legend, outcome| legend.dot(dot(outcome, true), outcome.word()));
     if has(&|(_, kept)| !kept) {

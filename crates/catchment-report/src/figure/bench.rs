@@ -93,7 +93,7 @@ pub fn validation(report: &ValidationReport, panels: &[BenchSlice]) -> Picture {
     let words = [
         (Shape::Docks, false, "docked"),
         (Shape::Fails, false, "did not"),
-        (Shape::Fails, true, "otherwise than predicted"),
+        (Shape::Fails, true, "not as predicted"),
         (Shape::NotMade, false, "not made"),
     ];
     draw(&report.design, &story, &marks, panels, &words)
@@ -191,11 +191,11 @@ fn one(svg: &mut Svg, panel: &BenchSlice, marks: &[Mark], units: &ShownUnits, re
     let value = |error: &PoseError, axis: Dof| error.to_array()[axis.index()] * units.factor(axis);
     // Wrong predictions on top.
     for wrong in [false, true] {
-        for found in panel.poses.iter().map(|k| &marks[*k]).filter(|found| found.wrong == wrong) {
-            let place = |k: usize| panel.across.get(k).map(|(axis, _)| value(&found.error, *axis));
+        for result in panel.poses.iter().map(|k| &marks[*k]).filter(|result| result.wrong == wrong) {
+            let place = |k: usize| panel.across.get(k).map(|(axis, _)| value(&result.error, *axis));
             let x = frame.px(place(0).unwrap_or(0.0));
             let y = place(1).map_or(rect.y + 0.5 * rect.h, |y| frame.py(y));
-            mark(svg, [x, y], found.shape, found.wrong);
+            mark(svg, [x, y], result.shape, result.wrong);
         }
     }
     svg.end();
@@ -281,12 +281,12 @@ mod tests {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let accuracy = PoseError { x: 0.03, pitch: 0.06, ..PoseError::default() };
         let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
-        let found = run(&problem, &TrialPlanSettings::new(pattern, accuracy), &Exec::new()).unwrap();
-        let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
+        let result = run(&problem, &TrialPlanSettings::new(pattern, accuracy), &Exec::new()).unwrap();
+        let poses: Vec<PoseError> = result.points.iter().map(|point| point.error).collect();
         let motions = descent::DescentSettings::default();
         let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
         assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
-        let report = PlanReport::new(problem.design(), found, Vec::new(), None);
+        let report = PlanReport::new(problem.design(), result, Vec::new(), None);
         let picture = plan(&report, &slices);
         look("plan", &picture);
         assert!(picture.svg().contains("35 trials at 35 poses") && !picture.svg().contains("NaN"));
@@ -326,20 +326,20 @@ mod tests {
             };
             let poses: Vec<PoseError> = yaws.iter().enumerate().map(pose).collect();
             let motions = descent::DescentSettings::default();
-            let found = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
+            let result = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
             let marks: Vec<Mark> =
                 poses.iter().map(|error| Mark { error: *error, shape: Shape::Docks, wrong: false }).collect();
             let words = [(Shape::Docks, false, "should dock")];
-            (draw(problem.design(), "a story", &marks, &found, &words), found)
+            (draw(problem.design(), "a story", &marks, &result, &words), result)
         };
         let region = format!(r#"fill="{}""#, hex(region()));
         let dots = |picture: &Picture| picture.svg().matches(&format!(r#"fill="{DOCKED}""#)).count();
         // As recorded: about three angles, each within the accuracy of its slice.
         let yaws: Vec<f64> = (0..30).map(|k| 0.3 * f64::from(k % 3) + 0.0005 * f64::from(k)).collect();
-        let (picture, found) = drawn(&yaws);
+        let (picture, result) = drawn(&yaws);
         look("plan-near", &picture);
-        assert_eq!(found.iter().map(|panel| panel.poses.len()).collect::<Vec<_>>(), [10, 10, 10]);
-        for panel in &found {
+        assert_eq!(result.iter().map(|panel| panel.poses.len()).collect::<Vec<_>>(), [10, 10, 10]);
+        for panel in &result {
             let (middle, off) = BenchSlice::middle(panel.others[0].1);
             let far = |k: &usize| (yaws[*k] - middle).abs() > accuracy.yaw;
             assert!(off.is_some_and(|off| off <= accuracy.yaw) && !panel.poses.iter().any(far));
@@ -348,9 +348,9 @@ mod tests {
         assert_eq!(dots(&picture), 30 + 1);
         // Thirty angles: all poses over each pair of errors, and no region.
         let yaws: Vec<f64> = (0..30).map(|k| 0.05 * f64::from(k)).collect();
-        let (picture, found) = drawn(&yaws);
+        let (picture, result) = drawn(&yaws);
         look("plan-projected", &picture);
-        assert!(found.len() == 3 && found.iter().all(BenchSlice::is_projection));
+        assert!(result.len() == 3 && result.iter().all(BenchSlice::is_projection));
         assert!(picture.svg().contains("yaw 0 … 83.1 deg") && picture.svg().contains("projections: "));
         assert!(!picture.svg().contains(&region) && !picture.svg().contains("docks, exactly"));
         assert_eq!(dots(&picture), 3 * 30 + 1);

@@ -24,13 +24,13 @@ const CHART: [f64; 2] = [400.0, 300.0];
 pub fn chance(report: &ChanceReport) -> Result<Picture, FigureError> {
     let map = report.map.as_ref().filter(|map| map.axes.len() == 2);
     if map.is_none() && report.curve.is_empty() {
-        return Err(FigureError::Empty { what: "neither a map nor a curve against speed was asked for" });
+        return Err(FigureError::Empty { what: "neither a map nor a curve against speed was requested" });
     }
     let lines = lines(report);
     let mut panels = Vec::new();
     if let Some(map) = map {
         let trials = map.cells.first().map_or(0, |cell| cell.trials);
-        let border = "border of what docks by exact quasi-static motion";
+        let border = "border of the poses that dock by exact quasi-static motion";
         panels.push(
             Panel::with_axes([SIDE; 2])
                 .with_bar()
@@ -190,11 +190,11 @@ mod tests {
             .with(Circumstance::DriftX, ScalarDistribution::Normal { mean: 0.0, sigma: 1.5 });
         let settings = ChanceSettings { dynamics, trials: 4, overall: 100, ..ChanceSettings::default() };
         let sigma = PoseError { x: 0.2, pitch: 0.4, ..PoseError::default() };
-        let asked =
+        let requested =
             Question { errors: Some(Spread::normal(sigma)), times: vec![0.1, 4.0], ..Question::default() };
-        let asked = asked.with_map(&problem, [Dof::X, Dof::Pitch], 8);
-        let found = run(&problem, &asked, &settings, &Exec::new()).unwrap();
-        let report = ChanceReport::new(problem.design(), found, Vec::new(), None);
+        let requested = requested.with_map(&problem, [Dof::X, Dof::Pitch], 8);
+        let result = run(&problem, &requested, &settings, &Exec::new()).unwrap();
+        let report = ChanceReport::new(problem.design(), result, Vec::new(), None);
         let picture = chance(&report).unwrap();
         look("chance", &picture);
         assert!(picture.svg().contains("share of 4 trials") && picture.svg().contains("as declared"));
@@ -204,8 +204,8 @@ mod tests {
         assert_eq!(report.records().len(), 1 + 1 + 2 + 64);
         assert!(report.records().iter().all(|record| record.len() == 13));
         let nothing = Question { poses: vec![PoseError::default()], ..Question::default() };
-        let found = run(&problem, &nothing, &settings, &Exec::new()).unwrap();
-        let report = ChanceReport::new(problem.design(), found, Vec::new(), None);
+        let result = run(&problem, &nothing, &settings, &Exec::new()).unwrap();
+        let report = ChanceReport::new(problem.design(), result, Vec::new(), None);
         assert!(matches!(chance(&report), Err(FigureError::Empty { .. })));
     }
 }

@@ -89,12 +89,12 @@ mod tests {
             end: StopReason::Stable,
             corrected: None,
         };
-        let found = Convergence {
+        let result = Convergence {
             settings: ConvergenceSettings::default(),
             unit: "D·rad".to_owned(),
             sequences: Method::on_grids().iter().enumerate().map(sequence).collect(),
         };
-        let picture = convergence(&ConvergenceReport::new(&design, found, Vec::new(), None));
+        let picture = convergence(&ConvergenceReport::new(&design, result, Vec::new(), None));
         look("convergence", &picture);
         assert_eq!(picture.svg().matches("<circle").count(), 4 * 5 * Method::on_grids().len());
         assert!(!picture.svg().contains("NaN"));

@@ -32,12 +32,12 @@ pub fn friction(report: &FrictionReport) -> Picture {
         let share = short(100.0 * kept.share);
         if kept.is_top {
             format!(
-                "{share} % of what docks without friction docks beyond {}, the largest that was tried",
+                "{share} % of the poses that dock without friction also dock at {}, the largest coefficient tried",
                 short(kept.friction)
             )
         } else {
             let friction = kept.friction;
-            format!("{share} % of what docks without friction docks up to a friction of {friction:.3} ({lo} … {hi})")
+            format!("{share} % of the poses that dock without friction also dock up to a coefficient of {friction:.3} ({lo} … {hi})")
         }
     });
     let (lines, words) = (lines(report), format!("{} %", short(100.0 * MARKED)));
@@ -45,14 +45,16 @@ pub fn friction(report: &FrictionReport) -> Picture {
     let size = [400.0, 300.0];
     let mut panels = vec![Panel::with_axes(size).over(chart::legend(&lines))];
     if !first.features.is_empty() {
-        panels.push(Panel::of([380.0, size[1]]).over(format!("what sticks first, in {} poses", first.poses)));
+        panels.push(
+            Panel::of([380.0, size[1]]).over(format!("contacts that stick first, in {} poses", first.poses)),
+        );
     }
     let (mut svg, frames) = Layout::of(&report.design).story(story).row(panels).open();
     Chart {
         rect: frames[0],
-        x_label: "coefficient of friction",
+        x_label: "friction coefficient μ",
         spacing: Spacing::Even,
-        y_label: "of what docks without friction [%]",
+        y_label: "share of frictionless successes [%]",
         lines: &lines,
         mark: marked.filter(|kept| !kept.is_top).map(|kept| Mark {
             x: kept.friction,
@@ -87,7 +89,7 @@ fn lines(report: &FrictionReport) -> Vec<ChartLine> {
     });
     vec![
         ChartLine { name: "static test".to_owned(), colour: STATIC, points: by_statics.collect() },
-        ChartLine { name: "docks still, followed".to_owned(), colour: CURVES[0], points: still.collect() },
+        ChartLine { name: "docks (motion followed)".to_owned(), colour: CURVES[0], points: still.collect() },
     ]
 }
 
@@ -170,11 +172,11 @@ mod tests {
     fn the_curve_and_what_sticks_are_drawn() {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let settings = FrictionSettings { motions: Some(200), ..FrictionSettings::default() };
-        let found = run(&problem, &settings, &Exec::new()).unwrap();
-        let mut report = FrictionReport::new(problem.design(), found, Vec::new(), None);
+        let result = run(&problem, &settings, &Exec::new()).unwrap();
+        let mut report = FrictionReport::new(problem.design(), result, Vec::new(), None);
         let picture = friction(&report);
         look("friction", &picture);
-        assert!(picture.svg().contains("what sticks first") && picture.svg().contains("static test"));
+        assert!(picture.svg().contains("contacts that stick first") && picture.svg().contains("static test"));
         assert!(!picture.svg().contains("NaN"));
         the_curve_is_that_of_the_mark(&report, &picture);
         let printout = report.table();
@@ -184,6 +186,6 @@ mod tests {
         for kept in &mut report.kept {
             (kept.friction, kept.ci95, kept.is_top) = (0.276, [0.044, 0.5], false);
         }
-        assert!(friction(&report).svg().contains("a friction of 0.276 (0.044 … beyond 0.5)"));
+        assert!(friction(&report).svg().contains("a coefficient of 0.276 (0.044 … beyond 0.5)"));
     }
 }

@@ -54,7 +54,7 @@ pub fn hold(report: &HoldReport) -> Result<Picture, FigureError> {
     let preload = report.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
     let friction = report.settings.friction;
     let with = if friction > 0.0 { format!(", friction {friction}") } else { String::new() };
-    let story = format!("what it withstands where it rests, pressed on by {preload} along −z{with}");
+    let story = format!("load limits at rest, with a preload of {preload} along −z{with}");
     let columns = COLUMNS.iter().take(if friction > 0.0 { 4 } else { 2 });
     let legend = columns.fold(Legend::default(), |legend, column| legend.line(style(column), column.name));
     let force = report.force_unit();
@@ -62,10 +62,8 @@ pub fn hold(report: &HoldReport) -> Result<Picture, FigureError> {
     let (mut svg, frames) = Layout::of(&report.design)
         .story(story)
         .row([
-            Panel::of([2.0 * RADIUS; 2])
-                .with_room(AROUND)
-                .over(format!("sideways forces that it withstands [{force}]")),
-            Panel::of(BARS).with_room(BESIDE).over(format!("torques that it withstands [{force} {unit}]")),
+            Panel::of([2.0 * RADIUS; 2]).with_room(AROUND).over(format!("sideways force resisted [{force}]")),
+            Panel::of(BARS).with_room(BESIDE).over(format!("torque resisted [{force} {unit}]")),
         ])
         .legend(legend)
         .open();
@@ -196,8 +194,8 @@ fn bars(svg: &mut Svg, report: &HoldReport, Rect { x, y, w, h }: Rect) {
         .collect();
     let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| column.of(two)));
     let most = rim(finite);
-    let asked = |column: &&Column| torques.iter().any(|(_, two)| column.of(two).is_some());
-    let columns: Vec<&Column> = COLUMNS.iter().filter(asked).collect();
+    let requested = |column: &&Column| torques.iter().any(|(_, two)| column.of(two).is_some());
+    let columns: Vec<&Column> = COLUMNS.iter().filter(requested).collect();
     let each = (h / torques.len() as f64).min(80.0);
     let thick = (0.8 * each / columns.len().max(1) as f64).min(14.0);
     for (k, (name, two)) in torques.iter().enumerate() {

@@ -54,7 +54,7 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
         let [x, y] = pair;
         let frame = PlotFrame { rect, x: scale(x), y: scale(y) };
         for outcome in order {
-            for (k, _) in acceptance.outcomes.iter().enumerate().filter(|(_, found)| **found == outcome) {
+            for (k, _) in acceptance.outcomes.iter().enumerate().filter(|(_, result)| **result == outcome) {
                 let error = acceptance.domain.pose(k).to_array();
                 let place = pair.map(|dof| error[dof.index()] * units.factor(dof));
                 svg.circle(frame.at(place), DOT, &style(outcome));
@@ -67,9 +67,9 @@ pub fn sampled(report: &Report, acceptance: &Acceptance) -> Result<Picture, Figu
 }
 
 fn window(svg: &mut Svg, report: &Report, frame: &PlotFrame, units: &ShownUnits, [x, y]: [Dof; 2]) {
-    let Some(found) = &report.centered else { return };
+    let Some(result) = &report.centered else { return };
     let half =
-        |dof: Dof| found.bounds.iter().find(|side| side.axis == dof).map(|side| side.hi * units.factor(dof));
+        |dof: Dof| result.bounds.iter().find(|side| side.axis == dof).map(|side| side.hi * units.factor(dof));
     let (Some(w), Some(h)) = (half(x), half(y)) else { return };
     let ([left, top], [right, bottom]) = (frame.at([-w, h]), frame.at([w, -h]));
     svg.rect(Rect { x: left, y: top, w: right - left, h: bottom - top }, WINDOW);

@@ -58,7 +58,7 @@ mod tests {
             AtRho { rotation_length: rho, sum, ci95: [sum - 0.06, sum + 0.06] }
         };
         let over_rho: Vec<AtRho> = settings.rotation_lengths.iter().map(|rho| at(*rho)).collect();
-        let found = Sensitivity {
+        let result = Sensitivity {
             unit: "D·rad".to_owned(),
             sum: 2.2,
             sum_ci95: [2.1, 2.3],
@@ -71,7 +71,7 @@ mod tests {
             over_rho,
             settings,
         };
-        let picture = sensitivity(&SensitivityReport::new(&design, found, Vec::new(), None));
+        let picture = sensitivity(&SensitivityReport::new(&design, result, Vec::new(), None));
         look("sensitivity", &picture);
         assert_eq!(picture.svg().matches("<circle").count(), 13);
         assert!(picture.svg().contains("this design") && !picture.svg().contains("NaN"));

@@ -153,8 +153,8 @@ mod tests {
             errors: Spread::normal(PoseError { x: sigma, pitch: 2.0 * sigma, ..PoseError::default() }),
         };
         let settings = SuccessSettings { motions: Some(400), required: 0.9, ..SuccessSettings::default() };
-        let found = run(&problem, &[robot("arm A", 0.15), robot("arm B", 0.1)], &settings, &Exec::new());
-        let report = SuccessesReport::new(problem.design(), found.unwrap(), Vec::new(), None);
+        let result = run(&problem, &[robot("arm A", 0.15), robot("arm B", 0.1)], &settings, &Exec::new());
+        let report = SuccessesReport::new(problem.design(), result.unwrap(), Vec::new(), None);
         let picture = success(&report);
         look("success", &picture);
         assert!(picture.svg().contains("90 % required") && picture.svg().contains("arm B"));
@@ -172,8 +172,8 @@ mod tests {
         let errors = Spread::normal(PoseError { x: 0.2, ..PoseError::default() });
         let robots = [Robot { name: "robot".to_owned(), errors }];
         let settings = SuccessSettings { motions: Some(100), ..SuccessSettings::default() };
-        let found = run(&problem, &robots, &settings, &Exec::new()).unwrap();
-        let mut report = SuccessesReport::new(problem.design(), found, Vec::new(), None);
+        let result = run(&problem, &robots, &settings, &Exec::new()).unwrap();
+        let mut report = SuccessesReport::new(problem.design(), result, Vec::new(), None);
         let all = &mut report.robots[0].tolerable.all;
         *all = Factor { factor: 1.08, ci95: [0.0, 1.12], is_more: false, is_less: false };
         let text = report.table();

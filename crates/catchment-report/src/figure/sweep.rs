@@ -71,7 +71,7 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
     if rows.len() > MOST_ROWS || columns.len() > MOST_MAPS {
         return None;
     }
-    let figures = || report.designs.iter().map(|trial| trial.found.figures());
+    let figures = || report.designs.iter().map(|trial| trial.result.figures());
     let values = |of: fn(&catchment_study::sweep::Figures) -> Option<f64>| -> Vec<Vec<f64>> {
         let all: Vec<f64> = figures().map(|f| f.and_then(of).unwrap_or(f64::NAN)).collect();
         all.chunks(columns.len().max(1)).map(<[f64]>::to_vec).collect()
@@ -103,7 +103,7 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
     }
     let extreme = |what: &str, number: Option<usize>| {
         let trial = &report.designs[number?];
-        Some(format!("{what}: {} at {}", significant(trial.found.figures()?.sum), report.named(trial)))
+        Some(format!("{what}: {} at {}", significant(trial.result.figures()?.sum), report.named(trial)))
     };
     let story = [extreme("▲ largest Sum", report.largest), extreme("▼ smallest Sum", report.smallest)];
     let head = story.into_iter().flatten().fold(Layout::of(&report.design), Layout::story);
@@ -117,7 +117,7 @@ pub fn sweep_map(report: &SweepReport) -> Option<Picture> {
 pub fn sweep_outlines(report: &SweepReport) -> Result<Option<Picture>, FigureError> {
     let (rows, columns) = table(&report.settings.axes);
     let outlines: Vec<Option<&Outline>> =
-        report.designs.iter().map(|trial| trial.found.figures().and_then(|f| f.outline.as_ref())).collect();
+        report.designs.iter().map(|trial| trial.result.figures().and_then(|f| f.outline.as_ref())).collect();
     let Some(first) = outlines.iter().flatten().next() else { return Ok(None) };
     if outlines.len() > MOST_OUTLINES || columns.len() > MOST_MAPS {
         return Ok(None);

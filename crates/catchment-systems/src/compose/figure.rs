@@ -97,7 +97,7 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
     let panel = |name: &str, area: [f64; 2]| {
         Panel::with_axes([SIDE; 2]).over(format!("{name}: {} {unit}²", bracket(area)))
     };
-    let (mut svg, rects) = Layout::titled(format!("{} and {}: where they meet", names[0], names[1]))
+    let (mut svg, rects) = Layout::titled(format!("{} and {}: approach region", names[0], names[1]))
         .story(frames)
         .row([
             panel(names[0], found.halves[0].region.area()),

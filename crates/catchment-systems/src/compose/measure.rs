@@ -103,9 +103,9 @@ pub fn largest_square(region: &Region) -> Option<LargestSquare> {
         let half = next.half / 2.0;
         for (x, y) in [(-half, -half), (half, -half), (-half, half), (half, half)] {
             looked += 1;
-            let (found, part) = cell(next.center + DVec2::new(x, y), half);
-            if found > room {
-                (room, center) = (found, part.center);
+            let (result, part) = cell(next.center + DVec2::new(x, y), half);
+            if result > room {
+                (room, center) = (result, part.center);
             }
             if part.bound > room + slack {
                 open.push(part);
@@ -128,18 +128,18 @@ pub fn reach(region: &Region, point: DVec2) -> Option<AxisReach> {
     }
     let mut crossings = [Vec::new(), Vec::new()];
     for [a, b] in region.nodes().flat_map(sides).map(|ends| ends.map(|end| place(end) - point)) {
-        for (axis, found) in crossings.iter_mut().enumerate() {
+        for (axis, result) in crossings.iter_mut().enumerate() {
             let (along, across) = (axis, 1 - axis);
             // An end on the axis belongs to the side above it, so that a corner is crossed once.
             if (a[across] > 0.0) != (b[across] > 0.0) {
                 let t = a[across] / (a[across] - b[across]);
-                found.push(a[along] + t * (b[along] - a[along]));
+                result.push(a[along] + t * (b[along] - a[along]));
             }
         }
     }
-    let ends = |found: &[f64]| {
-        let below = found.iter().filter(|v| **v <= 0.0).fold(f64::INFINITY, |m, v| m.min(-v));
-        let above = found.iter().filter(|v| **v >= 0.0).fold(f64::INFINITY, |m, v| m.min(*v));
+    let ends = |result: &[f64]| {
+        let below = result.iter().filter(|v| **v <= 0.0).fold(f64::INFINITY, |m, v| m.min(-v));
+        let above = result.iter().filter(|v| **v >= 0.0).fold(f64::INFINITY, |m, v| m.min(*v));
         // On the border, rounding may hide a side: there is no room then.
         [below, above].map(|v| if v.is_finite() { v } else { 0.0 })
     };

@@ -52,12 +52,12 @@ pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cance
     let mut looked = 0;
     let limit = (MOST_PAIRS / overlap.pairs().max(1)).clamp(1, MOST_PLACES);
     let mut look = |best: &mut Peak, open: &mut BinaryHeap<Cell>, center: DVec2, half: f64| {
-        let found = overlap.around(center, half);
-        if found.value > best.value {
-            (best.at, best.value) = (center, found.value);
+        let result = overlap.around(center, half);
+        if result.value > best.value {
+            (best.at, best.value) = (center, result.value);
         }
         looked += 1;
-        open.push(Cell { center, half, bound: most.min(found.at_most), number: looked });
+        open.push(Cell { center, half, bound: most.min(result.at_most), number: looked });
         looked
     };
     let middle = best.at;
@@ -100,13 +100,16 @@ mod tests {
     #[test]
     fn two_discs_overlap_by_the_area_of_the_smaller() {
         for (first, second) in [(30.0, 30.0), (50.0, 30.0), (10.0, 70.0)] {
-            let found = of(&SweptShape::Disc { radius: first }, &SweptShape::Disc { radius: second });
+            let result = of(&SweptShape::Disc { radius: first }, &SweptShape::Disc { radius: second });
             let smaller: f64 = f64::min(first, second);
             let exact = PI * smaller * smaller;
-            assert!(found.value <= exact && exact <= found.at_most, "{found:?} {exact}");
+            assert!(result.value <= exact && exact <= result.at_most, "{result:?} {exact}");
             // Chords and tangents, both 0.01 mm from a circle of 2πr, and the slack of the search.
-            assert!(found.at_most - found.value < exact * SLACK + 0.04 * PI * smaller, "{found:?} {exact}");
-            assert!(found.at.length() < (first - second).abs() + 0.1, "{found:?}");
+            assert!(
+                result.at_most - result.value < exact * SLACK + 0.04 * PI * smaller,
+                "{result:?} {exact}"
+            );
+            assert!(result.at.length() < (first - second).abs() + 0.1, "{result:?}");
         }
     }
 
@@ -125,20 +128,20 @@ mod tests {
         let corner = [(0.0, 0.0), (6.0, 0.0), (6.0, 2.0), (2.0, 2.0), (2.0, 6.0), (0.0, 6.0)];
         let corner = SweptShape::Polygon(corner.map(|(x, y)| DVec2::new(x, y)).to_vec());
         // A square of 3 in the corner covers all of it but a square of 1.
-        let found = of(&corner, &bar(3.0, 3.0));
+        let result = of(&corner, &bar(3.0, 3.0));
         assert!(
-            found.value <= 8.0 && 8.0 <= found.at_most && found.at_most - found.value < 0.01,
-            "{found:?}"
+            result.value <= 8.0 && 8.0 <= result.at_most && result.at_most - result.value < 0.01,
+            "{result:?}"
         );
-        assert!(found.at.distance(DVec2::splat(1.5)) < 0.01, "{found:?}");
+        assert!(result.at.distance(DVec2::splat(1.5)) < 0.01, "{result:?}");
     }
 
     #[test]
     fn what_has_no_area_overlaps_by_nothing() {
         let line = Bracket::exact(Region::segment(DVec2::ZERO, DVec2::X));
         let disc = SweptShape::Disc { radius: 3.0 }.bracket(DVec2::ZERO, 0.01);
-        let found = peak(&line, &disc, &Exec::new()).unwrap().unwrap();
-        assert_eq!((found.value, found.at_most), (0.0, 0.0));
+        let result = peak(&line, &disc, &Exec::new()).unwrap().unwrap();
+        assert_eq!((result.value, result.at_most), (0.0, 0.0));
         let nothing = Bracket::exact(Region::default());
         assert_eq!(peak(&nothing, &disc, &Exec::new()), Ok(None));
         let stopped = Exec::new();
@@ -160,18 +163,18 @@ mod tests {
                 Region::of_outlines(&[corners.iter().map(|(x, y)| DVec2::new(*x, *y)).collect()])
             };
             let (a, b) = (region(&a), region(&b));
-            let found = peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
-            if let Some(found) = found {
+            let result = peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
+            if let Some(result) = result {
                 let overlap = RegionOverlap::new(&a, &b);
                 for pair in places.windows(2) {
                     let [d, other] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
                     let value = overlap.at(d);
-                    prop_assert!(value <= found.at_most * (1.0 + 1e-12) + 1e-12);
+                    prop_assert!(value <= result.at_most * (1.0 + 1e-12) + 1e-12);
                     // The bound around any other place holds, too.
                     let around = overlap.around(other, (d - other).abs().max_element());
                     prop_assert!(value <= around.at_most + 1e-9, "{value} {around:?}");
                 }
-                prop_assert!(found.value <= found.at_most + 1e-12 && found.at_most - found.value < 1e-3 * found.at_most + 1e-9);
+                prop_assert!(result.value <= result.at_most + 1e-12 && result.at_most - result.value < 1e-3 * result.at_most + 1e-9);
             }
         }
     }

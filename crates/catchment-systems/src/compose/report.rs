@@ -129,20 +129,20 @@ fn half(read: &ParsedRegion) -> HalfReport {
 }
 
 impl ComposeBody {
-    fn new(found: &Composition) -> Self {
-        let map = &found.map;
-        let slice = &found.slices[found.shown];
+    fn new(result: &Composition) -> Self {
+        let map = &result.map;
+        let slice = &result.slices[result.shown];
         Self {
-            unit: found.halves[0].measure.symbol(),
-            settings: found.settings.clone(),
-            halves: [half(&found.halves[0]), half(&found.halves[1])],
-            keep_out: found.bodies.as_ref().map(|[a, b]| [half(a), half(b)]),
+            unit: result.halves[0].measure.symbol(),
+            settings: result.settings.clone(),
+            halves: [half(&result.halves[0]), half(&result.halves[1])],
+            keep_out: result.bodies.as_ref().map(|[a, b]| [half(a), half(b)]),
             heading_rad: slice.heading,
             acceptance: region(&slice.region),
-            largest_square: found.square,
-            tolerance: found.reach.map(|reach| [reach.x[0], reach.x[1], reach.y[0], reach.y[1]]),
-            square_about_zero: found.square_about_zero,
-            slices: found
+            largest_square: result.square,
+            tolerance: result.reach.map(|reach| [reach.x[0], reach.x[1], reach.y[0], reach.y[1]]),
+            square_about_zero: result.square_about_zero,
+            slices: result
                 .slices
                 .iter()
                 .map(|slice| HeadingReport {
@@ -151,11 +151,11 @@ impl ComposeBody {
                     outlines: outlines(slice),
                 })
                 .collect(),
-            volume: found.volume,
+            volume: result.volume,
             overlap: OverlapReport {
-                largest: found.peak.map_or(0.0, |peak| peak.value),
-                at_most: found.peak.map_or(0.0, |peak| peak.at_most),
-                at: found.peak.map_or([0.0; 2], |peak| peak.at.to_array()),
+                largest: result.peak.map_or(0.0, |peak| peak.value),
+                at_most: result.peak.map_or(0.0, |peak| peak.at_most),
+                at: result.peak.map_or([0.0; 2], |peak| peak.at.to_array()),
                 low: map.low.to_array(),
                 cell: map.cell,
                 rows: map.values.chunks(map.cells[0].max(1)).map(<[f64]>::to_vec).collect(),
@@ -178,21 +178,21 @@ pub(super) fn bracket([inner, outer]: [f64; 2]) -> String {
 }
 
 /// The report of a composition.
-pub fn report(found: &Composition) -> ComposeReport {
+pub fn report(result: &Composition) -> ComposeReport {
     let mut warnings = Vec::new();
-    if found.slices[found.shown].region.inner.parts() == 0 {
-        let message = match found.bodies {
+    if result.slices[result.shown].region.inner.parts() == 0 {
+        let message = match result.bodies {
             Some(_) => "the bodies keep the halves apart everywhere",
             None => "the region has no area: the halves meet on a line at most",
         };
         warnings.push(Diagnostic::warning(ComposeBody::KIND, message));
     }
-    ReportEnvelope::of(ComposeBody::new(found), warnings, None)
+    ReportEnvelope::of(ComposeBody::new(result), warnings, None)
 }
 
 impl Printed for ComposeBody {
     fn title(&self) -> Cow<'_, str> {
-        format!("{} and {}: where they meet", self.halves[0].name, self.halves[1].name).into()
+        format!("{} and {}: approach region", self.halves[0].name, self.halves[1].name).into()
     }
 
     fn document(&self) -> Document {
@@ -303,13 +303,13 @@ fn degrees(angle: f64) -> String {
 }
 
 /// Outlines of the inner region at the heading shown as a drawing of that size, to be read again.
-pub fn outline_svg(found: &Composition) -> String {
-    let measure = found.halves[0].measure;
-    let [low, high] = found.slices[found.shown].region.inner.bounds().unwrap_or([DVec2::ZERO, DVec2::ONE]);
+pub fn outline_svg(result: &Composition) -> String {
+    let measure = result.halves[0].measure;
+    let [low, high] = result.slices[result.shown].region.inner.bounds().unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let (size, unit) = (high - low, measure.symbol());
     let physical = if measure == super::Measure::Millimetres { unit } else { "" };
     let mut data = String::new();
-    for outline in outlines(&found.slices[found.shown]) {
+    for outline in outlines(&result.slices[result.shown]) {
         for (k, [x, y]) in outline.into_iter().enumerate() {
             // Writing to a String cannot fail. Up is +y, and down the picture is not.
             let _ = write!(data, "{}{} {}", if k == 0 { "M" } else { "L" }, number(x), number(-y));

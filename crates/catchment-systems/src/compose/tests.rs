@@ -133,8 +133,8 @@ fn dice(state: &mut u64) -> f64 {
 fn a_place_is_in_the_sum_exactly_where_the_regions_meet() {
     let [a, b] = odd_pair();
     for frames in [RegionFrames::Own, RegionFrames::World] {
-        let found = composed(&a, &b, &at(frames, 0.4));
-        let region = &found.slices[0].region.inner;
+        let result = composed(&a, &b, &at(frames, 0.4));
+        let region = &result.slices[0].region.inner;
         // As it stands before A.
         let stands = b.turned(if frames == RegionFrames::Own { PI + 0.4 } else { 0.4 });
         let [low, high] = region.bounds().unwrap();
@@ -152,14 +152,14 @@ fn a_place_is_in_the_sum_exactly_where_the_regions_meet() {
 #[test]
 fn the_overlap_is_a_convolution() {
     let [a, b] = odd_pair();
-    let found = composed(&a, &b, &ComposeSettings { map_cells: 200, ..at(RegionFrames::World, 0.2) });
-    let integral: f64 = found.map.values.iter().sum::<f64>() * found.map.cell * found.map.cell;
+    let result = composed(&a, &b, &ComposeSettings { map_cells: 200, ..at(RegionFrames::World, 0.2) });
+    let integral: f64 = result.map.values.iter().sum::<f64>() * result.map.cell * result.map.cell;
     let exact = a.area() * b.area();
     assert!((integral - exact).abs() < 1e-3 * exact, "{integral} {exact}");
-    let region = &found.slices[0].region.inner;
-    for (k, value) in found.map.values.iter().enumerate() {
-        let cell = v((k % found.map.cells[0]) as f64 + 0.5, (k / found.map.cells[0]) as f64 + 0.5);
-        let d = found.map.low + cell * found.map.cell;
+    let region = &result.slices[0].region.inner;
+    for (k, value) in result.map.values.iter().enumerate() {
+        let cell = v((k % result.map.cells[0]) as f64 + 0.5, (k / result.map.cells[0]) as f64 + 0.5);
+        let d = result.map.low + cell * result.map.cell;
         assert!(*value < 1e-12 || region.contains(d), "{d}: {value}");
         assert!(*value <= a.area().min(b.area()) + 1e-9);
     }
@@ -182,18 +182,18 @@ fn bodies_are_kept_apart() {
     let body = Bracket::exact(Region::rectangle(v(-1.0, -1.0), v(1.0, 1.0)));
     let halves = [read("a", &reach), read("b", &reach)];
     let bodies = Some([read("c", &body), read("d", &body)]);
-    let found = compose(
+    let result = compose(
         halves,
         bodies,
         &ComposeSettings { map_cells: 8, ..ComposeSettings::default() },
         &Exec::new(),
     )
     .unwrap();
-    let region = &found.slices[0].region;
+    let region = &result.slices[0].region;
     let exact = PI * 100.0 - 16.0;
     assert!(region.inner.area() < exact && exact < region.outer.area() && region.inner.holes() == 1);
     assert!(!region.inner.contains(v(1.9, 0.0)) && region.inner.contains(v(2.0, 0.0)));
-    assert_eq!(found.square_about_zero, None);
+    assert_eq!(result.square_about_zero, None);
 }
 
 #[test]
@@ -201,12 +201,12 @@ fn a_stack_of_headings_has_a_volume() {
     // A segment of length 2 with a segment of length 3: area 6 |sin ψ|, over a quarter turn ∫ = 6.
     let (a, b) = (Region::segment(v(-1.0, 0.0), v(1.0, 0.0)), Region::segment(v(-1.5, 0.0), v(1.5, 0.0)));
     let headings: Vec<f64> = (0..=90).map(|k| f64::from(k) * FRAC_PI_2 / 90.0).collect();
-    let found = composed(&a, &b, &ComposeSettings { headings, ..at(RegionFrames::World, 0.0) });
-    let [inner, outer] = found.volume.unwrap();
+    let result = composed(&a, &b, &ComposeSettings { headings, ..at(RegionFrames::World, 0.0) });
+    let [inner, outer] = result.volume.unwrap();
     // The trapezoidal rule is off by at most h²/12 · (b − a) · 6.
     let most = (FRAC_PI_2 / 90.0).powi(2) / 12.0 * FRAC_PI_2 * 6.0;
     assert!(inner == outer && (inner - 6.0).abs() < most, "{inner}");
-    assert_eq!(found.slices[found.shown].heading, 0.0);
+    assert_eq!(result.slices[result.shown].heading, 0.0);
 }
 
 #[test]
@@ -236,10 +236,10 @@ fn hook_and_loop_agree_with_random_places() {
         hits += u32::from(meets(low + (high - low) * v(dice(&mut state), dice(&mut state))));
     }
     let size = (high - low).x * (high - low).y;
-    let (found, share) = (f64::from(hits) / f64::from(draws) * size, inner / size);
+    let (result, share) = (f64::from(hits) / f64::from(draws) * size, inner / size);
     // Four standard deviations of the draws; the grid of points misses less than that.
     let slack = 4.0 * size * (share * (1.0 - share) / f64::from(draws)).sqrt();
-    assert!(slack < 0.02 * inner && (found - inner).abs() < slack, "{found} {inner} ± {slack}");
+    assert!(slack < 0.02 * inner && (result - inner).abs() < slack, "{result} {inner} ± {slack}");
 }
 
 #[test]
@@ -256,15 +256,15 @@ fn the_shipped_example_is_the_one_of_the_page() {
     assert!(brackets(&hook, PI / 3.0 * (160f64.powi(2) - 100f64.powi(2))));
     assert!(brackets(&string, PI * 6000.0));
     let boats = Some([file("boat.toml"), file("boat.toml")]);
-    let found = compose([hook, string], boats, &ComposeSettings::default(), &Exec::new()).unwrap();
-    let printed = report(&found);
+    let result = compose([hook, string], boats, &ComposeSettings::default(), &Exec::new()).unwrap();
+    let printed = report(&result);
     assert!(printed.table().lines().all(|line| line.chars().count() <= 80), "{}", printed.table());
-    assert!(figure(&found).unwrap().png(1.0).unwrap().len() > 1000);
+    assert!(figure(&result).unwrap().png(1.0).unwrap().len() > 1000);
     // The written files are read back, to the last digit.
-    let svg = read(SourceText::new("sum.svg", outline_svg(&found)), &Exec::new()).unwrap();
+    let svg = read(SourceText::new("sum.svg", outline_svg(&result)), &Exec::new()).unwrap();
     let table = catchment::report::csv(&printed.records()).unwrap();
     let table = read(SourceText::new("sum.csv", String::from_utf8(table).unwrap()), &Exec::new()).unwrap();
-    let inner = found.slices[0].region.inner.area();
+    let inner = result.slices[0].region.inner.area();
     // Corners of the drawing are rounded by a scale factor of 1.
     assert!((svg.region.inner.area() - inner).abs() < 1e-4, "{}", svg.region.inner.area());
     assert!((table.region.inner.area() - inner).abs() < 1e-7);
@@ -309,10 +309,10 @@ proptest! {
                 raster.extend([(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| (i + k + x, j + l + y)));
             }
         }
-        let found = sum(&of_cells(&a), &of_cells(&b));
-        prop_assert_eq!(found.area(), raster.len() as f64);
-        prop_assert_eq!(apart(&found, &of_cells(&raster)), 0.0);
-        prop_assert_eq!(apart(&found, &brute::minkowski_sum(&of_cells(&a), &of_cells(&b))), 0.0);
+        let result = sum(&of_cells(&a), &of_cells(&b));
+        prop_assert_eq!(result.area(), raster.len() as f64);
+        prop_assert_eq!(apart(&result, &of_cells(&raster)), 0.0);
+        prop_assert_eq!(apart(&result, &brute::minkowski_sum(&of_cells(&a), &of_cells(&b))), 0.0);
     }
 
     #[test]
@@ -352,14 +352,14 @@ fn two_connectors_add_up_their_own_search() {
     let read = |text: &str| read(SourceText::new("p.toml", text), &Exec::new()).unwrap();
     let connector = read(pyramid);
     let small = square(10.0).mapped(|p| p - 5.0);
-    let found =
+    let result =
         compose([connector.clone(), given("square", small)], None, &at(RegionFrames::Own, 0.0), &Exec::new())
             .unwrap();
     let region = &connector.region.inner;
     // A convex set and a square of side s: area + width along y·s + width along x·s + s².
     let [low, high] = region.bounds().unwrap();
     let exact = region.area() + 10.0 * ((high - low).x + (high - low).y) + 100.0;
-    let area = found.slices[0].region.inner.area();
+    let area = result.slices[0].region.inner.area();
     assert!((area - exact).abs() < 1e-5 && region.area() > 100.0, "{area} {exact}");
     let bare = read("[connector]\nfamily = \"v-face\"\n");
     assert_eq!(bare.measure, Measure::Widths);
@@ -369,7 +369,7 @@ fn two_connectors_add_up_their_own_search() {
 
 #[test]
 fn what_is_wrong_with_a_file_is_said_in_its_place() {
-    let said = |name: &str, text: &str| match read(SourceText::new(name, text), &Exec::new()) {
+    let error_of = |name: &str, text: &str| match read(SourceText::new(name, text), &Exec::new()) {
         Ok(_) => "nothing".to_owned(),
         Err(error) => error.to_string(),
     };
@@ -386,16 +386,16 @@ fn what_is_wrong_with_a_file_is_said_in_its_place() {
         ("", "the table is empty"),
         ("x,y\n0,0\n1,0\n0,1e9\n", "farther from the origin"),
     ] {
-        assert!(said("a.csv", text).contains(expected), "{text:?}: {}", said("a.csv", text));
+        assert!(error_of("a.csv", text).contains(expected), "{text:?}: {}", error_of("a.csv", text));
     }
     let corners = |count: usize| "x,y\n".to_owned() + &"0,0\n".repeat(count);
-    assert!(said("a.csv", &corners(10_001)).contains("the outline has more than 10000 corners"));
-    assert!(said("a.csv", &corners(10_000)).contains("the ring is open"));
+    assert!(error_of("a.csv", &corners(10_001)).contains("the outline has more than 10000 corners"));
+    assert!(error_of("a.csv", &corners(10_000)).contains("the ring is open"));
     let deep = |count: usize| {
         format!("<svg>{}<path d=\"M0 0L1 0L0 1Z\"/>{}</svg>", "<g>".repeat(count), "</g>".repeat(count))
     };
-    assert_eq!(said("a.svg", &deep(254)), "nothing");
-    assert!(said("a.svg", &deep(255)).contains("more than 256 elements within each other"));
+    assert_eq!(error_of("a.svg", &deep(254)), "nothing");
+    assert!(error_of("a.svg", &deep(255)).contains("more than 256 elements within each other"));
     for (text, expected) in [
         ("<svg><path d=\"M0 0L1 0L0 1\"/></svg>", "is open"),
         ("<svg><path d=\"M0 0L2 2L2 0L0 2Z\"/></svg>", "crosses itself"),
@@ -407,7 +407,7 @@ fn what_is_wrong_with_a_file_is_said_in_its_place() {
         ("<svg><path d=\"M0 0A1e300 1e300 0 0 1 9 9Z\"/></svg>", "far too large"),
         ("<svg><path d=\"M0 0L12345678901 0L0 1Z\"/></svg>", "far too large"),
     ] {
-        assert!(said("a.svg", text).contains(expected), "{text:?}: {}", said("a.svg", text));
+        assert!(error_of("a.svg", text).contains(expected), "{text:?}: {}", error_of("a.svg", text));
     }
     for (text, expected) in [
         ("name = 'x'", "neither [sweep] nor [connector]"),
@@ -421,23 +421,23 @@ fn what_is_wrong_with_a_file_is_said_in_its_place() {
             "`to` must be larger than `from`",
         ),
     ] {
-        assert!(said("a.toml", text).contains(expected), "{text:?}: {}", said("a.toml", text));
+        assert!(error_of("a.toml", text).contains(expected), "{text:?}: {}", error_of("a.toml", text));
     }
-    assert!(said("a.dxf", "").contains("a region is read from .csv, .svg or .toml"));
+    assert!(error_of("a.dxf", "").contains("a region is read from .csv, .svg or .toml"));
 }
 
 #[test]
 fn a_picture_in_centimetres_with_curves_is_read_in_millimetres() {
     let text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"4cm\" viewBox=\"0 0 8 8\">\
                 <path d=\"M0 0 A 4 4 0 0 1 8 0 Z M 3 -1 h 1 v -1 h -1 z\"/></svg>";
-    let found = read(SourceText::new("a.svg", text), &Exec::new()).unwrap();
+    let result = read(SourceText::new("a.svg", text), &Exec::new()).unwrap();
     // A half disc of radius 20 mm without a square of 5 mm, within the chord error along the arc.
     let exact = PI * 200.0 - 25.0;
     assert!(
-        (found.region.inner.area() - exact).abs() < 2.0 * 0.01 * PI * 20.0,
+        (result.region.inner.area() - exact).abs() < 2.0 * 0.01 * PI * 20.0,
         "{}",
-        found.region.inner.area()
+        result.region.inner.area()
     );
-    assert_eq!((found.region.inner.holes(), found.notes.len()), (1, 1));
-    assert!(found.region.inner.contains(v(20.0, 15.0)), "up the page is +y");
+    assert_eq!((result.region.inner.holes(), result.notes.len()), (1, 1));
+    assert!(result.region.inner.contains(v(20.0, 15.0)), "up the page is +y");
 }

@@ -306,12 +306,12 @@ mod tests {
         let left = facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.0, 0.0]);
         let sliver = facet([1.0, 0.0], [1.0 + thin, 1.0], 1e-12, [1e-9, 0.0]);
         let right = facet([1.0 + thin, 0.0], [2.0, 1.0], 0.0, [0.01, 0.0]);
-        let found = tidied(&[left, sliver, right]);
-        assert_eq!(found.facets.len(), 2);
-        assert!((found.area() - 2.0).abs() < 2.0 * thin, "{}", found.area());
+        let result = tidied(&[left, sliver, right]);
+        assert_eq!(result.facets.len(), 2);
+        assert!((result.area() - 2.0).abs() < 2.0 * thin, "{}", result.area());
         for x in [0.5, 1.0, 1.0 + 0.5 * thin, 1.0 + thin, 1.5] {
             let wanted = 0.01 * (x - 1.0f64).max(0.0);
-            assert!((found.at(DVec2::new(x, 0.3)).unwrap() - wanted).abs() < 1e-10, "{x}");
+            assert!((result.at(DVec2::new(x, 0.3)).unwrap() - wanted).abs() < 1e-10, "{x}");
         }
     }
 
@@ -324,17 +324,17 @@ mod tests {
             facet([1.0, 0.0], [1.0 + thin, 1.0], 0.0, [0.2, 0.0]),
             facet([1.0 + thin, 0.0], [2.0, 1.0], 1e-11, [0.2, 0.0]),
         ];
-        let found = tidied(&pieces);
-        assert_eq!(found.facets.len(), 3);
+        let result = tidied(&pieces);
+        assert_eq!(result.facets.len(), 3);
         assert_eq!(
-            found
+            result
                 .facets
                 .iter()
                 .filter(|f| f.polygon == pieces[0].polygon || f.polygon == pieces[1].polygon)
                 .count(),
             2
         );
-        let beside = found.at(DVec2::new(1.0 + 0.5 * thin, 0.7)).unwrap();
+        let beside = result.at(DVec2::new(1.0 + 0.5 * thin, 0.7)).unwrap();
         assert!(beside.abs() < 1e-8, "{beside}");
     }
 
@@ -347,12 +347,12 @@ mod tests {
         // At the rim the wall vanishes; between two pieces the upper piece extends over it.
         let rim = tidied(&[low.clone(), wall.clone()]);
         assert_eq!(rim.facets, vec![low.clone()]);
-        let found = tidied(&[low.clone(), wall.clone(), high]);
-        assert_eq!(found.facets.len(), 2);
-        assert!(found.facets.contains(&low));
+        let result = tidied(&[low.clone(), wall.clone(), high]);
+        assert_eq!(result.facets.len(), 2);
+        assert!(result.facets.contains(&low));
         for share in [0.1, 0.5, 0.9] {
             let place = DVec2::new(1.0 + share * lean, 0.4);
-            let now = found.at(place).unwrap();
+            let now = result.at(place).unwrap();
             assert!((now - 0.5).abs() < 1e-9 && now > wall.height(place) - 1e-9, "{share}: {now}");
         }
     }

@@ -32,7 +32,7 @@ const MARGIN: f64 = 0.06;
 /// If the section meets neither half, or no height is wanted at y = 0.
 pub fn figure(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
     let key = Legend::default().line(WANTED, "wanted").line(stroked(CURVES[0], 2.2), "reached, at y = 0");
-    let title = format!("{}: the moving half that the wanted heights ask for", design.name);
+    let title = format!("{}: moving half for the wanted heights", design.name);
     let (mut svg, frames) = Layout::titled(title)
         .computed(design)
         .story(story(found))

@@ -29,7 +29,7 @@ pub struct Shortfall {
 /// A region narrower than [`NARROW`] is a side moved by rounding, and not a shortfall; neither is the height
 /// change from moving a slope by [`SIDEWAYS`].
 pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for want in &wanted.facets {
         for got in reached.facets.iter().filter(|got| !apart(&want.polygon, &got.polygon)) {
             let Some(polygon) = common(&want.polygon, &got.polygon) else { continue };
@@ -39,12 +39,12 @@ pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> 
                     if next.1 > best.1 { next } else { best }
                 });
             if most > REACHED * steepness(want, got) && width(&polygon) > NARROW {
-                found.push(Shortfall { polygon, most, at });
+                result.push(Shortfall { polygon, most, at });
             }
         }
     }
-    found.sort_by(|a, b| b.most.total_cmp(&a.most));
-    found
+    result.sort_by(|a, b| b.most.total_cmp(&a.most));
+    result
 }
 
 /// The largest shortfall of each place, in order, at most `most`: a corner that polygons share is listed once.

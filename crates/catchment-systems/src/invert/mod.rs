@@ -245,21 +245,22 @@ pub fn invert(
         Ok(plan.facets.iter().flat_map(|face| whole.within(&face.polygon).facets).collect())
     };
     let wanted = counted(design, wanted).merged();
-    let (fixed, body) =
-        turns::asked(&connector.fixed, &wanted, DMat3::IDENTITY, 0.0).ok_or(InvertError::NothingWanted)?;
-    let mut asked = Heights { facets: over_plan(&fixed, &body)? };
-    let [floor, _] = asked.range().ok_or(InvertError::NothingWanted)?;
+    let (fixed, body) = turns::requested(&connector.fixed, &wanted, DMat3::IDENTITY, 0.0)
+        .ok_or(InvertError::NothingWanted)?;
+    let mut requested = Heights { facets: over_plan(&fixed, &body)? };
+    let [floor, _] = requested.range().ok_or(InvertError::NothingWanted)?;
     for [roll, pitch, yaw] in &turns {
         let turn = rotation(*roll, *pitch, *yaw);
         let there = heights_of(design, turned, turn, exec)?;
-        if let Some((fixed, body)) = turns::asked(&connector.fixed, &there, turn, floor) {
+        if let Some((fixed, body)) = turns::requested(&connector.fixed, &there, turn, floor) {
             // Rotations in sequence: the heights that a rotation requires are mostly hidden by those of the
             // others.
-            asked.facets.extend(over_plan(&fixed, &body)?);
-            asked = Heights { facets: highest(asked.facets, &ZraaSettings::default(), exec)? }.merged();
+            requested.facets.extend(over_plan(&fixed, &body)?);
+            requested =
+                Heights { facets: highest(requested.facets, &ZraaSettings::default(), exec)? }.merged();
         }
     }
-    let moving = asked.tidied();
+    let moving = requested.tidied();
     let Some([_, top]) = moving.range() else { return Err(InvertError::NothingWanted) };
     let back = top + settings.backing;
     let connector = Connector::from_halves(connector.fixed.clone(), moving.above(back));

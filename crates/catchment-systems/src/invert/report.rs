@@ -110,7 +110,7 @@ impl Subject for InvertBody {
         let mut document = Document::default();
         let pieces = self.pieces_d.len();
         document
-            .section("the moving half that the wanted heights ask for")
+            .section("moving half for the wanted heights")
             .row("moving half", format!("{pieces} convex pieces over {} D²", significant(self.plan_d2)));
         self.describe_heights(&mut document);
         let share = percent(self.contact_patch_d2 / self.plan_d2);

@@ -32,11 +32,11 @@ pub(super) const FAMILIES: [&str; 5] = ["v-face", "s-face", "x-face", "pyramid",
 fn heights_of_a_family_and_its_fixed_half_give_back_its_moving_half() {
     for name in FAMILIES {
         let problem = family(name);
-        let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
+        let result = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let own = lower_surface(&problem.connector().moving, &Exec::new()).unwrap();
         let mut compared = 0.0;
         for a in &own.facets {
-            for b in &found.moving.facets {
+            for b in &result.moving.facets {
                 let Some(polygon) = common(&a.polygon, &b.polygon) else { continue };
                 compared += area(&polygon);
                 for p in &polygon {
@@ -47,10 +47,10 @@ fn heights_of_a_family_and_its_fixed_half_give_back_its_moving_half() {
         }
         let plan: f64 = own.facets.iter().map(|f| area(&f.polygon)).sum();
         assert!((compared - plan).abs() < 1e-9, "{name}: {compared} of {plan}");
-        assert_eq!(found.shortfalls, [], "{name}");
+        assert_eq!(result.shortfalls, [], "{name}");
         // Complementary faces touch all over when mated.
-        assert!((found.patch - plan).abs() < 1e-8, "{name}: {} of {plan}", found.patch);
-        assert!(found.reached.at(DVec2::ZERO).unwrap().abs() < REACHED, "{name}");
+        assert!((result.patch - plan).abs() < 1e-8, "{name}: {} of {plan}", result.patch);
+        assert!(result.reached.at(DVec2::ZERO).unwrap().abs() < REACHED, "{name}");
     }
 }
 
@@ -99,10 +99,10 @@ fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
             }
             wanted.facets.extend(pieces.into_iter().map(|polygon| HeightFacet { polygon, ..facet.clone() }));
         }
-        let found = inverted(&problem, wanted.clone(), &InvertSettings::default());
+        let result = inverted(&problem, wanted.clone(), &InvertSettings::default());
         // Nowhere higher than wanted.
         for want in &counted(problem.design(), wanted).facets {
-            for got in &found.reached.facets {
+            for got in &result.reached.facets {
                 if let Some(polygon) = common(&want.polygon, &got.polygon) {
                     for p in &polygon {
                         assert!(got.height(*p) <= want.height(*p) + 1e-9, "{name} {p}");
@@ -112,9 +112,9 @@ fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
         }
         // The moving half receded at the dent, so heights beside it are missed, by at most the depth of the
         // dent.
-        let worst = found.shortfalls.first().unwrap_or_else(|| panic!("{name}: all reached"));
+        let worst = result.shortfalls.first().unwrap_or_else(|| panic!("{name}: all reached"));
         assert!(worst.most > 0.01 && worst.most < 10.0 * lowered, "{name}: {}", worst.most);
-        let short = found.reached.at(worst.at).unwrap();
+        let short = result.reached.at(worst.at).unwrap();
         assert!(short.is_finite());
     }
 }
@@ -156,10 +156,12 @@ fn a_flat_wish_over_a_flat_plate_is_a_plate() {
     let problem = family("pyramid");
     let table = "x,y,height\n-2,-2,1\n2,-2,1\n-2,2,1\n2,2,1\n";
     let wanted = wanted_from_table(SourceText::new("w.csv", table)).unwrap();
-    let found = inverted(&problem, wanted, &InvertSettings::default());
-    let [low, high] = found.moving.range().unwrap();
+    let result = inverted(&problem, wanted, &InvertSettings::default());
+    let [low, high] = result.moving.range().unwrap();
     assert!((low - (0.25 - 1.0)).abs() < 1e-9 && (high - low).abs() < 1e-9, "{low} {high}");
-    assert!(found.reached.facets.iter().all(|f| f.polygon.iter().all(|p| (f.height(*p) - 1.0).abs() < 1e-9)));
+    assert!(
+        result.reached.facets.iter().all(|f| f.polygon.iter().all(|p| (f.height(*p) - 1.0).abs() < 1e-9))
+    );
 }
 
 #[test]
@@ -196,10 +198,10 @@ fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
     // Most that a half stops above the limit at the turn.
     let excess = |yaw: &[f64]| {
         let settings = InvertSettings { yaw: yaw.to_vec(), ..InvertSettings::default() };
-        let found = inverted(&problem, wanted.clone(), &settings);
+        let result = inverted(&problem, wanted.clone(), &settings);
         let mut most = f64::NEG_INFINITY;
         for want in &limit.facets {
-            for got in &there(&found.connector).facets {
+            for got in &there(&result.connector).facets {
                 if let Some(polygon) = common(&want.polygon, &got.polygon) {
                     most = polygon.iter().map(|p| got.height(*p) - want.height(*p)).fold(most, f64::max);
                 }
@@ -215,12 +217,12 @@ fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
 fn the_result_is_a_design_that_runs() {
     for name in FAMILIES {
         let problem = family(name);
-        let found = inverted(&problem, own_heights(&problem), &InvertSettings::default());
+        let result = inverted(&problem, own_heights(&problem), &InvertSettings::default());
         let limits = ManufacturingLimits { feature_d: 0.01, draft_rad: 0.05 };
-        let printed = report(problem.design(), &found, limits);
+        let printed = report(problem.design(), &result, limits);
         assert!(printed.table().lines().all(|line| line.chars().count() <= 80), "{}", printed.table());
         assert!(printed.pieces_d.len() <= MAX_PIECES, "{name}: {} pieces", printed.pieces_d.len());
-        let text = design_file(problem.design(), &found);
+        let text = design_file(problem.design(), &result);
         let again = super::tests::problem(&text);
         let [a, b] = [own_heights(&problem), own_heights(&again)];
         for k in 0..60 {
@@ -236,13 +238,17 @@ fn the_result_is_a_design_that_runs() {
 
 #[test]
 fn what_is_wrong_with_a_table_is_said_in_its_place() {
-    let said = |text: &str| wanted_from_table(SourceText::new("w.csv", text)).unwrap_err().to_string();
-    assert!(said("x,y,z\n0,0,0\n").contains("w.csv:1:1: the columns are not x,y,height"));
-    assert!(said("x,y,height\n0,0,nan\n").contains("w.csv:2:1: the line is not three finite numbers"));
-    assert!(said("x,y,height\n0,0,0\n0,0,1\n").contains("w.csv:3:1: (0, 0) is there twice"));
-    assert!(said("x,y,height\n0,0,0\n1,0,0\n0,1,0\n").contains("3 places do not make a grid of 2 x by 2 y"));
-    assert!(said("x,y,height\n0,0,0,0\n").contains("w.csv:2:1: the line is not three finite numbers"));
-    assert!(said(&("x,y,height\n".to_owned() + &"0,0,0\n".repeat(901))).contains("the grid has 901 places"));
+    let error_of = |text: &str| wanted_from_table(SourceText::new("w.csv", text)).unwrap_err().to_string();
+    assert!(error_of("x,y,z\n0,0,0\n").contains("w.csv:1:1: the columns are not x,y,height"));
+    assert!(error_of("x,y,height\n0,0,nan\n").contains("w.csv:2:1: the line is not three finite numbers"));
+    assert!(error_of("x,y,height\n0,0,0\n0,0,1\n").contains("w.csv:3:1: (0, 0) is there twice"));
+    assert!(
+        error_of("x,y,height\n0,0,0\n1,0,0\n0,1,0\n").contains("3 places do not make a grid of 2 x by 2 y")
+    );
+    assert!(error_of("x,y,height\n0,0,0,0\n").contains("w.csv:2:1: the line is not three finite numbers"));
+    assert!(
+        error_of(&("x,y,height\n".to_owned() + &"0,0,0\n".repeat(901))).contains("the grid has 901 places")
+    );
     let many = "x,y,height\n".to_owned() + &"a,b,c\n".repeat(1000);
     let refused = wanted_from_table(SourceText::new("w.csv", many)).unwrap_err();
     assert_eq!((refused.list.len(), refused.omitted), (20, 980));

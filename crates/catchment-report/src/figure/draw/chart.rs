@@ -113,11 +113,13 @@ impl Chart<'_> {
         for line in self.lines {
             line.curve(svg, &frame, self.spacing);
         }
-        if let Some(Mark { x, words, .. }) = self.mark {
+        if let Some(Mark { x, y, words }) = self.mark {
             let px = frame.px(self.spacing.at(x));
             let fits = px + 5.0 + width_of(words, TICK) < r.x + r.w;
             let (x, anchor) = if fits { (px + 5.0, Anchor::Start) } else { (px - 5.0, Anchor::End) };
-            svg.haloed([x, r.y + 14.0], TICK, anchor, INK, words);
+            // Beside the line: above a curve that it is read off there is no room.
+            let below = if y.is_some() { r.h - 8.0 } else { 14.0 };
+            svg.haloed([x, r.y + below], TICK, anchor, INK, words);
         }
         svg.end();
         frame.beside(svg);

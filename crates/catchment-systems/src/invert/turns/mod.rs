@@ -154,7 +154,7 @@ fn combined([rolls, pitches, yaws]: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
 
 /// The halves, in the frame of the moving half, whose height of first contact is the lower limit for it at a
 /// rotation. `floor` is a height below all wanted heights of the new half.
-pub(super) fn asked(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> Option<(Half, Half)> {
+pub(super) fn requested(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> Option<(Half, Half)> {
     let back = turn.transpose();
     let fixed = fixed.mapped(|p| back * p);
     let wanted = wanted.without_cracks();
@@ -183,7 +183,7 @@ pub(super) fn between(
     let reach =
         |half: &Half| half.surfaces.iter().flat_map(|s| &s.vertices).map(|p| p.length()).fold(0.0, f64::max);
     let bound_d = 2.0 * (turn_rad / 2.0).sin() * (reach(&wanted.moving) + reach(&new.moving));
-    let mut found = Between {
+    let mut result = Between {
         turn_rad,
         bound_d,
         midway: midway.len(),
@@ -197,12 +197,12 @@ pub(super) fn between(
         let limit = heights_of(design, wanted, turn, exec)?;
         let got = heights_of(design, new, turn, exec)?;
         if let Some((at, most)) = most_above(&got, &limit)
-            && found.most_d.is_none_or(|before| most > before)
+            && result.most_d.is_none_or(|before| most > before)
         {
-            (found.most_d, found.angles_rad, found.at_d) = (Some(most), angles, at.to_array());
+            (result.most_d, result.angles_rad, result.at_d) = (Some(most), angles, at.to_array());
         }
     }
-    Ok(Some(found))
+    Ok(Some(result))
 }
 
 /// The largest difference of two functions in their common domain, and its position.

@@ -45,11 +45,11 @@ fn heights_at_rotations_give_back_the_moving_half() {
                 ..InvertSettings::default()
             }
         };
-        let found = inverted(&problem, own_heights(&problem), &settings);
+        let result = inverted(&problem, own_heights(&problem), &settings);
         let own = lower_surface(&problem.connector().moving, &Exec::new()).unwrap();
         let (mut compared, mut worst) = (0.0, 0.0f64);
         for a in &own.facets {
-            for b in &found.moving.facets {
+            for b in &result.moving.facets {
                 let Some(polygon) = common(&a.polygon, &b.polygon) else { continue };
                 compared += area(&polygon);
                 worst = polygon.iter().map(|p| (a.height(*p) - b.height(*p)).abs()).fold(worst, f64::max);
@@ -57,9 +57,9 @@ fn heights_at_rotations_give_back_the_moving_half() {
         }
         assert!((compared - own.area()).abs() < 1e-8, "{name}: {compared} of {}", own.area());
         assert!(worst < 1e-9, "{name}: {worst:e}");
-        assert_eq!(found.shortfalls, [], "{name}");
+        assert_eq!(result.shortfalls, [], "{name}");
         // Its own half is as good between the rotations as at them.
-        if let Some(between) = found.between {
+        if let Some(between) = result.between {
             assert!(between.most_d.unwrap() < 1e-8, "{name}: {between:?}");
         }
     }
@@ -75,8 +75,8 @@ fn raised(settings: &InvertSettings) -> (Problem, Inverse) {
     for facet in &mut wanted.facets {
         facet.offset += 0.2;
     }
-    let found = inverted(&problem, wanted, settings);
-    (problem, found)
+    let result = inverted(&problem, wanted, settings);
+    (problem, result)
 }
 
 fn tilts() -> InvertSettings {
@@ -110,10 +110,10 @@ fn what_is_wanted_at_rotations_is_kept_there_and_not_elsewhere() {
 /// The bound between the rotations, at random rotations of the range.
 #[test]
 fn between_the_rotations_the_excess_is_bounded() {
-    let (problem, found) = raised(&tilts());
-    let between = found.between.unwrap();
+    let (problem, result) = raised(&tilts());
+    let between = result.between.unwrap();
     assert!((between.turn_rad - 0.2).abs() < 1e-12 && between.midway == 2, "{between:?}");
-    let new = Pair::new(&found.connector, problem.alignment());
+    let new = Pair::new(&result.connector, problem.alignment());
     let (mut worst, mut compared) = (f64::NEG_INFINITY, 0);
     for k in 0..150 {
         let [roll, pitch] = [0.1 * (2.0 * scattered(11 * k) - 1.0), 0.2 * (2.0 * scattered(5 * k + 1) - 1.0)];
