@@ -270,41 +270,41 @@ fn a_partition_says_how_large_it_is_and_draws_its_outline() {
 #[test]
 fn a_certificate_tells_three_parts_of_the_error_box_and_how_well_the_seat_holds() {
     let home = home();
-    let how = ["run", "v.toml", "--method", "certified", "--boxes", "20000", "--resolution", "32"];
+    let how = ["run", "v.toml", "--method", "certified", "--boxes", "8000", "--resolution", "32"];
     let report = super::json(home.path(), &[&how[..], &["--json"]].concat());
     let part = |name: &str| report["certificate"][name].as_f64().unwrap();
     assert!((part("yes") + part("no") + part("undecided") - 1.0).abs() < 1e-9, "{report}");
     assert!(part("no") > 0.1 && part("retention_at_least") <= part("retention_at_most"), "{report}");
     // Cells are told only where all of their poses are certain; the Sum is at least what docks, at most that and what is undecided.
-    let (found, measures) = (&report["acceptance"], &report["certificate"]["measures"]);
+    let (result, measures) = (&report["acceptance"], &report["certificate"]["measures"]);
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
-    assert!(number(&found["sum_grid"]) <= number(&found["sum"]) + 1e-9, "{found}");
-    assert_eq!(found["sum"], measures[0]);
+    assert!(number(&result["sum_grid"]) <= number(&result["sum"]) + 1e-9, "{result}");
+    assert_eq!(result["sum"], measures[0]);
     let most = number(&measures[0]) + number(&measures[2]);
-    assert!((number(&found["sum_bracket"][1]) - most).abs() < 1e-12, "{found}");
+    assert!((number(&result["sum_bracket"][1]) - most).abs() < 1e-12, "{result}");
     let followed =
-        super::json(home.path(), &["run", "v.toml", "--samples", "4000", "--resolution", "64", "--json"]);
+        super::json(home.path(), &["run", "v.toml", "--samples", "2000", "--resolution", "32", "--json"]);
     let [lo, hi] = [0, 1].map(|k| number(&followed["acceptance"]["sum_ci95"][k]));
-    assert!(number(&found["sum"]) < hi && lo < most, "{found} {lo} {hi}");
-    let said = run(home.path(), &how);
-    assert!(said.contains("certified: ") && !said.contains("border moves by one cell"), "{said}");
-    assert!(!said.contains("too coarse") && !said.contains("without an interval"), "{said}");
-    assert!(["all dock", "none docks", "retention"].iter().all(|word| said.contains(word)), "{said}");
-    let asked = [&how[..], &["--require", "certificate.undecided<=0"]].concat();
-    assert!(run(home.path(), &asked).contains("not met: certificate.undecided <= 0"));
+    assert!(number(&result["sum"]) < hi && lo < most, "{result} {lo} {hi}");
+    let printout = run(home.path(), &how);
+    assert!(printout.contains("certified: ") && !printout.contains("border moves by one cell"), "{printout}");
+    assert!(!printout.contains("too coarse") && !printout.contains("without an interval"), "{printout}");
+    assert!(["all dock", "none docks", "retention"].iter().all(|word| printout.contains(word)), "{printout}");
+    let requested = [&how[..], &["--require", "certificate.undecided<=0"]].concat();
+    assert!(run(home.path(), &requested).contains("not met: certificate.undecided <= 0"));
 }
 
 #[test]
 fn slices_and_strips_belong_to_the_partition() {
     let home = home();
-    let said = run(home.path(), &["run", "v.toml", "--slices", "8"]);
+    let printout = run(home.path(), &["run", "v.toml", "--slices", "8"]);
     assert!(
-        said.starts_with("exit 2")
-            && said.contains("--slices is a setting of partition; confluence has none"),
-        "{said}"
+        printout.starts_with("exit 2")
+            && printout.contains("--slices is a setting of partition; confluence has none"),
+        "{printout}"
     );
-    let said = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);
-    assert!(said.starts_with("exit 2") && said.contains("strips must be at least 1"), "{said}");
+    let printout = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);
+    assert!(printout.starts_with("exit 2") && printout.contains("strips must be at least 1"), "{printout}");
 }
 
 /// Halves whose motions take long: random poses in the place of a grid, with pictures of them, and the next command.
@@ -312,19 +312,19 @@ fn slices_and_strips_belong_to_the_partition() {
 fn a_first_run_on_many_facets_answers_without_a_grid() {
     let home = home();
     fs::write(home.path().join("pins.toml"), "[connector]\nfamily = \"pin-hole\"\n").unwrap();
-    let said = run(home.path(), &["run", "pins.toml", "--samples", "20", "-o", "out"]);
-    assert!(said.starts_with("exit 0"), "{said}");
+    let printout = run(home.path(), &["run", "pins.toml", "--samples", "20", "-o", "out"]);
+    assert!(printout.starts_with("exit 0"), "{printout}");
     for words in [
         "of 20 random poses",
         "tolerance window",
         "single-axis limit",
         "; by 20 poses sampled in the error box",
     ] {
-        assert!(said.contains(words), "{words} is missing in\n{said}");
+        assert!(printout.contains(words), "{words} is missing in\n{printout}");
     }
     // The window stands above the Sum, and the next command last.
-    assert!(said.find("tolerance window") < said.find("AA (Sum)"), "{said}");
-    assert!(said.trim_end().ends_with("next: catchment report out -o page.html"), "{said}");
+    assert!(printout.find("tolerance window") < printout.find("AA (Sum)"), "{printout}");
+    assert!(printout.trim_end().ends_with("next: catchment report out -o page.html"), "{printout}");
     let written = entries(&home.path().join("out"));
     assert!(
         written.contains(&"sampled.png".to_owned()) && !written.contains(&"slices.png".to_owned()),

@@ -42,7 +42,7 @@ const PYRAMID: &str = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \
 
 /// Every file below a folder with its bytes.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let (mut found, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
+    let (mut result, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
             let path = entry.unwrap().path();
@@ -50,11 +50,11 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
                 open.push(path);
             } else {
                 let bytes = fs::read(&path).unwrap();
-                found.insert(path, bytes);
+                result.insert(path, bytes);
             }
         }
     }
-    found
+    result
 }
 
 /// A folder with what every case may use, and its own files.
@@ -90,17 +90,17 @@ fn faults(case: &Case, stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path) -> Vec<
     let time = started.elapsed();
     let stderr = String::from_utf8_lossy(&output.stderr);
     let words = stderr.split(|c: char| c.is_whitespace() || c == '│').filter(|word| !word.is_empty());
-    let said = words.collect::<Vec<_>>().join(" ");
+    let printout = words.collect::<Vec<_>>().join(" ");
     let coded = case.args[0] != "check" || has_codes(home.path(), &case.args);
     let mut faults = Vec::new();
     let mut hold = |holds: bool, fault: &str| {
         if !holds {
-            faults.push(format!("{}: {fault}: {said}", case.name));
+            faults.push(format!("{}: {fault}: {printout}", case.name));
         }
     };
     hold(output.status.code() == Some(case.exit), &format!("it ended with {}", output.status));
-    hold(said.contains(&case.says), &format!("it did not say `{}`", case.says));
-    hold(!said.contains("panicked") && !said.contains("a bug of the program"), "it panicked");
+    hold(printout.contains(&case.says), &format!("it did not say `{}`", case.says));
+    hold(!printout.contains("panicked") && !printout.contains("a bug of the program"), "it panicked");
     hold(!stderr.chars().any(|c| c.is_control() && c != '\n'), "a control character came through");
     hold(output.stdout.is_empty(), "something is on stdout");
     hold(contents(home.path()) == before, "something was written");

@@ -105,21 +105,22 @@ fn the_ring_closes_and_its_corners_are_ranked() {
 
 #[test]
 fn both_readings_of_the_block_latch_and_say_which_they_are() {
-    for (reading, pairs, said) in [("A", [[2, 5], [1, 6]], "reading A"), ("B", [[3, 6], [1, 6]], "reading B")]
+    for (reading, pairs, printout) in
+        [("A", [[2, 5], [1, 6]], "reading A"), ("B", [[3, 6], [1, 6]], "reading B")]
     {
         let home = with(&format!("[sequence]\nname = \"Block\"\nreading = \"{reading}\"\n"));
         let report = json(home.path(), &["chain", "c.toml", "--chains", "1", "--json"]);
         let folding = &report["folding"];
         assert!(folding["latched"] == true && number(&folding["off_lattice_mm"]) < 1.0, "{reading}");
-        let found: Vec<[u64; 2]> = folding["latches"]
+        let result: Vec<[u64; 2]> = folding["latches"]
             .as_array()
             .unwrap()
             .iter()
             .map(|l| ["from", "to"].map(|key| l["latch"][key].as_u64().unwrap()))
             .collect();
-        assert_eq!(found, pairs);
+        assert_eq!(result, pairs);
         let table = run(home.path(), &["chain", "c.toml", "--chains", "1"]);
-        assert!(table.contains(said) && table.contains("our reading"), "{table}");
+        assert!(table.contains(printout) && table.contains("our reading"), "{table}");
     }
 }
 

@@ -13,7 +13,7 @@ fn home() -> tempfile::TempDir {
     home
 }
 
-fn asked(folder: &Path, args: &[&str]) -> Value {
+fn json_of(folder: &Path, args: &[&str]) -> Value {
     json(folder, &[&["chance", "v.toml", "--free", "x", "--json"], args].concat())
 }
 
@@ -23,7 +23,7 @@ fn it_tells_the_closed_form_in_millimetres() {
     let home = home();
     let laws = ["--draw", "speed=5 mm/s", "--draw", "drift_x=0..200 mm/s", "--draw", "height=25 mm"];
     let args = [&laws[..], &["--pose", "x=15 mm", "--pose", "x=-15 mm", "--trials", "200"]].concat();
-    let report = asked(home.path(), &args);
+    let report = json_of(home.path(), &args);
     let ends = [0, 1].map(|k| report["poses"][0]["ci95"][k].as_f64().unwrap());
     assert!(ends[0] < 0.5 && 0.5 < ends[1], "{ends:?}");
     assert_eq!(
@@ -47,7 +47,7 @@ fn options_go_before_the_file_and_threads_change_nothing() {
     let threads = |n: &str| {
         let file = ["--dynamics", "l.toml", "--draw", "friction=0.1", "--poses", "p.csv", "--trials", "8"];
         let more = ["--error-sigma", "x=12.5 mm", "--overall", "100", "--times", "0.02,4", "--threads", n];
-        let mut report = asked(home.path(), &[&file[..], &more].concat());
+        let mut report = json_of(home.path(), &[&file[..], &more].concat());
         report["timing"] = Value::Null;
         report
     };

@@ -60,14 +60,14 @@ fn an_assembly_is_shown_as_it_was_understood() {
     insta::assert_snapshot!("assembled", run(&designs(), &["check", "pyramid-assembled.toml"]));
     let report = json(&designs(), &["check", "pyramid-assembled.toml", "--json"]);
     let face = report["drawing"]["fixed"]["face_center"].as_array().unwrap();
-    for (found, drawn) in face.iter().zip([120.0, 40.0, 15.0]) {
-        assert!((found.as_f64().unwrap() - drawn).abs() < 1e-6, "{report}");
+    for (result, drawn) in face.iter().zip([120.0, 40.0, 15.0]) {
+        assert!((result.as_f64().unwrap() - drawn).abs() < 1e-6, "{report}");
     }
     let dir = tempfile::tempdir().unwrap();
     let design = designs().join("pyramid-assembled.toml");
     for file in ["a.svg", "a.png"] {
-        let said = run(dir.path(), &["check", design.to_str().unwrap(), "-o", file]);
-        assert!(said.starts_with("exit 0\n"), "{said}");
+        let printout = run(dir.path(), &["check", design.to_str().unwrap(), "-o", file]);
+        assert!(printout.starts_with("exit 0\n"), "{printout}");
     }
     let svg = fs::read_to_string(dir.path().join("a.svg")).unwrap();
     assert!(svg.contains("pyramid from an assembly") && svg.contains("mated, cut along the approach"));
@@ -79,8 +79,8 @@ fn an_assembly_is_shown_as_it_was_understood() {
 fn a_design_with_problems_has_no_picture() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("design.toml"), SIX_PROBLEMS).unwrap();
-    let said = run(dir.path(), &["check", "design.toml", "-o", "a.svg"]);
-    assert!(said.starts_with("exit 4\n"), "{said}");
+    let printout = run(dir.path(), &["check", "design.toml", "-o", "a.svg"]);
+    assert!(printout.starts_with("exit 4\n"), "{printout}");
     assert!(!dir.path().join("a.svg").exists());
 }
 
@@ -92,13 +92,13 @@ fn halves_that_do_not_mate_are_drawn() {
     let text = format!(
         "[connector]\nunit = \"mm\"\nwidth = 40\ndrawn = \"assembled\"\n{bar}[alignment]\nfree = [\"x\"]\n"
     );
-    for (text, said, words) in [
+    for (text, printout, words) in [
         (text.clone(), "as drawn the halves are 14 mm apart", "at first contact, cut along the approach"),
         (text.replace("24]", "10]"), "the seat leaves x free: 4 mm off", "mated, cut along the approach"),
     ] {
         fs::write(dir.path().join("design.toml"), text).unwrap();
         let printed = run(dir.path(), &["check", "design.toml", "-o", "a.svg", "--force"]);
-        assert!(printed.starts_with("exit 4\n") && printed.contains(said), "{printed}");
+        assert!(printed.starts_with("exit 4\n") && printed.contains(printout), "{printed}");
         assert!(fs::read_to_string(dir.path().join("a.svg")).unwrap().contains(words));
     }
 }

@@ -16,9 +16,9 @@ fn closed_forms_come_out_of_the_program() {
     put("ring.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><path d=\"M0 0h3v3h-3zM1 1h1v1h-1z\"/></svg>");
     let area = |args: &[&str]| json(home.path(), args)["acceptance"]["area"].clone();
     assert_eq!(area(&["compose", "corner.csv", "square.csv", "--json"]), serde_json::json!([5.25, 5.25]));
-    let found = json(home.path(), &["compose", "ring.svg", "square.csv", "--json", "--frames", "world"]);
-    assert_eq!(found["acceptance"]["area"], serde_json::json!([12.0, 12.0]));
-    assert_eq!((&found["acceptance"]["holes"], &found["kind"]), (&1.into(), &"compose".into()));
+    let result = json(home.path(), &["compose", "ring.svg", "square.csv", "--json", "--frames", "world"]);
+    assert_eq!(result["acceptance"]["area"], serde_json::json!([12.0, 12.0]));
+    assert_eq!((&result["acceptance"]["holes"], &result["kind"]), (&1.into(), &"compose".into()));
     // Own frames need no reflection: the sum of the two as they are drawn.
     let own = json(home.path(), &["compose", "corner.csv", "square.csv", "--json"]);
     assert_eq!(own["acceptance"]["bounds"], serde_json::json!([[0.0, 0.0], [2.5, 2.5]]));
@@ -31,8 +31,8 @@ fn closed_forms_come_out_of_the_program() {
 fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
     let home = home();
     fs::write(home.path().join("disc.toml"), "[sweep]\nshape = \"disc\"\nradius = 50\n").unwrap();
-    let found = json(home.path(), &["compose", "disc.toml", "disc.toml", "--json"]);
-    let number = |pointer: &str| found.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
+    let result = json(home.path(), &["compose", "disc.toml", "disc.toml", "--json"]);
+    let number = |pointer: &str| result.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
     let exact = std::f64::consts::PI * 2500.0;
     let [least, most] = ["/overlap/largest", "/overlap/at_most"].map(number);
     assert!(least <= exact && exact <= most && most - least < 2e-3 * exact, "{least} {exact} {most}");
@@ -62,7 +62,7 @@ fn hook_and_loop_are_reported_drawn_and_read_again() {
     let both = ["compose", "hook.toml", "loop.toml", "--keep-out", "boat.toml,boat.toml"];
     let printed = run(home.path(), &both);
     assert!(
-        printed.starts_with("exit 0\n") && printed.contains("hook and loop: where they meet"),
+        printed.starts_with("exit 0\n") && printed.contains("hook and loop: approach region"),
         "{printed}"
     );
     assert!(
@@ -70,11 +70,11 @@ fn hook_and_loop_are_reported_drawn_and_read_again() {
         "{printed}"
     );
     let with = |more: &[&'static str]| -> Vec<&'static str> { [&both[..], more].concat() };
-    let found = json(home.path(), &with(&["--heading", "-20..20 deg", "--headings", "5", "--json"]));
-    assert_eq!(found["slices"].as_array().unwrap().len(), 5);
-    assert_eq!(found["heading_rad"], 0.0);
-    assert!(found["volume"][0].as_f64().unwrap() > 0.0);
-    for (name, outline) in [("a.png", false), ("a.svg", false), ("b.csv", true), ("b.svg", true)] {
+    let result = json(home.path(), &with(&["--heading", "-20..20 deg", "--headings", "5", "--json"]));
+    assert_eq!(result["slices"].as_array().unwrap().len(), 5);
+    assert_eq!(result["heading_rad"], 0.0);
+    assert!(result["volume"][0].as_f64().unwrap() > 0.0);
+    for (name, outline) in [("a.png", false), ("b.csv", true), ("b.svg", true)] {
         let mut args = with(&["-o", name]);
         if outline {
             args.push("--outline");
@@ -107,9 +107,9 @@ fn two_connectors_add_up() {
     for name in ["pyramid.toml", "x-face-3d.toml"] {
         fs::copy(designs().join(name), home.path().join(name)).unwrap();
     }
-    let found = json(home.path(), &["compose", "pyramid.toml", "x-face-3d.toml", "--json"]);
-    let sum = found["acceptance"]["area"][0].as_f64().unwrap();
-    assert!((sum - 7.0).abs() < 1e-7 && found["unit"] == "D", "{sum}");
+    let result = json(home.path(), &["compose", "pyramid.toml", "x-face-3d.toml", "--json"]);
+    let sum = result["acceptance"]["area"][0].as_f64().unwrap();
+    assert!((sum - 7.0).abs() < 1e-7 && result["unit"] == "D", "{sum}");
 }
 
 #[test]

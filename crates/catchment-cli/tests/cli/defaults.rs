@@ -20,7 +20,7 @@ fn with(home: &Path, variables: &[(&str, &str)], args: &[&str]) -> Output {
     command.args(args).output().unwrap()
 }
 
-fn said(output: &Output) -> (Option<i32>, String, String) {
+fn printout(output: &Output) -> (Option<i32>, String, String) {
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     (output.status.code(), text(&output.stdout), text(&output.stderr))
 }
@@ -49,29 +49,29 @@ fn the_folder_of_the_specification_precedes_that_of_the_home() {
     fs::create_dir(other.path().join("catchment")).unwrap();
     fs::write(other.path().join("catchment/config.toml"), "color = \"pink\"").unwrap();
     let xdg = [("XDG_CONFIG_HOME", other.path().to_str().unwrap())];
-    let (code, _, stderr) = said(&with(home.path(), &xdg, &["check", "v.toml"]));
+    let (code, _, stderr) = printout(&with(home.path(), &xdg, &["check", "v.toml"]));
     assert!(code == Some(2) && stderr.contains("catchment/config.toml:1:"), "{stderr}");
     // A file that is not there sets nothing.
     fs::remove_file(other.path().join("catchment/config.toml")).unwrap();
-    assert_eq!(said(&with(home.path(), &xdg, &["check", "v.toml"])).0, Some(0));
+    assert_eq!(printout(&with(home.path(), &xdg, &["check", "v.toml"])).0, Some(0));
 }
 
 #[test]
 fn memory_has_a_default() {
     let home = home_with("memory = \"1 kB\"");
     let args = ["run", "v.toml", "--resolution", "100"];
-    let (code, _, stderr) = said(&with(home.path(), &[], &args));
+    let (code, _, stderr) = printout(&with(home.path(), &[], &args));
     assert!(code != Some(0) && stderr.contains("--memory"), "{stderr}");
     let larger = [&args[..], &["--memory", "1 GiB"]].concat();
-    assert_eq!(said(&with(home.path(), &[], &larger)).0, Some(0));
-    assert_eq!(said(&with(home.path(), &[("CATCHMENT_MEMORY", "1 GiB")], &args)).0, Some(0));
+    assert_eq!(printout(&with(home.path(), &[], &larger)).0, Some(0));
+    assert_eq!(printout(&with(home.path(), &[("CATCHMENT_MEMORY", "1 GiB")], &args)).0, Some(0));
 }
 
 #[test]
 fn colours_have_a_default() {
     let home = home_with("color = \"always\"");
     let coloured = |variables: &[(&str, &str)], args: &[&str]| {
-        let (_, stdout, stderr) = said(&with(home.path(), variables, args));
+        let (_, stdout, stderr) = printout(&with(home.path(), variables, args));
         (stdout.contains('\u{1b}'), stderr.contains('\u{1b}'))
     };
     let (good, bad) = (["check", "v.toml"], ["check", "none.toml"]);
@@ -93,7 +93,11 @@ fn raw_files_have_a_default_unit() {
     let meshes = designs().join("meshes");
     let [socket, plug] = ["socket.stl", "plug.stl"].map(|name| meshes.join(name).display().to_string());
     let place = |variables: &[(&str, &str)], more: &[&str]| {
-        said(&with(home.path(), variables, &[&["place", &socket, &plug], more].concat()))
+        printout(&with(
+            home.path(),
+            variables,
+            &[&["place", &socket, &plug, "--facing-fixed=+z", "--facing-moving=+z"], more].concat(),
+        ))
     };
     let (code, design, stderr) = place(&[], &[]);
     assert_eq!(code, Some(0), "{stderr}");
@@ -117,22 +121,22 @@ fn a_bad_default_is_refused_with_its_source() {
         ("CATCHMENT_COLOR", "pink", "auto, always or never"),
     ] {
         // Whatever the command does with it.
-        let (code, stdout, stderr) = said(&with(plain.path(), &[(name, value)], &["schema"]));
+        let (code, stdout, stderr) = printout(&with(plain.path(), &[(name, value)], &["schema"]));
         assert!(code == Some(2) && stdout.is_empty(), "{name}");
         assert!(stderr.contains(&format!("{name}=\"{value}\"")) && stderr.contains(why), "{stderr}");
     }
     let wrong = home_with("threads = 4\nthread = 2\nmemory = \"much\"\n");
-    let (code, stdout, stderr) = said(&with(wrong.path(), &[], &["schema"]));
+    let (code, stdout, stderr) = printout(&with(wrong.path(), &[], &["schema"]));
     assert!(code == Some(2) && stdout.is_empty(), "{stderr}");
     for part in ["config.toml:2:1", "did you mean `threads`?", "config.toml:3:10", "2 problems in"] {
         assert!(stderr.contains(part), "{part}: {stderr}");
     }
     // Help is there all the same.
-    let (code, stdout, _) = said(&with(wrong.path(), &[], &["--help"]));
+    let (code, stdout, _) = printout(&with(wrong.path(), &[], &["--help"]));
     assert!(code == Some(0) && stdout.contains("CATCHMENT_THREADS"));
     // No terminal is steered.
     let steering = home_with("\"a\\u001b[2J\" = 1\n");
-    let (_, _, stderr) = said(&with(steering.path(), &[("CATCHMENT_COLOR", "never")], &["schema"]));
+    let (_, _, stderr) = printout(&with(steering.path(), &[("CATCHMENT_COLOR", "never")], &["schema"]));
     assert!(!stderr.contains('\u{1b}'), "{stderr:?}");
 }
 
@@ -140,10 +144,10 @@ fn a_bad_default_is_refused_with_its_source() {
 #[test]
 fn no_default_changes_a_result() {
     let wrong = home_with("samples = 10\nbudget = \"1s\"\nseed = 2\nmethod = \"flood\"\n");
-    let (code, _, stderr) = said(&with(wrong.path(), &[], &["schema"]));
+    let (code, _, stderr) = printout(&with(wrong.path(), &[], &["schema"]));
     assert!(code == Some(2) && stderr.contains("4 problems in"), "{stderr}");
     let home = home_with("threads = 1\nmemory = \"1 GiB\"\nunit = \"in\"\ncolor = \"never\"\n");
     let args = ["run", "v.toml", "--resolution", "8", "--samples", "100"];
-    let (_, by_defaults, _) = said(&with(home.path(), &[], &args));
+    let (_, by_defaults, _) = printout(&with(home.path(), &[], &args));
     assert!(run(home.path(), &args).contains(&by_defaults));
 }

@@ -49,7 +49,7 @@ fn home() -> tempfile::TempDir {
     home
 }
 
-fn said(home: &Path, args: &[&str]) -> (Option<i32>, String) {
+fn printout(home: &Path, args: &[&str]) -> (Option<i32>, String) {
     let args = args.iter().map(|arg| arg.replace('@', NAME));
     let output = catchment(home).args(args).output().unwrap();
     let text =
@@ -117,7 +117,7 @@ fn names_that_steer_a_terminal_reach_none() {
         vec!["reproduce", "2.1", "-o", "@tables"],
     ];
     for args in good {
-        let (code, text) = said(home.path(), &args);
+        let (code, text) = printout(home.path(), &args);
         assert_eq!(code, Some(0), "{args:?}: {text}");
         assert!(!steers(&text), "{args:?}: {text:?}");
     }
@@ -165,7 +165,7 @@ fn names_in_what_is_refused_reach_none_either() {
         &["sweep", "@.toml", "--over", "@=1"],
     ];
     for args in bad {
-        let (code, text) = said(home.path(), args);
+        let (code, text) = printout(home.path(), args);
         assert!(matches!(code, Some(2..=4)), "{args:?}: {code:?}, {text}");
         assert!(!text.is_empty() && !steers(&text), "{args:?}: {text:?}");
     }
@@ -233,8 +233,8 @@ fn a_name_begins_no_line() {
 #[test]
 fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
     let home = home();
-    said(home.path(), &["run", "@.toml", "--method", "flood", "--resolution", "5", "-o", "out"]);
-    said(home.path(), &["export", "@.toml", "--pose", "x=0.1", "-o", "trial"]);
+    printout(home.path(), &["run", "@.toml", "--method", "flood", "--resolution", "5", "-o", "out"]);
+    printout(home.path(), &["export", "@.toml", "--pose", "x=0.1", "-o", "trial"]);
     let mut seen = 0;
     for folder in ["out", "trial"] {
         for name in entries(&home.path().join(folder)) {

@@ -26,12 +26,12 @@ fn what_cannot_be_reached_is_said_with_its_place() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
     fs::copy(designs().join("systems/wanted-bowl.csv"), home.path().join("w.csv")).unwrap();
-    let found = json(home.path(), &["invert", "p.toml", "--heights", "w.csv", "-o", "q.toml", "--json"]);
-    assert_eq!(found["kind"], "invert");
-    let most = found["most_unattained_d"].as_f64().unwrap();
-    assert_eq!(found["attained"], most == 0.0);
+    let result = json(home.path(), &["invert", "p.toml", "--heights", "w.csv", "-o", "q.toml", "--json"]);
+    assert_eq!(result["kind"], "invert");
+    let most = result["most_unattained_d"].as_f64().unwrap();
+    assert_eq!(result["attained"], most == 0.0);
     // A bowl of slope 0.6 in a socket of slope 1: away from the middle the sides of the socket carry more than is wanted.
-    assert!(most > 0.01 && !found["unattained"][0]["polygon"].as_array().unwrap().is_empty(), "{most}");
+    assert!(most > 0.01 && !result["unattained"][0]["polygon"].as_array().unwrap().is_empty(), "{most}");
     let ran = run(home.path(), &["check", "q.toml"]);
     assert!(ran.starts_with("exit "), "{ran}");
 }
@@ -104,11 +104,14 @@ fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
     fs::copy(designs().join("systems/wanted-bowl.csv"), home.path().join("w.csv")).unwrap();
-    let asked =
+    let requested =
         ["invert", "p.toml", "--heights", "w.csv", "--pitch", "-10..10 deg/3", "--yaw", "0,20 deg", "--json"];
-    let found = json(home.path(), &asked);
-    assert_eq!((found["turns"].as_u64(), found["settings"]["pitch"].as_array().unwrap().len()), (Some(5), 3));
-    let between = &found["between"];
+    let result = json(home.path(), &requested);
+    assert_eq!(
+        (result["turns"].as_u64(), result["settings"]["pitch"].as_array().unwrap().len()),
+        (Some(5), 3)
+    );
+    let between = &result["between"];
     // Half of 10° and half of 20°.
     assert!((between["turn_rad"].as_f64().unwrap() - 15f64.to_radians()).abs() < 1e-9, "{between}");
     assert_eq!(between["midway"], 2);
@@ -117,7 +120,7 @@ fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
     assert!(printed.contains("nowhere higher than wanted at 2 rotations midway"), "{printed}");
     // One place is told once.
     let places: Vec<&serde_json::Value> =
-        found["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();
+        result["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();
     for (k, place) in places.iter().enumerate() {
         assert!(!places[..k].contains(place), "{place} is told twice");
     }

@@ -88,7 +88,7 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
     fs::write(home.path().join("two.toml"), robot.to_owned() + &robot.replace("arm", "other")).unwrap();
     let refused = run(home.path(), &["jams", "v.toml", "--robots", "two.toml"]);
     assert!(
-        refused.starts_with("exit 2") && refused.contains("has 2 robots, and one is asked about"),
+        refused.starts_with("exit 2") && refused.contains("has 2 robots, and this command takes one"),
         "{refused}"
     );
     let code = catchment(home.path())
@@ -108,7 +108,7 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
     let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "-o", "jams.json"];
     let printed = run(home.path(), &args);
-    assert!(printed.contains("  neighbours     held by friction alone;"), "{printed}");
+    assert!(printed.contains("  if displaced   held by friction alone;"), "{printed}");
     assert!(!printed.contains("ridge") && printed.contains("  friction       may stick from"), "{printed}");
     let words: Vec<&str> = printed.split_whitespace().collect();
     assert!(words.join(" ").contains("write symmetry = 4 in the design to count it as docked"), "{printed}");
@@ -122,28 +122,29 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
         let sticks = &jam["examined"]["sticks"];
         Some([sticks["holds_from"].as_f64()?, sticks["slips_until"].as_f64()?])
     };
-    let found: Vec<[f64; 2]> = jams.iter().filter_map(thresholds).collect();
+    let result: Vec<[f64; 2]> = jams.iter().filter_map(thresholds).collect();
     // Turned by a quarter it lies flush, and contacts alone hold it.
     assert_eq!(thresholds(turned), Some([0.0; 2]));
-    let on_the_way = found.iter().filter(|[holds, _]| *holds > 0.0);
-    assert!(on_the_way.clone().count() >= 3, "{found:?}");
-    assert!(on_the_way.clone().all(|[holds, slips]| holds <= slips && *holds <= 0.5), "{found:?}");
+    let on_the_way = result.iter().filter(|[holds, _]| *holds > 0.0);
+    assert!(on_the_way.clone().count() >= 3, "{result:?}");
+    assert!(on_the_way.clone().all(|[holds, slips]| holds <= slips && *holds <= 0.5), "{result:?}");
 }
 
 /// What `run` says of jams is what `jams` says of as many poses.
 #[test]
 fn a_run_tells_of_jams_what_the_command_does() {
     let home = home();
-    let asked = ["run", "v.toml", "--resolution", "9", "--seed", "7", "--error-sigma", "x=10 mm", "--jams"];
-    let found = json(home.path(), &[&asked[..], &["--json", "-o", "out"]].concat());
+    let requested =
+        ["run", "v.toml", "--resolution", "9", "--seed", "7", "--error-sigma", "x=10 mm", "--jams"];
+    let result = json(home.path(), &[&requested[..], &["--json", "-o", "out"]].concat());
     let alone = json(home.path(), &["jams", "v.toml", "--seed", "7", "--error-sigma", "x=10 mm", "--json"]);
-    let printed = found["jams"].as_object().unwrap();
+    let printed = result["jams"].as_object().unwrap();
     for (key, value) in printed {
         assert_eq!(*value, alone[key], "{key}");
     }
     assert!(printed["jams"][0]["of_box"]["count"].as_u64().unwrap() > 100);
     assert!(home.path().join("out/jams.png").exists());
-    let text = run(home.path(), &asked);
+    let text = run(home.path(), &requested);
     assert!(text.contains("\n  jam 1 ") && text.contains("of the fixed one"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     let code = |require: &str| {

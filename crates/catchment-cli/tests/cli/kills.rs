@@ -27,7 +27,7 @@ fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
     let Ok(text) = fs::read(path.join(".catchment.json")) else { return false };
     let manifest: serde_json::Value = serde_json::from_slice(&text).unwrap();
     let listed: BTreeMap<String, String> = serde_json::from_value(manifest["files"].clone()).unwrap();
-    let mut found = BTreeMap::new();
+    let mut result = BTreeMap::new();
     let mut open = vec![path.to_owned()];
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(folder).unwrap() {
@@ -37,12 +37,12 @@ fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
             } else {
                 let name = inner.strip_prefix(path).unwrap().to_str().unwrap().to_owned();
                 let content = catchment::design::MeshContent::of(&fs::read(&inner).unwrap(), 0);
-                found.insert(name, content.sha256);
+                result.insert(name, content.sha256);
             }
         }
     }
-    found.remove(".catchment.json");
-    found == listed
+    result.remove(".catchment.json");
+    result == listed
 }
 
 /// A small generator (splitmix64): the same moments every time.
@@ -70,10 +70,11 @@ struct Both {
 impl Both {
     fn of(writer: Writer) -> Self {
         let home = furnished(&writer);
-        let name = writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap();
+        let words = writer.words(0);
+        let name = words.iter().find(|word| word.starts_with(TARGET)).unwrap();
         let target = home.path().join(name);
         let mut expected = entries(home.path());
-        expected.push((*name).to_owned());
+        expected.push(name.clone());
         expected.sort();
         let mut both = Self { writer, home, target, files: Vec::new(), expected, lasts: Duration::MAX };
         for version in 0..2 {
@@ -89,7 +90,7 @@ impl Both {
 
     /// Writes a version to its end.
     fn finish(&self, version: usize) {
-        let output = catchment(self.home.path()).args(self.writer.versions[version]).output().unwrap();
+        let output = catchment(self.home.path()).args(self.writer.words(version)).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     }
 
@@ -109,11 +110,11 @@ fn killed_at_any_moment_old_or_new_is_there() {
         let both = Both::of(writer);
         let Both { writer, home, target, expected, lasts, .. } = &both;
         for number in 0..wanted.div_ceil(WRITERS.len()) {
-            let case = format!("{}, kill {number}", writer.name);
+            let case = format!("{}, kill {number}", writer.0);
             let before =
                 fs::read_dir(target).is_ok().then(|| fs::read(target.join(".catchment.json")).unwrap());
             let mut child = catchment(home.path())
-                .args(writer.versions[number % 2])
+                .args(writer.words(number % 2))
                 .stdout(Stdio::null())
                 .stderr(Stdio::null())
                 .spawn()
@@ -157,7 +158,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
 #[test]
 fn refused_memory_at_any_request_old_or_new_is_there() {
     let thorough = std::env::var("CATCHMENT_KILLS").is_ok();
-    let factor = if thorough { 1.2 } else { 20.0 };
+    let factor = if thorough { 1.2 } else { 40.0 };
     let (mut refused, mut left) = (0, 0);
     for writer in WRITERS {
         let both = Both::of(writer);
@@ -166,18 +167,18 @@ fn refused_memory_at_any_request_old_or_new_is_there() {
         let mut request = 100.0;
         for number in 0.. {
             let wish = format!("{:.0}{}", request, if number % 2 == 0 { "" } else { ".." });
-            let case = format!("{}, request {wish}", writer.name);
+            let case = format!("{}, request {wish}", writer.0);
             let output = catchment(home.path())
-                .args(writer.versions[number % 2])
+                .args(writer.words(number % 2))
                 .env("CATCHMENT_REFUSED_REQUEST", wish)
                 .output()
                 .unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
+            let printout = String::from_utf8_lossy(&output.stderr);
             if output.status.success() {
                 break;
             }
-            assert_eq!(output.status.code(), Some(5), "{case}: {}, {said}", output.status);
-            assert!(said.contains("out of memory: the system refused"), "{case}: {said}");
+            assert_eq!(output.status.code(), Some(5), "{case}: {}, {printout}", output.status);
+            assert!(printout.contains("out of memory: the system refused"), "{case}: {printout}");
             assert!(both.is_one_of_them(), "{case}: lost or mixed");
             refused += 1;
             left += usize::from(entries(home.path()) != *expected);
@@ -254,11 +255,11 @@ fn the_dearest_steps_listen() {
         .spawn()
         .unwrap();
     std::thread::sleep(Duration::from_secs(2));
-    let asked = Instant::now();
+    let requested = Instant::now();
     let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(143), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(asked.elapsed() < Duration::from_secs(20), "{:?}", asked.elapsed());
+    assert!(requested.elapsed() < Duration::from_secs(20), "{:?}", requested.elapsed());
     assert_eq!(entries(home.path()), ["p.toml", "v.toml"]);
 }
 

@@ -20,8 +20,8 @@ fn the_defaults_are_the_dissertations_part() {
         (Some("latch"), Some(0))
     );
     let near = |pointer: &str, value: f64, by: f64| {
-        let found = report.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
-        assert!((found - value).abs() < by, "{pointer} is {found}, not {value}");
+        let result = report.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
+        assert!((result - value).abs() < by, "{pointer} is {result}, not {value}");
     };
     near("/stiffness_nm_per_rad", 5.0006, 5e-5);
     near("/latching/force_n", 13.35, 0.01);

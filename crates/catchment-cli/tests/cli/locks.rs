@@ -18,7 +18,7 @@ fn exported() -> tempfile::TempDir {
 }
 
 /// What was said on stderr, without its frames.
-fn said(output: &Output) -> String {
+fn printout(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr);
     text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
 }
@@ -65,11 +65,11 @@ fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
     let home = exported();
     let keeper = Keeper::of(home.path());
     let output = catchment(home.path()).args(EXPORT).output().unwrap();
-    let (said, other) = (said(&output), keeper.0.id());
-    assert_eq!(output.status.code(), Some(5), "{said}");
-    assert!(said.contains(&format!("cannot write out: process {other} (")), "{said}");
-    assert!(said.contains("has kept the folder locked for 5 s"), "{said}");
-    assert!(said.contains(&format!("end it (kill {other}), or choose another folder")), "{said}");
+    let (printout, other) = (printout(&output), keeper.0.id());
+    assert_eq!(output.status.code(), Some(5), "{printout}");
+    assert!(printout.contains(&format!("cannot write out: process {other} (")), "{printout}");
+    assert!(printout.contains("has kept the folder locked for 5 s"), "{printout}");
+    assert!(printout.contains(&format!("end it (kill {other}), or choose another folder")), "{printout}");
     drop(keeper);
     assert_eq!(catchment(home.path()).args(EXPORT).status().unwrap().code(), Some(0));
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
@@ -88,10 +88,13 @@ fn a_program_that_was_started_with_the_lock_says_so() {
             .env("NO_COLOR", "1")
             .output()
             .unwrap();
-        let said = said(&output);
-        assert_eq!(output.status.code(), Some(5), "{said}");
-        assert!(said.contains("(flock), which started this program, keeps the folder locked"), "{said}");
-        assert!(said.contains("lock a file beside the folder"), "{said}");
+        let printout = printout(&output);
+        assert_eq!(output.status.code(), Some(5), "{printout}");
+        assert!(
+            printout.contains("(flock), which started this program, keeps the folder locked"),
+            "{printout}"
+        );
+        assert!(printout.contains("lock a file beside the folder"), "{printout}");
     }
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
 }
@@ -107,7 +110,7 @@ fn ended_by(home: &Path, signal: &str) -> Option<i32> {
     let output = child.wait_with_output().unwrap();
     // Where the machine stood still for longer than a lock is waited for, the program was faster than the signal.
     let code = output.status.code().filter(|code| *code != 2)?;
-    assert!(said(&output).contains("interrupted; nothing was written"), "{}", said(&output));
+    assert!(printout(&output).contains("interrupted; nothing was written"), "{}", printout(&output));
     Some(code)
 }
 

@@ -35,7 +35,7 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Asserts that checking and computing refuse the folder with `said`, once, and leave nothing behind.
-fn refused(name: &str, spoil: impl Fn(&Path), said: &str) {
+fn refused(name: &str, spoil: impl Fn(&Path), printout: &str) {
     let dir = folder(spoil);
     fs::write(dir.path().join("poses.csv"), "x\n0.1\n").unwrap();
     let commands: [&[&str]; 5] = [
@@ -51,7 +51,7 @@ fn refused(name: &str, spoil: impl Fn(&Path), said: &str) {
         // Long lines are broken between words.
         let words = report.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
         assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{name}: {report}");
-        assert_eq!(words.matches(said).count(), 1, "{name}: {words}");
+        assert_eq!(words.matches(printout).count(), 1, "{name}: {words}");
         assert_eq!(words.matches('×').count(), 1, "{name}: more than one message: {report}");
     }
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 4, "{name}");
@@ -166,9 +166,9 @@ fn spoil(bytes: &mut Vec<u8>) {
 fn a_spoilt_mesh_is_repaired_and_reported() {
     let (sound, spoilt) = (folder(|_| ()), folder(plug(spoil)));
     let done = "1 triangle without area removed, 1 duplicate triangle removed, 1 triangle flipped; its shape is unchanged";
-    let said = run(spoilt.path(), &["check", "design.toml"]);
-    let words: Vec<&str> = said.split_whitespace().collect();
-    assert!(said.starts_with("exit 0") && words.join(" ").contains(done), "{said}");
+    let printout = run(spoilt.path(), &["check", "design.toml"]);
+    let words: Vec<&str> = printout.split_whitespace().collect();
+    assert!(printout.starts_with("exit 0") && words.join(" ").contains(done), "{printout}");
     assert!(!run(sound.path(), &["check", "design.toml"]).contains("removed"));
     let json = run(spoilt.path(), &["check", "design.toml", "--json"]);
     let json: String = json.split_whitespace().collect();
@@ -189,8 +189,11 @@ fn a_spoilt_mesh_is_repaired_and_reported() {
         DESIGN.replace("plug.stl\",", "plug.stl\", repair = false,"),
     )
     .unwrap();
-    let said = run(spoilt.path(), &["check", "design.toml"]);
-    assert!(said.starts_with("exit 4") && said.contains("has no area") && said.contains(" mm"), "{said}");
+    let printout = run(spoilt.path(), &["check", "design.toml"]);
+    assert!(
+        printout.starts_with("exit 4") && printout.contains("has no area") && printout.contains(" mm"),
+        "{printout}"
+    );
 }
 
 #[test]
@@ -198,6 +201,6 @@ fn a_simplified_mesh_says_how_far_it_moved() {
     let dir = folder(|_| ());
     let design = DESIGN.replace("plug.stl\",", "plug.stl\", simplify = \"0.01 mm\",");
     fs::write(dir.path().join("design.toml"), design).unwrap();
-    let said = run(dir.path(), &["check", "design.toml"]);
-    assert!(said.starts_with("exit 0") && said.contains("triangles simplified to"), "{said}");
+    let printout = run(dir.path(), &["check", "design.toml"]);
+    assert!(printout.starts_with("exit 0") && printout.contains("triangles simplified to"), "{printout}");
 }

@@ -164,8 +164,8 @@ fn requirements_files_and_pictures() {
     assert_eq!(with(&["--figure", "p.svg"]).status.code(), Some(0));
     // --force is for pictures, too.
     let again = with(&["--figure", "p.svg"]);
-    let said = String::from_utf8(again.stderr).unwrap();
-    assert!(again.status.code() == Some(2) && said.contains("--force replaces it"), "{said}");
+    let printout = String::from_utf8(again.stderr).unwrap();
+    assert!(again.status.code() == Some(2) && printout.contains("--force replaces it"), "{printout}");
     assert_eq!(with(&["--figure", "p.svg", "--force"]).status.code(), Some(0));
     assert_eq!(with(&["--figure", "p.svg", "-o", "p.json", "--force"]).status.code(), Some(0));
     assert_eq!(with(&["--force"]).status.code(), Some(2));

@@ -67,11 +67,14 @@ fn with_friction_a_column_says_what_may_have_stuck() {
         assert_eq!(output.status.code(), Some(0));
         (output.stdout, String::from_utf8(output.stderr).unwrap())
     };
-    let (csv, said) = table("0.59", &[]);
+    let (csv, printout) = table("0.59", &[]);
     let rows = cells(&csv);
     let column = rows[0].iter().position(|name| name == "may_stick").unwrap();
     assert_eq!((rows[1][2].as_str(), rows[1][column].as_str()), ("aligned", "yes"));
-    assert!(said.contains("came by a place where Coulomb's law would let them stick as well"), "{said}");
+    assert!(
+        printout.contains("came by a place where Coulomb's law would let them stick as well"),
+        "{printout}"
+    );
     let report: serde_json::Value = serde_json::from_slice(&table("0.59", &["--json"]).0).unwrap();
     assert_eq!(report["poses"][0]["may_stick"], true);
     assert_eq!(cells(&table("0.5", &[]).0)[1][column], "no");
@@ -106,7 +109,7 @@ fn everything_that_is_wrong_with_a_table_at_once() {
     insta::assert_snapshot!("outcome_bad_rows", report(&["--free", "x,yaw"]));
     fs::write(dir.path().join("poses.csv"), "0.1,0.2\n0.3,0.4\n").unwrap();
     insta::assert_snapshot!("outcome_no_header", report(&[]));
-    for (content, said) in [
+    for (content, printout) in [
         (&b""[..], "the table is empty"),
         (b"x,pitch\n", "the table has no rows"),
         (b"x;pitch\n0,1;0,2\n", "separate the columns with commas"),
@@ -114,7 +117,10 @@ fn everything_that_is_wrong_with_a_table_at_once() {
     ] {
         fs::write(dir.path().join("poses.csv"), content).unwrap();
         let report = report(&[]);
-        assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n") && report.contains(said), "{report}");
+        assert!(
+            report.starts_with("exit 4\n--- stdout\n--- stderr\n") && report.contains(printout),
+            "{report}"
+        );
     }
     // A file of holes takes no room; it is refused after the limit, not after its end.
     fs::File::create(dir.path().join("poses.csv")).unwrap().set_len(8 << 30).unwrap();
@@ -319,11 +325,11 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
         writeln!(table, "p{k},{x},{}", 0.3 - x).unwrap();
     }
     fs::write(home.path().join("poses.csv"), &table).unwrap();
-    let said = |output: &std::process::Output| String::from_utf8(output.stderr.clone()).unwrap();
+    let printout = |output: &std::process::Output| String::from_utf8(output.stderr.clone()).unwrap();
 
     // Into a file: not at its place, but beside it.
     let output = interrupted(home.path(), &["-o", "out.csv"], "-INT");
-    let stderr = said(&output);
+    let stderr = printout(&output);
     assert_eq!(output.status.code(), Some(130), "{stderr}");
     assert!(stderr.starts_with("interrupted\nwarning: partial: "), "{stderr}");
     assert!(stderr.ends_with("they are in out.csv.partial\n"), "{stderr}");
@@ -348,7 +354,7 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
 
     // Printed, as JSON: it says so itself.
     let output = interrupted(home.path(), &["--json"], "-TERM");
-    assert_eq!(output.status.code(), Some(143), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(143), "{}", printout(&output));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let poses = report["poses"].as_array().unwrap();
     assert_eq!(report["missing"], POSES - poses.len());

@@ -30,17 +30,17 @@ fn placed(more: &[&str]) -> tempfile::TempDir {
 #[test]
 fn a_grid_cup_docks_within_its_closed_form() {
     let home = placed(&["--free=x,y,yaw"]);
-    let found = json(home.path(), &["run", "d.toml", "--json"]);
-    let limits = found["tolerances"].as_array().unwrap();
+    let result = json(home.path(), &["run", "d.toml", "--json"]);
+    let limits = result["tolerances"].as_array().unwrap();
     let x = limits.iter().find(|one| one["axis"] == "x").unwrap();
     for side in ["minus", "plus"] {
         let limit = 41.5 * x[side].as_f64().unwrap();
         assert!((limit - 3.2).abs() < 0.16, "{x}");
     }
-    let accepted = &found["acceptance"];
+    let accepted = &result["acceptance"];
     let [lo, hi] = [0, 1].map(|k| accepted["sum_ci95"][k].as_f64().unwrap());
     assert!((lo..=hi).contains(&accepted["sum_grid"].as_f64().unwrap()) && lo > 0.0, "{accepted}");
-    assert!(!found.to_string().contains("too coarse"), "{found}");
+    assert!(!result.to_string().contains("too coarse"), "{result}");
 }
 
 /// In the error box of five free errors what docks with three is smaller than a cell: random poses answer, and it is said how to see more.
@@ -91,17 +91,19 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
         run(home.path(), &["place", "socket.obj", "plug.obj", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]);
     assert!(
         printed.starts_with("exit 0")
-            && printed.contains("fixed part faces -y+z, moving part +y+z in its file"),
+            && printed.contains(
+                "the fixed half's face looks along -y+z, the moving half's along +y+z, each in its file"
+            ),
         "{printed}"
     );
-    let found = json(home.path(), &["run", "d.toml", "--samples=200", "--json"]);
+    let result = json(home.path(), &["run", "d.toml", "--samples=200", "--json"]);
     let limit = |axis: &str| {
-        let all = found["tolerances"].as_array().unwrap();
+        let all = result["tolerances"].as_array().unwrap();
         all.iter().find(|one| one["axis"] == axis).unwrap()["plus"].as_f64().unwrap()
     };
     // D is 11.4 mm, twice the half width of the plug at the mouth of the hole.
-    assert!((limit("x") * 11.4 - 1.0).abs() < 0.01, "{found}");
-    assert!((limit("yaw").to_degrees() - 13.05).abs() < 0.1, "{found}");
+    assert!((limit("x") * 11.4 - 1.0).abs() < 0.01, "{result}");
+    assert!((limit("yaw").to_degrees() - 13.05).abs() < 0.1, "{result}");
 }
 
 /// Files in metres: the design and every answer are in millimetres. The grid cup again, a thousandth as large in its files.

@@ -58,10 +58,10 @@ fn the_picture_of_five_dimensions_shows_the_sum_of_its_table() {
     let home = home();
     let pyramid = designs().join("pyramid.toml");
     let args = ["run", pyramid.to_str().unwrap(), "--resolution", "6", "--samples", "300", "-o", "out"];
-    let said = run(home.path(), &args);
-    assert!(said.starts_with("exit 0"), "{said}");
+    let printout = run(home.path(), &args);
+    assert!(printout.starts_with("exit 0"), "{printout}");
     // `  AA (Sum)       12.59 D²·rad³ (95 % CI 12.36 … 12.82)`; the picture has half of the interval: `12.59 ± 0.23`.
-    let line = said.lines().find(|line| line.trim_start().starts_with("AA (Sum) ")).unwrap();
+    let line = printout.lines().find(|line| line.trim_start().starts_with("AA (Sum) ")).unwrap();
     let sum = line.trim_start().trim_start_matches("AA (Sum)").trim_start();
     assert!(sum.contains(" (95 % CI "), "{line}");
     let sum = &format!("Sum {} ± ", sum.split(' ').next().unwrap());
@@ -92,11 +92,14 @@ fn a_setting_of_another_method_is_named_with_its_owner() {
         (["--method", "descent", "--depth-tolerance", "0.1"], "flood"),
         (["--method", "flood", "--friction", "0.1"], "confluence"),
     ] {
-        let said = run(home.path(), &[&["run", "v.toml"], &args[..]].concat());
-        assert!(said.starts_with("exit 2") && said.contains(&format!("--method {owner}")), "{said}");
+        let printout = run(home.path(), &[&["run", "v.toml"], &args[..]].concat());
+        assert!(
+            printout.starts_with("exit 2") && printout.contains(&format!("--method {owner}")),
+            "{printout}"
+        );
     }
-    let said = run(home.path(), &["outcome", "v.toml", "--poses", "-", "--restitution", "0.1"]);
-    assert!(said.contains("--restitution is a setting of drop; descent has none"), "{said}");
+    let printout = run(home.path(), &["outcome", "v.toml", "--poses", "-", "--restitution", "0.1"]);
+    assert!(printout.contains("--restitution is a setting of drop; descent has none"), "{printout}");
 }
 
 #[test]
@@ -147,6 +150,6 @@ fn an_answer_of_a_newer_version_is_refused_and_an_unknown_field_is_not() {
     fs::write(&place, text.replacen("\"kind\": \"run\"", "\"kind\": \"run\", \"invented\": [1]", 1)).unwrap();
     assert_eq!(compared().0, Some(0), "{}", compared().1);
     fs::write(&place, text.replacen("\"schema\": 4", "\"schema\": 5", 1)).unwrap();
-    let (code, said) = compared();
-    assert!(code == Some(4) && said.contains("its schema is 5"), "{said}");
+    let (code, printout) = compared();
+    assert!(code == Some(4) && printout.contains("its schema is 5"), "{printout}");
 }

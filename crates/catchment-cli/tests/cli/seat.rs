@@ -113,12 +113,12 @@ fn a_seat_that_leaves_an_error_free_says_what_to_write() {
 #[test]
 fn a_limit_below_the_play_is_a_warning_and_one_above_is_none() {
     let text = peg(12.0, 6.0, 5.5, 1.0, 5.0);
-    let said = |limit: &str| {
+    let printout = |limit: &str| {
         let home = home(&format!("{text}[docked]\nx = \"{limit}\"\n"));
         run(home.path(), &["run", "peg.toml", "--resolution", "20", "--samples", "100"])
     };
-    assert!(said("0.2 mm").contains("is less than the play of the seat"), "{}", said("0.2 mm"));
-    assert!(!said("0.6 mm").contains("is less than the play"));
+    assert!(printout("0.2 mm").contains("is less than the play of the seat"), "{}", printout("0.2 mm"));
+    assert!(!printout("0.6 mm").contains("is less than the play"));
 }
 
 /// A bar laid level across a V of 54 degrees: it balances on its two lower edges, and tips at the least error.

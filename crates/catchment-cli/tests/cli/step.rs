@@ -43,10 +43,10 @@ fn without_python_it_is_said_what_to_install() {
     for command in commands {
         let report = run(dir.path(), command);
         assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{report}");
-        let said = words(&report);
-        assert!(said.contains("`no/python3` cannot be started"), "{said}");
-        assert!(said.contains("python3 -m pip install cadquery-ocp-novtk"), "{said}");
-        assert!(said.contains("CATCHMENT_PYTHON"), "{said}");
+        let printout = words(&report);
+        assert!(printout.contains("`no/python3` cannot be started"), "{printout}");
+        assert!(printout.contains("python3 -m pip install cadquery-ocp-novtk"), "{printout}");
+        assert!(printout.contains("CATCHMENT_PYTHON"), "{printout}");
     }
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
 }
@@ -160,7 +160,7 @@ fn whatever_the_program_does_it_is_a_message() {
         (r#"echo '{"bodies": [], "deflection": 1, "reached": 1, "by": "x"}'"#, "the file holds no triangles"),
         ("exec sleep 0.1 < /dev/null", "it said nothing"),
     ];
-    for (script, said) in cases {
+    for (script, printout) in cases {
         let path = python(dir.path(), script);
         let output = catchment(dir.path())
             .env("CATCHMENT_PYTHON", &path)
@@ -169,7 +169,7 @@ fn whatever_the_program_does_it_is_a_message() {
             .unwrap();
         let stderr = words(&String::from_utf8_lossy(&output.stderr));
         assert_eq!(output.status.code(), Some(4), "{script}: {stderr}");
-        assert!(stderr.contains(said), "{script}: {stderr}");
+        assert!(stderr.contains(printout), "{script}: {stderr}");
         assert!(output.stdout.is_empty(), "{script}");
     }
 }
@@ -200,10 +200,10 @@ fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
             assert!(waiting.elapsed() < Duration::from_secs(30), "{arguments:?}");
             std::thread::sleep(Duration::from_millis(10));
         }
-        let asked = Instant::now();
+        let requested = Instant::now();
         assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
         let output = child.wait_with_output().unwrap();
-        assert!(asked.elapsed() < Duration::from_secs(5), "{arguments:?}: {:?}", asked.elapsed());
+        assert!(requested.elapsed() < Duration::from_secs(5), "{arguments:?}: {:?}", requested.elapsed());
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted; nothing was written\n");
         let meshing = fs::read_to_string(&started).unwrap();
@@ -268,7 +268,7 @@ fn packages_of_the_person_are_found() {
         fs::write(folder.join("OCP/__init__.py"), format!("raise ImportError('{says}')\n")).unwrap();
     };
     package(&dir.path().join("mine"), "seen by PYTHONPATH");
-    let asked = Command::new(&python)
+    let requested = Command::new(&python)
         .args([
             "-c",
             "import site, sys; print(site.getusersitepackages() if sys.prefix == sys.base_prefix else '')",
@@ -277,7 +277,7 @@ fn packages_of_the_person_are_found() {
         .env_remove("PYTHONUSERBASE")
         .output()
         .unwrap();
-    let of_user = String::from_utf8(asked.stdout).unwrap();
+    let of_user = String::from_utf8(requested.stdout).unwrap();
     let says = |home: &str, paths: &str| {
         let output = catchment(dir.path())
             .env("CATCHMENT_PYTHON", &python)
@@ -295,12 +295,12 @@ fn packages_of_the_person_are_found() {
     if is_installed {
         return;
     }
-    let said = says("/nowhere", &format!("relative:{}", mine.display()));
-    assert!(said.contains("has none (seen by PYTHONPATH)"), "{said}");
+    let printout = says("/nowhere", &format!("relative:{}", mine.display()));
+    assert!(printout.contains("has none (seen by PYTHONPATH)"), "{printout}");
     if !of_user.trim().is_empty() {
         package(Path::new(of_user.trim()), "seen for the user");
-        let said = says(dir.path().to_str().unwrap(), "");
-        assert!(said.contains("has none (seen for the user)"), "{said}");
+        let printout = says(dir.path().to_str().unwrap(), "");
+        assert!(printout.contains("has none (seen for the user)"), "{printout}");
     }
 }
 
@@ -315,6 +315,6 @@ fn an_interpreter_may_have_a_relative_path() {
         .args(["check", "design.toml"])
         .output()
         .unwrap();
-    let said = words(&String::from_utf8_lossy(&output.stderr));
-    assert!(said.contains("the file holds no solid (pwd is 0 files)"), "{said}");
+    let printout = words(&String::from_utf8_lossy(&output.stderr));
+    assert!(printout.contains("the file holds no solid (pwd is 0 files)"), "{printout}");
 }

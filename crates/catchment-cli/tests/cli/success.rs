@@ -15,7 +15,7 @@ fn home() -> tempfile::TempDir {
 
 const QUICK: [&str; 2] = ["--motions", "400"];
 
-fn asked(folder: &Path, args: &[&str]) -> Value {
+fn json_of(folder: &Path, args: &[&str]) -> Value {
     json(folder, &[&["success", "v.toml", "--json"], &QUICK[..], args].concat())
 }
 
@@ -23,7 +23,7 @@ fn asked(folder: &Path, args: &[&str]) -> Value {
 fn it_tells_the_closed_form_in_millimetres() {
     let home = home();
     // 25 mm are 2 σ: 95.45 %.
-    let report = asked(home.path(), &["--free", "x", "--error-sigma", "x=12.5 mm"]);
+    let report = json_of(home.path(), &["--free", "x", "--error-sigma", "x=12.5 mm"]);
     let ends = [0, 1].map(|k| report["success"]["ci95"][k].as_f64().unwrap());
     assert!(ends[0] < 0.9545 && 0.9545 < ends[1], "{ends:?}");
     assert_eq!(report["robots"][0]["errors"]["sigma"]["x"], 0.25);
@@ -48,7 +48,7 @@ fn robots_of_a_file_are_asked_one_by_one_and_the_worst_stands_first() {
     let rows: Vec<String> = (0..40).map(|k| format!("{},{}", k % 7 - 3, (k * 3) % 11 - 5)).collect();
     fs::write(home.path().join("m.csv"), format!("x_mm,pitch_deg\n{}\n", rows.join("\n"))).unwrap();
     let threads = |n: &str| {
-        let mut report = asked(home.path(), &["--robots", "r.toml", "--threads", n]);
+        let mut report = json_of(home.path(), &["--robots", "r.toml", "--threads", n]);
         report["timing"] = Value::Null;
         report
     };

@@ -60,7 +60,7 @@ fn every_key_can_be_swept_and_every_figure_is_written() {
 
 /// Every file below a folder; of a report all but how long it took.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let (mut found, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
+    let (mut result, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
             let path = entry.unwrap().path();
@@ -71,13 +71,13 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
                 let mut report: serde_json::Value =
                     serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
                 assert!(report["timing"].take()["total_s"].is_f64());
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), report.to_string().into_bytes());
+                result.insert(path.strip_prefix(folder).unwrap().to_owned(), report.to_string().into_bytes());
             } else if name != ".catchment.json" {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+                result.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
             }
         }
     }
-    found
+    result
 }
 
 #[cfg(unix)]
@@ -95,8 +95,8 @@ fn stopped_and_resumed_it_writes_what_it_would_have_written() {
     assert_eq!(sweep("whole").output().unwrap().status.code(), Some(0));
     let parts = home.path().join("out.parts");
     let count = || {
-        fs::read_dir(&parts).map_or(0, |found| {
-            found
+        fs::read_dir(&parts).map_or(0, |result| {
+            result
                 .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|e| e == "json"))
                 .count()
         })

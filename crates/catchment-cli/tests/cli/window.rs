@@ -70,21 +70,21 @@ fn a_requirement_decides_the_exit_code_and_files_are_whole() {
 #[test]
 fn a_run_tells_of_the_window_what_the_command_does() {
     let home = home();
-    let asked = ["run", "v.toml", "--free", "x", "--resolution", "9", "--samples", "50", "--seed", "3"];
+    let requested = ["run", "v.toml", "--free", "x", "--resolution", "9", "--samples", "50", "--seed", "3"];
     // 300 000 motions each: one run for all.
     let required = ["--window", "-o", "out", "--require", "window.x>=24 mm", "--require", "window.x>=26 mm"];
-    let text = run(home.path(), &[&asked[..], &required].concat());
+    let text = run(home.path(), &[&requested[..], &required].concat());
     assert!(text.starts_with("exit 1\n") && text.contains("±24.97"), "{text}");
     assert!(
         text.contains("not met: window.x >= 26 mm") && !text.contains("not met: window.x >= 24 mm"),
         "{text}"
     );
     assert!(text.contains("0 failures in 300 000 poses sampled"), "{text}");
-    let found: Value =
+    let result: Value =
         serde_json::from_slice(&fs::read(home.path().join("out/report.json")).unwrap()).unwrap();
     let alone = json(home.path(), &["window", "v.toml", "--free", "x", "--seed", "3", "--json"]);
-    let printed = found["window"].as_object().unwrap();
-    assert_eq!(found["window"]["x"], alone["window"]["x"]);
+    let printed = result["window"].as_object().unwrap();
+    assert_eq!(result["window"]["x"], alone["window"]["x"]);
     assert!(printed.get("roll").is_none());
     for (key, value) in printed.iter().filter(|(key, _)| *key != "x") {
         assert_eq!(*value, alone[key], "{key}");
