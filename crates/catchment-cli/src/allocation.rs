@@ -64,10 +64,10 @@ pub(crate) mod faults {
 
     /// Reads what is wished from the environment.
     pub(crate) fn prepare() {
-        let Ok(said) = std::env::var(NAME) else { return };
-        let number = said.trim_end_matches("..");
+        let Ok(message) = std::env::var(NAME) else { return };
+        let number = message.trim_end_matches("..");
         let Ok(first) = number.parse() else { return };
-        LAST.store(if number.len() < said.len() { NONE } else { first }, Ordering::Relaxed);
+        LAST.store(if number.len() < message.len() { NONE } else { first }, Ordering::Relaxed);
         ASKED.store(0, Ordering::Relaxed);
         FIRST.store(first, Ordering::Relaxed);
     }

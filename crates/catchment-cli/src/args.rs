@@ -247,12 +247,12 @@ mod tests {
             let line = if number < seeds.len() { seed } else { mutate::spoilt(&mut dice, &seed, &seeds) };
             let text = String::from_utf8_lossy(&line);
             let words = std::iter::once("catchment").chain(text.lines());
-            if let Some(said) = crate::usage_error(words) {
-                assert!(number >= seeds.len(), "{text}: {said}");
+            if let Some(stated) = crate::usage_error(words) {
+                assert!(number >= seeds.len(), "{text}: {stated}");
                 refused += 1;
                 assert!(
-                    !said.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
-                    "{text:?}: {said:?}"
+                    !stated.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
+                    "{text:?}: {stated:?}"
                 );
             }
         }

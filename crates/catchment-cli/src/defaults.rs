@@ -183,8 +183,8 @@ mod tests {
     fn everything_wrong_is_refused_at_its_place() {
         let wrong =
             read("thread = 4\nmemory = \"much\"\nunit = 1\nsamples = 10\ncolor = true\n").unwrap_err();
-        let said: Vec<&str> = wrong.list.iter().map(|one| one.message.as_str()).collect();
-        assert_eq!(said.len(), 5, "{said:?}");
+        let stated: Vec<&str> = wrong.list.iter().map(|one| one.message.as_str()).collect();
+        assert_eq!(stated.len(), 5, "{stated:?}");
         assert!(wrong.list.iter().all(|one| one.span.is_some()));
         let help = wrong.list.iter().find_map(Diagnostic::help);
         assert_eq!(help.as_deref(), Some("did you mean `threads`?"));

@@ -65,7 +65,7 @@ impl SpreadArgs {
                 (Some(robot), 0) => Ok(Some(robot.errors)),
                 (_, others) => {
                     let message =
-                        format!("{} has {} robots, and one is asked about", shown(path), others + 1);
+                        format!("{} has {} robots, and this command takes one", shown(path), others + 1);
                     Err(Failure::with_help(message, Some("write that one into a file of its own".to_owned())))
                 }
             };

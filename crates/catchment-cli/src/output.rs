@@ -223,12 +223,12 @@ pub(crate) fn warn(warnings: &[Diagnostic]) {
 
 /// The width of a text, without colours.
 fn layout(details: bool) -> Style {
-    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let stated = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let is_terminal = io::stdout().is_terminal();
     let width =
         || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
     let default = Style::default();
-    let columns = said.or_else(width).unwrap_or(default.columns);
+    let columns = stated.or_else(width).unwrap_or(default.columns);
     Style { columns, details, ..default }
 }
 

@@ -472,10 +472,10 @@ pub(crate) fn study<T: Subject>(
     let problem = design.problem()?;
     let running = exec.start()?;
     running.may_be_left();
-    let found = compute(&problem, &running.exec)?;
+    let results = compute(&problem, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = ReportOf::new(problem.design(), found, problem.warnings(), Some(timing));
+    let report = ReportOf::new(problem.design(), results, problem.warnings(), Some(timing));
     output.finish(&report, || match draw {
         Some(draw) => draw(&report, &problem),
         None => Err(no_picture()),

@@ -13,12 +13,12 @@ const SCREEN: usize = 40;
 fn commands() -> Vec<Command> {
     let mut all = args::command();
     all.build();
-    let mut found: Vec<Command> =
+    let mut result: Vec<Command> =
         all.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();
-    let below: Vec<Command> = found.iter().flat_map(Command::get_subcommands).cloned().collect();
-    found.extend(below.into_iter().filter(|one| one.get_name() != "help"));
-    found.push(all);
-    found
+    let below: Vec<Command> = result.iter().flat_map(Command::get_subcommands).cloned().collect();
+    result.extend(below.into_iter().filter(|one| one.get_name() != "help"));
+    result.push(all);
+    result
 }
 
 /// The help of a command, by parts: but for values that another crate names.

@@ -50,9 +50,9 @@ fn main() {
         let pair = pair(&format!("{name}.toml"));
         let grid = Grid::over(&pair.alignment, |_| cells);
         let accept = || {
-            let found =
+            let result =
                 flood::accept(&pair, &grid, &FloodSettings::default(), &Exec::new()).expect("flooded");
-            let share = found.counts()[0] as f64 / grid.len() as f64;
+            let share = result.counts()[0] as f64 / grid.len() as f64;
             // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
             assert!((0.05..0.9).contains(&share), "{name}: {share} of the box accepted");
         };
@@ -95,9 +95,9 @@ fn main() {
         "floods of cells",
         landscape.heights.len(),
         &mut || {
-            let found = meyer::accept(&landscape, &plane.alignment, &|_| true, &settings, &Exec::new())
+            let result = meyer::accept(&landscape, &plane.alignment, &|_| true, &settings, &Exec::new())
                 .expect("flooded");
-            let share = found.acceptance.counts()[0] as f64 / landscape.heights.len() as f64;
+            let share = result.acceptance.counts()[0] as f64 / landscape.heights.len() as f64;
             assert!((0.05..0.9).contains(&share), "{share} of the box accepted");
         },
         None,

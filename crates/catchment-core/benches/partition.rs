@@ -41,11 +41,11 @@ fn main() {
             let mut counts = partition::PartitionCounts::default();
             for _ in 0..if timed { RUNS } else { 1 } {
                 let started = Instant::now();
-                let found = partition::run(&pair, &settings, &exec).expect("a partition");
+                let result = partition::run(&pair, &settings, &exec).expect("a partition");
                 seconds.push(started.elapsed().as_secs_f64());
-                counts = found.counts();
+                counts = result.counts();
                 // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
-                assert!((0.05..6.0).contains(&found.measure(Outcome::Aligned)));
+                assert!((0.05..6.0).contains(&result.measure(Outcome::Aligned)));
             }
             seconds.sort_by(f64::total_cmp);
             let median = seconds[seconds.len() / 2];

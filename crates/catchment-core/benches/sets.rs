@@ -89,8 +89,8 @@ fn boxes(rates: &mut Rates, name: &str) {
         "certified boxes",
         BOXES,
         &mut || {
-            let found = method.decide(&problem, &grid, &Exec::new()).expect("boxes").by_products.certificate;
-            assert!(found.is_some_and(|found| found.yes > 0.1), "{name}");
+            let result = method.decide(&problem, &grid, &Exec::new()).expect("boxes").by_products.certificate;
+            assert!(result.is_some_and(|result| result.yes > 0.1), "{name}");
         },
         None,
     );

@@ -72,7 +72,7 @@ fn asks(place: &str, text: &str) -> Vec<String> {
     code.zip(1..)
         .flat_map(|(line, number)| {
             let code = line.split("//").next().unwrap_or_default();
-            let asked = ASKS.iter().filter(move |(word, _)| {
+            let requested = ASKS.iter().filter(move |(word, _)| {
                 // A whole word: `Instant`, not `Instantaneous`.
                 code.match_indices(word).any(|(at, _)| {
                     let around = [code[..at].chars().next_back(), code[at + word.len()..].chars().next()];
@@ -80,7 +80,7 @@ fn asks(place: &str, text: &str) -> Vec<String> {
                     !inside(around[0]) && (word.ends_with(':') || !inside(around[1]))
                 })
             });
-            asked.map(move |(_, what)| (number, *what))
+            requested.map(move |(_, what)| (number, *what))
         })
         .filter(|(_, what)| !ALLOWED.iter().any(|(allowed, thing, _)| *allowed == place && thing == what))
         .map(|(number, what)| format!("{place}:{number}: asks for {what}"))

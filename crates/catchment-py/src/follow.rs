@@ -104,12 +104,12 @@ impl Problem {
             return Ok(descent::rests_of_rows(self.inner.pair(), rows, &by.motions(), exec)?);
         }
         let poses: Vec<PoseError> = rows.poses.iter().map(|row| PoseError::from_array(*row)).collect();
-        let (_, found) = self.inner.follow_by(by, &poses, exec)?;
-        for (((end, height), code), found) in
-            rows.ends.iter_mut().zip(rows.heights).zip(rows.outcomes).zip(found)
+        let (_, result) = self.inner.follow_by(by, &poses, exec)?;
+        for (((end, height), code), result) in
+            rows.ends.iter_mut().zip(rows.heights).zip(rows.outcomes).zip(result)
         {
-            (*end, *code) = (found.error.to_array(), found.outcome as u8);
-            *height = found.height.unwrap_or(f64::NAN);
+            (*end, *code) = (result.error.to_array(), result.outcome as u8);
+            *height = result.height.unwrap_or(f64::NAN);
         }
         Ok(())
     }

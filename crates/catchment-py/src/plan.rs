@@ -62,7 +62,7 @@ impl Expected {
 
 /// Arguments of a run.
 #[derive(FromPyObject)]
-pub(crate) struct Asked {
+pub(crate) struct RunRequest {
     #[pyo3(item)]
     method: String,
     #[pyo3(item)]
@@ -94,7 +94,7 @@ const SMALLEST_SHARE: f64 = 1e-5;
 /// The largest time budget, in seconds.
 const LONGEST_S: f64 = 1e7;
 
-impl Asked {
+impl RunRequest {
     fn sample(&self) -> Result<Sample, Refusal> {
         let given = [self.samples.is_some(), self.budget_s.is_some(), self.tolerance.is_some()];
         if given.into_iter().filter(|given| *given).count() > 1 {
@@ -149,9 +149,9 @@ impl Asked {
 #[pymethods]
 impl Problem {
     /// The arguments as a run in JSON. Raises if the run is impossible.
-    fn plan(&self, py: Python<'_>, asked: Asked, expected: Expected) -> PyResult<String> {
+    fn plan(&self, py: Python<'_>, requested: RunRequest, expected: Expected) -> PyResult<String> {
         let plan = || -> Result<String, Refusal> {
-            let run = asked.run(&self.inner, &expected)?;
+            let run = requested.run(&self.inner, &expected)?;
             run.plan(&self.inner)?;
             check_requirements(&run, &self.inner).map_err(|error| match error {
                 UnanswerableError::Run(error) => error.into(),

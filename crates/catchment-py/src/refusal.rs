@@ -137,9 +137,9 @@ fn explained(error: &(dyn Error + 'static)) -> Refusal {
     let mut is_memory = false;
     let mut cause = Some(error);
     while let Some(error) = cause {
-        let said = error.to_string();
-        if !message.contains(&said) {
-            message = format!("{message}: {said}");
+        let stated = error.to_string();
+        if !message.contains(&stated) {
+            message = format!("{message}: {stated}");
         }
         is_memory |=
             error.downcast_ref::<Advised>().is_some_and(|advised| advised.0.contains(&Advice::MoreMemory));

@@ -55,9 +55,13 @@ impl Problem {
             let proportions =
                 proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default)));
             let settings = window::WindowSettings { fixed, proportions, motions, seed, friction };
-            let found = window::run(problem, &settings, exec)?;
-            let report =
-                WindowReport::new(problem.design(), found, problem.warnings(), Some(timing(&started, exec)));
+            let results = window::run(problem, &settings, exec)?;
+            let report = WindowReport::new(
+                problem.design(),
+                results,
+                problem.warnings(),
+                Some(timing(&started, exec)),
+            );
             Rendered::of(&report)
         })
     }
@@ -90,9 +94,9 @@ impl Problem {
                 resolution,
                 certified,
             };
-            let found = jams::run(problem, &settings, exec)?;
+            let results = jams::run(problem, &settings, exec)?;
             let report =
-                JamsReport::new(problem.design(), found, problem.warnings(), Some(timing(&started, exec)));
+                JamsReport::new(problem.design(), results, problem.warnings(), Some(timing(&started, exec)));
             let rendered = Rendered::of(&report)?;
             rendered.with(figure::jams(&report.design, &report.result, problem.connector()))
         })
@@ -102,13 +106,13 @@ impl Problem {
     fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Rendered> {
         work(py, &how, |exec| {
             let problem = &self.inner;
-            let found = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
-            let square = AcceptedSquare::of(&found, exec)?;
-            let nilsson = Nilsson::beside(&found, problem.pair());
-            let offsets = AcceptedOffsets::new(problem.design(), &found, &square, nilsson.as_ref());
+            let results = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
+            let square = AcceptedSquare::of(&results, exec)?;
+            let nilsson = Nilsson::beside(&results, problem.pair());
+            let offsets = AcceptedOffsets::new(problem.design(), &results, &square, nilsson.as_ref());
             let report = ZraaReport::new(problem.design(), offsets, Vec::new(), None);
             let rendered = Rendered::of(&report)?;
-            rendered.with(Ok(figure::region(problem.design(), &found, &square)))
+            rendered.with(Ok(figure::region(problem.design(), &results, &square)))
         })
     }
 }
@@ -145,9 +149,9 @@ pub(crate) fn compare(
         || -> Result<[ComparisonSource; 2], Refusal> { Ok([source(&sides[0])?, source(&sides[1])?]) };
     let sources = sources().map_err(|refusal| refusal.raise(py))?;
     work(py, &how, |exec| {
-        let found = compared(sources, resolution(cells.as_deref())?, true, exec)?;
-        let rendered = Rendered::of(&found.report)?;
-        match found.picture {
+        let results = compared(sources, resolution(cells.as_deref())?, true, exec)?;
+        let rendered = Rendered::of(&results.report)?;
+        match results.picture {
             Some(picture) => rendered.with(picture),
             None => Ok(rendered),
         }

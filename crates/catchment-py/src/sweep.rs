@@ -5,7 +5,7 @@
 //!   Sweep ──▶ key(k) ──▶ stored? ──no──▶ design(k), anywhere ──▶ (key, JSON) ──▶ keep ──▶ report()
 //! ```
 
-use crate::plan::{Asked, Expected};
+use crate::plan::{Expected, RunRequest};
 use crate::problem::Problem;
 use crate::refusal::Refusal;
 use crate::rendered::Rendered;
@@ -68,7 +68,7 @@ impl Sweep {
         py: Python<'_>,
         problem: &Problem,
         over: Vec<String>,
-        asked: Asked,
+        requested: RunRequest,
         expected: Expected,
         output: Option<PathBuf>,
     ) -> PyResult<Self> {
@@ -81,7 +81,7 @@ impl Sweep {
                 let message = format!("{name} was replaced in the problem, and is varied; do one of both");
                 return Err(Refusal::argument("over", message));
             }
-            let run = asked.run(&problem.inner, &expected)?;
+            let run = requested.run(&problem.inner, &expected)?;
             if let Some(path) = &output {
                 StudyFolder { path, name: "sweep" }.check(&Exec::new())?;
             }

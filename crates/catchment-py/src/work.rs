@@ -91,7 +91,7 @@ pub(crate) fn work<T: Send>(
     }
     let stop = exec.cancel_flag();
     let progress = how.progress.as_ref();
-    let (found, raised) = py.detach(|| {
+    let (result, raised) = py.detach(|| {
         thread::scope(|scope| {
             let (done, finished) = mpsc::channel::<()>();
             let exec = &exec;
@@ -116,11 +116,11 @@ pub(crate) fn work<T: Send>(
             (thread.join().unwrap_or_else(|panic| resume_unwind(panic)), raised)
         })
     });
-    match (raised, found) {
+    match (raised, result) {
         (Some(raised), _) => Err(raised),
-        (None, found) => {
+        (None, result) => {
             look(py, &reported, progress)?;
-            found.map_err(|refusal| refusal.raise(py))
+            result.map_err(|refusal| refusal.raise(py))
         }
     }
 }

@@ -75,8 +75,10 @@ impl Printed for FacesBody {
         for face in &self.faces {
             face.result.describe(document.titled(Some(face.design.name.clone())), &face.design);
             if let AcceptedOffsets::Interval { from_d, to_d, nilsson, .. } = &face.result {
-                let [bound, both] =
-                    [nilsson.as_ref().map(|found| found.bound_d), nilsson.as_ref().map(|found| found.both_d)];
+                let [bound, both] = [
+                    nilsson.as_ref().map(|results| results.bound_d),
+                    nilsson.as_ref().map(|results| results.both_d),
+                ];
                 table.push([
                     face.design.name.as_str().into(),
                     (*from_d).into(),

@@ -85,18 +85,18 @@ pub struct CatchReport {
 }
 
 impl From<&Nilsson> for NilssonReport {
-    fn from(found: &Nilsson) -> Self {
+    fn from(result: &Nilsson) -> Self {
         let side = |side: &Catch| CatchReport {
             offset_d: side.reach(),
             minimum_d: side.minimum,
             maximum_d: side.maximum,
         };
-        let [from, to] = &found.catches;
+        let [from, to] = &result.catches;
         Self {
-            ungendered: found.ungendered,
-            width_d: found.width,
-            bound_d: found.bound(),
-            both_d: found.both(),
+            ungendered: result.ungendered,
+            width_d: result.width,
+            bound_d: result.bound(),
+            both_d: result.both(),
             from: from.as_ref().map(side),
             to: to.as_ref().map(side),
         }

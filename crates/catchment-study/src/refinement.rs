@@ -130,6 +130,6 @@ impl GridDecision {
     ) -> Result<UnbiasedSum, CorrectionError> {
         let doubts = self.decided.doubts.as_deref();
         let (method, acceptance) = (&self.method, &self.decided.acceptance);
-        Ok(run::correct(method, problem, &self.grid, acceptance, doubts, settings, exec)?.found)
+        Ok(run::correct(method, problem, &self.grid, acceptance, doubts, settings, exec)?.estimate)
     }
 }

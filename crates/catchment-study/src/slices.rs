@@ -206,9 +206,9 @@ fn planes(problem: &Problem, settings: &SlicesSettings) -> Result<Vec<([Dof; 2],
     }
     let whole = settings.resolution.grid(problem.alignment(), &[SlicesSettings::CELLS; 5])?;
     let all = slice::pairs(&whole);
-    let asked = if settings.pairs.is_empty() { &all } else { &settings.pairs };
-    let mut planes: Vec<([Dof; 2], Grid)> = Vec::with_capacity(asked.len());
-    for [a, b] in asked {
+    let requested = if settings.pairs.is_empty() { &all } else { &settings.pairs };
+    let mut planes: Vec<([Dof; 2], Grid)> = Vec::with_capacity(requested.len());
+    for [a, b] in requested {
         if a == b {
             return Err(SlicesError::Same { dof: *a });
         }
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn a_slice_is_the_plane_of_the_whole_grid() {
         let problem = problem(Family::Pyramid, DofSet::ALL.without(Dof::Y).without(Dof::Roll));
-        let found = run(&problem, &settings(5, &[[Dof::Yaw, Dof::X]]), &Exec::new()).unwrap();
+        let result = run(&problem, &settings(5, &[[Dof::Yaw, Dof::X]]), &Exec::new()).unwrap();
         let whole = Grid::over(problem.alignment(), |_| 5);
         let all = descent::run(
             problem.pair(),
@@ -257,18 +257,18 @@ mod tests {
         let plane =
             slice::GridSlice::of(&whole, &[Dof::X, Dof::Yaw], &catchment_core::pose::PoseError::default())
                 .unwrap();
-        assert_eq!(found.slices[0].axes, [Dof::X, Dof::Yaw]);
-        assert_eq!(found.slices[0].acceptance.outcomes, plane.pick(&outcomes));
-        assert_eq!(found.estimate, None);
+        assert_eq!(result.slices[0].axes, [Dof::X, Dof::Yaw]);
+        assert_eq!(result.slices[0].acceptance.outcomes, plane.pick(&outcomes));
+        assert_eq!(result.estimate, None);
     }
 
     #[test]
     fn all_pairs_of_five_errors_are_ten_and_give_an_estimate() {
         let problem = problem(Family::Pyramid, DofSet::ALL);
-        let found = run(&problem, &settings(3, &[]), &Exec::new()).unwrap();
-        assert_eq!(found.slices.len(), 10);
-        assert!(found.slices.iter().all(|s| s.sum.tried == 9));
-        assert!(found.estimate.is_some());
+        let result = run(&problem, &settings(3, &[]), &Exec::new()).unwrap();
+        assert_eq!(result.slices.len(), 10);
+        assert!(result.slices.iter().all(|s| s.sum.tried == 9));
+        assert!(result.estimate.is_some());
     }
 
     #[test]

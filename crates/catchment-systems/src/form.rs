@@ -44,7 +44,7 @@ const MOST: usize = 20;
 /// Collects the errors of a text.
 #[derive(Debug)]
 pub struct Form<'t> {
-    found: Vec<Diagnostic>,
+    diagnostics: Vec<Diagnostic>,
     /// Ranges in which the text is not TOML: errors there are consequences, and missing keys may have been
     /// lost.
     broken: Vec<Range<usize>>,
@@ -57,7 +57,7 @@ pub struct FormTable<'t> {
     path: String,
     span: Range<usize>,
     table: Option<&'t DeTable<'t>>,
-    asked: RefCell<Vec<&'static str>>,
+    known: RefCell<Vec<&'static str>>,
 }
 
 /// A string or a number, with its place.
@@ -95,7 +95,7 @@ impl<'t> FormTable<'t> {
     }
 
     fn value(&self, key: &'static str) -> Option<&'t Spanned<DeValue<'t>>> {
-        self.asked.borrow_mut().push(key);
+        self.known.borrow_mut().push(key);
         self.table?.get(key)
     }
 }
@@ -115,16 +115,16 @@ impl Form<'_> {
             let help = value_help(&source.text, error.span().unwrap_or_default().start);
             Diagnostic::error("file", error.message(), help).at(error.span())
         };
-        let found = syntax.into_iter().map(refused).collect();
-        let mut form = Form { found, broken, text: &source.text };
+        let diagnostics = syntax.into_iter().map(refused).collect();
+        let mut form = Form { diagnostics, broken, text: &source.text };
         let root = FormTable {
             path: String::new(),
             span: 0..0,
             table: Some(document.get_ref()),
-            asked: RefCell::default(),
+            known: RefCell::default(),
         };
         let value = fill(&mut form, &root);
-        let mut list = form.found;
+        let mut list = form.diagnostics;
         if list.is_empty() {
             return Ok(value);
         }
@@ -140,13 +140,13 @@ impl<'t> Form<'t> {
     /// Notes a problem at a place of the text.
     pub fn refuse(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(Diagnostic::error("file", message, help.map(str::to_owned)).at(Some(span)));
+            self.diagnostics.push(Diagnostic::error("file", message, help.map(str::to_owned)).at(Some(span)));
         }
     }
 
     /// Whether there is any error so far: then conditions on several values need not be checked.
     pub fn is_refused(&self) -> bool {
-        !self.found.is_empty()
+        !self.diagnostics.is_empty()
     }
 
     /// The text between two bytes.
@@ -155,8 +155,8 @@ impl<'t> Form<'t> {
     }
 
     fn wrong(&mut self, place: &str, expected: &str, value: &Spanned<DeValue<'_>>) {
-        let found = value.get_ref().type_str();
-        self.refuse(value.span(), format!("`{place}` should be {expected}, not {found}"), None);
+        let result = value.get_ref().type_str();
+        self.refuse(value.span(), format!("`{place}` should be {expected}, not {result}"), None);
     }
 
     fn missing(&mut self, section: &FormTable<'_>, key: &str, expected: &str) {
@@ -169,13 +169,13 @@ impl<'t> Form<'t> {
     /// A table; an empty table if it is missing.
     pub fn table<'s>(&mut self, parent: &FormTable<'s>, key: &'static str) -> FormTable<'s> {
         let path = parent.place(key);
-        let none = |span| FormTable { path: path.clone(), span, table: None, asked: RefCell::default() };
+        let none = |span| FormTable { path: path.clone(), span, table: None, known: RefCell::default() };
         let Some(value) = parent.value(key) else { return none(parent.span()) };
         let DeValue::Table(table) = value.get_ref() else {
             self.wrong(&path, "a table", value);
             return none(value.span());
         };
-        FormTable { path, span: value.span(), table: Some(table), asked: RefCell::default() }
+        FormTable { path, span: value.span(), table: Some(table), known: RefCell::default() }
     }
 
     /// The tables of an array, `[[key]]`.
@@ -190,8 +190,8 @@ impl<'t> Form<'t> {
         for (k, entry) in array.iter().enumerate() {
             let path = format!("{path}[{k}]");
             if let DeValue::Table(table) = entry.get_ref() {
-                let asked = RefCell::default();
-                sections.push(FormTable { path, span: entry.span(), table: Some(table), asked });
+                let known = RefCell::default();
+                sections.push(FormTable { path, span: entry.span(), table: Some(table), known });
             } else {
                 self.wrong(&path, "a table", entry);
             }
@@ -201,17 +201,17 @@ impl<'t> Form<'t> {
 
     /// Reports every key that was not requested.
     pub fn close(&mut self, section: &FormTable<'_>) {
-        let asked = section.asked.borrow();
+        let known = section.known.borrow();
         let named =
             if section.path.is_empty() { "the file".to_owned() } else { format!("[{}]", section.path) };
         for (name, _) in section.table.into_iter().flat_map(DeTable::iter) {
             let written: &str = name.get_ref();
-            if asked.contains(&written) {
+            if known.contains(&written) {
                 continue;
             }
-            let help = match nearest(written, asked.iter().copied()) {
+            let help = match nearest(written, known.iter().copied()) {
                 Some(meant) => format!("did you mean `{meant}`?"),
-                None => format!("it has {}", asked.join(", ")),
+                None => format!("it has {}", known.join(", ")),
             };
             self.refuse(
                 name.span(),
@@ -332,14 +332,14 @@ impl<'t> Form<'t> {
             self.wrong(&place, "an array of lengths", value);
             return None;
         };
-        let found: Vec<_> = array
+        let result: Vec<_> = array
             .iter()
             .filter_map(|entry| {
                 let length = self.quantity_of(entry, &place, "a length", &millimetres)?;
                 Some((length, entry.span()))
             })
             .collect();
-        Some(found)
+        Some(result)
     }
 
     /// A whole number.

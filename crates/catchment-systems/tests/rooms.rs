@@ -7,18 +7,18 @@ use std::path::{Path, PathBuf};
 
 /// Every file of Rust code below a folder.
 fn files(folder: &Path) -> Vec<PathBuf> {
-    let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
+    let (mut result, mut open) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 open.push(path);
             } else if path.extension().is_some_and(|ending| ending == "rs") {
-                found.push(path);
+                result.push(path);
             }
         }
     }
-    found
+    result
 }
 
 #[test]

@@ -39,8 +39,8 @@ const DONE: u32 = 0;
 const REFUSED: u32 = 1;
 
 impl Desk {
-    fn answer(&mut self, said: Result<String, String>) -> u32 {
-        let (text, status) = match said {
+    fn answer(&mut self, stated: Result<String, String>) -> u32 {
+        let (text, status) = match stated {
             Ok(text) => (text, DONE),
             Err(text) => (text, REFUSED),
         };
@@ -102,8 +102,8 @@ pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, frictio
         let (path, reason) = problem.trace(&start, &settings);
         TraceReport::new(problem, &settings, start, &path, reason).to_json().map_err(message)
     };
-    let said = traced();
-    desk.answer(said)
+    let stated = traced();
+    desk.answer(stated)
 }
 
 /// Where the output is.

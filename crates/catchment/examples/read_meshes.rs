@@ -51,8 +51,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 writeln!(out, "ok\t{time:.2} s\t{count} triangles\t{path}\t{done}")?;
             }
             Err(problems) => {
-                let said: Vec<String> = problems.iter().map(ToString::to_string).collect();
-                writeln!(out, "bad\t{time:.2} s\t\t{path}\t{}", said.join(" | "))?;
+                let printout: Vec<String> = problems.iter().map(ToString::to_string).collect();
+                writeln!(out, "bad\t{time:.2} s\t\t{path}\t{}", printout.join(" | "))?;
             }
         }
     }

@@ -200,8 +200,8 @@ fn a_3mf_is_the_same_half_in_its_own_unit() {
     let plain = pair(mesh("a.stl", 1.0, FileUnit::Beside), mesh("b.stl", 1.0, FileUnit::Beside), &files);
     // D is 2 in; where the file says its unit, the scale is that of a metre.
     let own = |name| mesh(name, 1.0 / (2.0 * 0.0254), FileUnit::InFile);
-    let found = pair(own("a.3mf"), own("b.3mf"), &files);
-    assert!(difference(&plain, &found) < 1e-12);
+    let result = pair(own("a.3mf"), own("b.3mf"), &files);
+    assert!(difference(&plain, &result) < 1e-12);
     let stated = |name, unit| mesh(name, 0.5, FileUnit::Stated(unit));
     let same = pair(stated("a.3mf", LengthUnit::In), stated("b.3mf", LengthUnit::In), &files);
     assert!(difference(&plain, &same) < 1e-12);

@@ -151,15 +151,15 @@ fn the_face_height_is_found() {
         face_height: None,
         ..OwnSpec::new(0.0, moved(&fixed, &up(3.0)), moved(&moving, &up(-7.0)))
     };
-    let found = problem(own).unwrap();
+    let result = problem(own).unwrap();
     let plain = problem(plain()).unwrap();
-    assert!(difference(&plain, &found, 0.0) < 1e-12);
-    assert_ne!(plain.digest(), found.digest());
-    let report = CheckReport::good(&found);
+    assert!(difference(&plain, &result, 0.0) < 1e-12);
+    assert_ne!(plain.digest(), result.digest());
+    let report = CheckReport::good(&result);
     let drawing = report.drawing.unwrap();
     // The socket has material behind it, which the plug does not reach.
-    for (found, true_) in [(drawing.fixed.face_center[2], 3.35), (drawing.moving.face_center[2], -6.65)] {
-        assert!((found - true_).abs() < 1e-9, "{found} {true_}");
+    for (result, true_) in [(drawing.fixed.face_center[2], 3.35), (drawing.moving.face_center[2], -6.65)] {
+        assert!((result - true_).abs() < 1e-9, "{result} {true_}");
     }
     // In front of the moving face, inside of the fixed half.
     assert!((drawing.fixed.center_of_rotation[2] - (3.35 - COR)).abs() < 1e-9);

@@ -85,8 +85,8 @@ fn settings(frames: PartFrames) -> ProposalSettings {
 }
 
 fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &ProposalSettings) -> Proposal {
-    let found = propose(parts, settings, &folder.join("design.toml"), &Exec::new());
-    found.unwrap_or_else(|error| panic!("{error}"))
+    let result = propose(parts, settings, &folder.join("design.toml"), &Exec::new());
+    result.unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Throws the halves of a design, lets them be placed in each of these frames, and compares the heights.
@@ -110,19 +110,24 @@ fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, fr
             if !wanted.contains(&frames) {
                 continue;
             }
-            let found = proposed(&parts, folder.path(), &settings(frames));
+            let result = proposed(&parts, folder.path(), &settings(frames));
             let name = &truth.design().name;
             assert_eq!(
-                matches!(found.candidates[0].lie, PartLayout::Assembled { .. }),
+                matches!(result.candidates[0].lie, PartLayout::Assembled { .. }),
                 frames == PartFrames::Any,
                 "{name}: {}",
-                found.candidates[0].lie
+                result.candidates[0].lie
             );
-            let off = difference(truth, &found.problem);
-            assert!(off < tolerance, "{name}, round {round}: {off}\n{:?}\n{}", found.candidates, found.text);
+            let off = difference(truth, &result.problem);
+            assert!(
+                off < tolerance,
+                "{name}, round {round}: {off}\n{:?}\n{}",
+                result.candidates,
+                result.text
+            );
             if let Some(width) = width {
-                let found = found.problem.design().width;
-                assert!((found - width * WIDTH).abs() < 1e-4, "{name}: {found}");
+                let result = result.problem.design().width;
+                assert!((result - width * WIDTH).abs() < 1e-4, "{name}: {result}");
             }
         }
     }
@@ -159,8 +164,8 @@ fn a_cone_comes_back_and_its_yaw_does_not_matter() {
             &DAffine3::IDENTITY,
         ),
     ];
-    let found = proposed(&parts, folder.path(), &settings(PartFrames::Facing));
-    assert_eq!(found.problem.alignment().dont_care, DofSet::EMPTY.with(Dof::Yaw));
+    let result = proposed(&parts, folder.path(), &settings(PartFrames::Facing));
+    assert_eq!(result.problem.alignment().dont_care, DofSet::EMPTY.with(Dof::Yaw));
 }
 
 /// As an assembly: of the two files alone the balls may as well be meant to hang between the blocks, where they hold better.
@@ -195,15 +200,15 @@ fn what_walls_hold_far_apart_is_docked_within_the_play() {
     let frame = DAffine3::IDENTITY;
     let parts =
         [write(folder.path(), "tray.stl", &fixed, &frame), write(folder.path(), "peg.stl", &moving, &frame)];
-    let found = proposed(&parts, folder.path(), &settings(PartFrames::Any));
-    let alignment = found.problem.alignment();
-    assert_eq!(alignment.free, DofSet::ALL, "{}", found.text);
+    let result = proposed(&parts, folder.path(), &settings(PartFrames::Any));
+    let alignment = result.problem.alignment();
+    assert_eq!(alignment.free, DofSet::ALL, "{}", result.text);
     // Its play in parts of D, two digits of it; straight or turned.
-    let width = found.problem.design().width / WIDTH;
+    let width = result.problem.design().width / WIDTH;
     let limit = |dof: Dof| alignment.docked.limit(dof).unwrap();
-    assert!((0.03..0.034).contains(&(limit(Dof::X) * width)), "{}", found.text);
-    assert!((0.03..0.036).contains(&(limit(Dof::Y) * width)), "{}", found.text);
-    assert!((5.0..30.0).contains(&limit(Dof::Yaw).to_degrees()), "{}", found.text);
+    assert!((0.03..0.034).contains(&(limit(Dof::X) * width)), "{}", result.text);
+    assert!((0.03..0.036).contains(&(limit(Dof::Y) * width)), "{}", result.text);
+    assert!((5.0..30.0).contains(&limit(Dof::Yaw).to_degrees()), "{}", result.text);
     assert_eq!(alignment.docked.limit(Dof::Pitch), None);
 }
 
@@ -213,10 +218,10 @@ fn the_same_part_twice_is_a_pair() {
     let truth = family("x-face-3d", "");
     let folder = tempfile::tempdir().unwrap();
     let part = write(folder.path(), "a.stl", &truth.connector().fixed, &Dice(7).frame());
-    let found = proposed(&[part.clone(), part], folder.path(), &settings(PartFrames::Facing));
-    let off = difference(&truth, &found.problem);
-    assert!(off < 1e-6, "{off}\n{}", found.text);
-    assert!(found.problem.connector().ungendered(Mount::X));
+    let result = proposed(&[part.clone(), part], folder.path(), &settings(PartFrames::Facing));
+    let off = difference(&truth, &result.problem);
+    assert!(off < 1e-6, "{off}\n{}", result.text);
+    assert!(result.problem.connector().ungendered(Mount::X));
 }
 
 /// What is known is not looked for; what is not so is refused.
@@ -235,10 +240,10 @@ fn a_pinned_choice_is_kept() {
         name: Some("a \"pair\"".to_owned()),
         ..settings(PartFrames::Any)
     };
-    let found = proposed(&parts, folder.path(), &ways("+z", "+z"));
-    assert_eq!(found.problem.design().name, "a \"pair\"");
-    assert_eq!(found.problem.alignment().free.len(), 2);
-    assert!(found.text.contains("facing = \"+z\""), "{}", found.text);
+    let result = proposed(&parts, folder.path(), &ways("+z", "+z"));
+    assert_eq!(result.problem.design().name, "a \"pair\"");
+    assert_eq!(result.problem.alignment().free.len(), 2);
+    assert!(result.text.contains("facing = \"+z\""), "{}", result.text);
     let refused =
         propose(&parts, &ways("-z", "-z"), &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(refused, ProposalError::NoSeat { .. }), "{refused}");
@@ -279,13 +284,13 @@ fn a_bought_ball_is_part_of_a_half() {
     assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
     let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
     let with = [Vec::new(), vec![PartDetail::Part(ball.clone())]];
-    let found = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(PartFrames::Facing) });
-    assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
-    assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
-    let free = found.problem.alignment().free;
+    let result = proposed(&parts, folder.path(), &ProposalSettings { with, ..settings(PartFrames::Facing) });
+    assert!(result.text.contains("parts = [") && result.text.contains(&ball), "{}", result.text);
+    assert!(result.text.contains("facing = \"+x\""), "{}", result.text);
+    let free = result.problem.alignment().free;
     assert!(free.contains(Dof::X) && free.contains(Dof::Y), "{free:?}");
     let off = PoseError { x: 0.2, y: -0.1, ..PoseError::default() };
-    assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
+    assert_eq!(result.problem.follow(&off).outcome, Outcome::Aligned);
     // What is wrong with a part is said as of a design.
     let with = [vec![PartDetail::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
     let wrong = ProposalSettings { with, ..settings(PartFrames::Facing) };
@@ -301,8 +306,8 @@ fn a_bought_ball_is_part_of_a_half() {
     let parts = [parts[0].clone(), first];
     let with = [Vec::new(), vec![PartDetail::File(second), PartDetail::Part(ball)]];
     let settings = ProposalSettings { with, ..settings(PartFrames::Facing) };
-    let found = proposed(&parts, folder.path(), &settings);
-    assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
+    let result = proposed(&parts, folder.path(), &settings);
+    assert_eq!(result.problem.follow(&off).outcome, Outcome::Aligned);
     let nobody = ProposalSettings { unit: None, ..settings };
     let refused = propose(&parts, &nobody, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(

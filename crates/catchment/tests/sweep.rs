@@ -154,7 +154,7 @@ fn threads_and_what_was_kept_change_nothing() {
     // Fewer values find theirs.
     let fewer = run(small(&["aspect_ratio=1", "cor=-1,1"]), &memory, 1);
     assert_eq!(memory.found.load(Ordering::Relaxed), 2);
-    assert_eq!(fewer.designs[1].found, whole.designs[5].found);
+    assert_eq!(fewer.designs[1].result, whole.designs[5].result);
 }
 
 /// One design of a sweep is what a run of that design is.
@@ -164,7 +164,7 @@ fn a_design_of_a_sweep_is_a_run() {
     let text = family("x-face", "['x', 'pitch']") + "center_of_rotation = 0.5\n";
     let problem = Draft::read(SourceText::new("d.toml", text)).unwrap().build().unwrap();
     let answer = sweep.settings.run.on(&problem, &Exec::new()).unwrap();
-    let figures = sweep.designs[1].found.figures().unwrap();
+    let figures = sweep.designs[1].result.figures().unwrap();
     assert_eq!((figures.sum, figures.sum_ci95), (answer.sum(), answer.sum_ci95()));
     assert_eq!(figures.onaa_edge, answer.onaa().map(|onaa| onaa.edge));
     let outline = figures.outline.as_ref().unwrap();
@@ -195,8 +195,8 @@ fn what_cannot_be_built_is_reported_and_stops_nothing() {
     let plan = plan(&text, &["family=pyramid,cone"], "5", 10).unwrap();
     let base = plan.base().clone();
     let sweep = run(plan, &NoStore, 2);
-    assert!(sweep.designs[0].found.figures().is_some());
-    let DesignResult::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
+    assert!(sweep.designs[0].result.figures().is_some());
+    let DesignResult::Refused(reason) = &sweep.designs[1].result else { panic!("{:?}", sweep.designs[1]) };
     let alone = Draft::read(SourceText::new("d.toml", text.replace("pyramid", "cone")));
     let Err(ProblemError::Diagnostics(diagnostics)) = alone.unwrap().build() else { panic!("it builds") };
     assert_eq!(*reason, diagnostics.list[0].to_string(), "what is wrong, and what helps");

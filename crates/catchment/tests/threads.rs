@@ -82,7 +82,7 @@ fn corrected_sums() {
                 transport::run(&pair, &grid, &transport::TransportSettings::default(), exec).unwrap();
             let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
             let descents = descent::DescentSettings::default();
-            let found = correction::correct(&pair, &grid, &by, &settings, &descents, exec).unwrap();
+            let results = correction::correct(&pair, &grid, &by, &settings, &descents, exec).unwrap();
             let listed = |most| correction::ambiguous(grid.len(), |c| arrival.is_ambiguous(c), most, exec);
             let (count, cells) = listed(grid.len()).unwrap();
             assert!(count == cells.len() && listed(count - 1).unwrap() == (count, Vec::new()));
@@ -97,7 +97,7 @@ fn corrected_sums() {
                 some.iter()
                     .all(|c| outcomes[*c] == descent::outcome(&pair, &grid.pose(*c), &descents).outcome)
             );
-            ([found.sum, found.ci95[0], found.ci95[1]].map(f64::to_bits), found, outcomes)
+            ([results.sum, results.ci95[0], results.ci95[1]].map(f64::to_bits), results, outcomes)
         });
     }
 }

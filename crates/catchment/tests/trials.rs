@@ -92,7 +92,7 @@ impl Trials {
     fn flips_within(&self, k: usize, accepted: bool) -> Option<f64> {
         let alignment = &self.pair.alignment;
         let free: Vec<Dof> = alignment.free.iter().collect();
-        let mut found: Option<f64> = None;
+        let mut result: Option<f64> = None;
         // A low-discrepancy fan of directions (multiples of irrational numbers), at growing distances.
         for radius in [0.003, 0.006, 0.01, 0.015, 0.02, 0.025, 0.03] {
             let poses: Vec<PoseError> = (1..=96)
@@ -112,11 +112,11 @@ impl Trials {
                 descent::run(&self.pair, Domain::Poses(poses), &DescentSettings::default(), &Exec::new())
                     .unwrap();
             if near.accepted().any(|a| a != accepted) {
-                found = Some(radius);
+                result = Some(radius);
                 break;
             }
         }
-        found
+        result
     }
 }
 
@@ -240,7 +240,7 @@ fn drop_tests_agree_with_friction() {
     use catchment::method::drop;
     use catchment::problem::{Draft, Problem};
     use std::f64::consts::FRAC_PI_4;
-    const POSES: u32 = 50;
+    const POSES: u32 = 40;
     let family = |name: &str, aspect_ratio: f64| {
         format!("[connector]\nfamily = \"{name}\"\naspect_ratio = {aspect_ratio}\n")
     };

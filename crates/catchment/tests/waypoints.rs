@@ -233,7 +233,7 @@ fn no_design_passes_through_itself() {
     for file in files {
         let problem = Problem::open(&file).unwrap();
         let pair = problem.pair();
-        let count = if is_small(pair) { 25 } else { 4 };
+        let count = if is_small(pair) { 15 } else { 3 };
         for error in poses(pair, count, 3) {
             let path = trace(pair, &error, &DescentSettings::default());
             // Of many facets the last alone: what has passed a wall stays behind it.

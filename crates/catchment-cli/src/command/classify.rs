@@ -35,8 +35,8 @@ pub(crate) fn run(args: &ClassifyArgs) -> Result<ExitStatus, Failure> {
     let catalog = Catalog::published()?;
     let problem = args.design.halves()?;
     let running = args.exec.start()?;
-    let found = classified(&problem, &running.exec)?;
+    let results = classified(&problem, &running.exec)?;
     drop(running);
-    let report = ClassifyBody::report(problem.design(), &found, &catalog);
+    let report = ClassifyBody::report(problem.design(), &results, &catalog);
     output.finish(&report, || Err(no_picture()))
 }

@@ -94,15 +94,15 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
         headings: spread(args.heading, args.headings),
         ..ComposeSettings::default()
     };
-    let found = compose(halves, bodies, &settings, exec)?;
+    let results = compose(halves, bodies, &settings, exec)?;
     drop(running);
-    let report = report(&found);
+    let report = report(&results);
     match output.own() {
         Some("csv") => output.write_own(&csv(&report.records())?)?,
-        Some(_) => output.write_own(outline_svg(&found).as_bytes())?,
+        Some(_) => output.write_own(outline_svg(&results).as_bytes())?,
         None => {}
     }
-    output.finish(&report, || Ok(figure(&found)?))
+    output.finish(&report, || Ok(figure(&results)?))
 }
 
 fn region(path: &Path, exec: &Exec) -> Result<ParsedRegion, Failure> {

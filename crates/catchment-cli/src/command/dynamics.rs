@@ -169,23 +169,23 @@ impl DynamicsArgs {
 
     fn question(&self, problem: &Problem) -> Result<Question, Failure> {
         let design = problem.design();
-        let mut asked = Question { times: self.times.clone(), ..Question::default() };
+        let mut requested = Question { times: self.times.clone(), ..Question::default() };
         for text in &self.pose {
             let pose = parse_pose(text, design)
                 .map_err(|diagnostics| Failure::of_option("--pose", text, diagnostics))?;
-            asked.poses.push(pose);
+            requested.poses.push(pose);
         }
         if let Some(path) = &self.poses {
             let source = read_table(path)?;
             let table = PoseTable::parse(&source.text, design, OffsetsAt::Face)
                 .map_err(|diagnostics| diagnostics.of(source.clone()))?;
-            asked.poses.extend_from_slice(table.errors());
+            requested.poses.extend_from_slice(table.errors());
         }
-        asked.errors = self.errors.spread(design)?;
+        requested.errors = self.errors.spread(design)?;
         if let Some(axes) = self.map {
-            asked = asked.with_map(problem, axes, usize::from(self.resolution));
+            requested = requested.with_map(problem, axes, usize::from(self.resolution));
         }
-        Ok(asked.or_box(problem))
+        Ok(requested.or_box(problem))
     }
 }
 

@@ -99,9 +99,9 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
         yaw: all(&args.yaw),
         backing: args.backing,
     };
-    let found = invert(design, connector, level, other.connector(), &settings, exec)?;
+    let results = invert(design, connector, level, other.connector(), &settings, exec)?;
     drop(running);
-    let report = report(design, &found, ManufacturingLimits { feature_d, draft_rad: args.min_draft });
+    let report = report(design, &results, ManufacturingLimits { feature_d, draft_rad: args.min_draft });
     if output.own().is_some() {
         if report.pieces_d.len() > MAX_PIECES {
             let help = "want heights on a coarser grid".to_owned();
@@ -109,9 +109,9 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
             let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
             return Err(Failure::with_help(message, Some(help)).ends(ExitStatus::NotComputed));
         }
-        output.write_own(design_file(design, &found).as_bytes())?;
+        output.write_own(design_file(design, &results).as_bytes())?;
     }
-    output.finish(&report, || Ok(figure(design, &found)?))
+    output.finish(&report, || Ok(figure(design, &results)?))
 }
 
 /// What a file wants: heights without rotation, or the design whose heights are wanted at every rotation.

@@ -160,18 +160,18 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     }
     settings.with = [beside(&args.with_fixed, place)?, beside(&args.with_moving, place)?];
     running.may_be_left();
-    let mut found = propose(&parts, &settings, place, &running.exec);
+    let mut result = propose(&parts, &settings, place, &running.exec);
     // A default stands in where the files need a unit, and nowhere else: it changes no proposal that there is without it.
-    if let (Err(ProposalError::NoUnit { .. }), Some((unit, source))) = (&found, defaults::get().unit) {
+    if let (Err(ProposalError::NoUnit { .. }), Some((unit, source))) = (&result, defaults::get().unit) {
         running.beside_bar(|| to_stderr(&[format!("note: unit {}, from {source}", unit.symbol())]));
         let with = std::mem::take(&mut settings.with);
         settings = ProposalSettings { with, ..self::settings(args, Some(unit))? };
-        found = propose(&parts, &settings, place, &running.exec);
+        result = propose(&parts, &settings, place, &running.exec);
     }
-    let found = found.map_err(refused)?;
+    let result = result.map_err(refused)?;
     // All of it is there before any of it is written.
     let picture = match kind {
-        Some(kind) => Some(image(&figure::pair(&found.problem)?, kind)?),
+        Some(kind) => Some(image(&figure::pair(&result.problem)?, kind)?),
         None => None,
     };
     running.exec.check()?;
@@ -180,10 +180,10 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         write_file(path, &bytes, args.force)?;
     }
     match args.output() {
-        Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
-        None => to_stdout(&found.text)?,
+        Some(path) => write_file(path, result.text.as_bytes(), args.force)?,
+        None => to_stdout(&result.text)?,
     }
-    to_stderr(&summary(&found, args.moving.as_deref()));
+    to_stderr(&summary(&result, args.moving.as_deref()));
     Ok(ExitStatus::Done)
 }
 
@@ -195,8 +195,8 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
         for part in args.files() {
             check_apart(Some(path), Some(part))?;
         }
-        for said in args.with_fixed.iter().chain(&args.with_moving).filter(|said| is_file(said)) {
-            check_apart(Some(path), Some(Path::new(said)))?;
+        for stated in args.with_fixed.iter().chain(&args.with_moving).filter(|stated| is_file(stated)) {
+            check_apart(Some(path), Some(Path::new(stated)))?;
         }
         check_place(path, args.force)?;
     }
@@ -242,7 +242,7 @@ fn settings(args: &PlaceArgs, unit: Option<LengthUnit>) -> Result<ProposalSettin
 }
 
 /// What was named beside a half's file: a file, or an element of a design's list of parts.
-fn beside(said: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
+fn beside(stated: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
     let one = |text: &String| {
         if is_file(text) {
             let path = Path::new(text);
@@ -260,17 +260,17 @@ fn beside(said: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
         let text = text.trim();
         Ok(PartDetail::Part(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") }))
     };
-    said.iter().map(one).collect()
+    stated.iter().map(one).collect()
 }
 
 /// Whether it names a file, and is no part by itself.
-fn is_file(said: &str) -> bool {
-    !said.trim_start().starts_with('{') && (!said.contains('=') || Path::new(said).exists())
+fn is_file(stated: &str) -> bool {
+    !stated.trim_start().starts_with('{') && (!stated.contains('=') || Path::new(stated).exists())
 }
 
 /// What was chosen, what came next, and what to look at.
-fn summary(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
-    let design = found.problem.design();
+fn summary(result: &Proposal, moving: Option<&Path>) -> Vec<String> {
+    let design = result.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
     let head = format!(
         "width D {}, the larger lateral extent of the facets that can touch",
@@ -283,11 +283,12 @@ fn summary(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let halves = format!(
         "moving {moving} (pose errors and the centre of rotation are those of this half; if the other half moves, {other})"
     );
-    let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
+    let rows: Vec<_> =
+        result.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let ranking = rows.iter().enumerate().map(|(k, one)| {
         format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.in_words(&rows, unit))
     });
-    let notes: Vec<Diagnostic> = found.notes.iter().map(|note| note.worded(flags)).collect();
+    let notes: Vec<Diagnostic> = result.notes.iter().map(|note| note.worded(flags)).collect();
     [head, halves].into_iter().chain(ranking).chain(lines(&notes)).collect()
 }
 

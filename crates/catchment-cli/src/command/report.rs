@@ -88,7 +88,7 @@ impl MadeArgs {
     }
 
     /// Options that say how a design is decided.
-    fn asked(&self) -> impl Iterator<Item = &'static str> {
+    fn requested(&self) -> impl Iterator<Item = &'static str> {
         [
             ("--method", self.method.is_some()),
             ("--resolution", self.resolution.is_some()),
@@ -147,8 +147,8 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
     args.output.check()?;
     let path = &args.design.path;
     let parts = if path.is_dir() {
-        let asked = args.design.changed().map(|(option, _)| option).chain(args.made.asked()).next();
-        if let Some(option) = asked {
+        let requested = args.design.changed().map(|(option, _)| option).chain(args.made.requested()).next();
+        if let Some(option) = requested {
             let message = format!("{option}: {} is a result, which has been decided", shown(path));
             return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }

@@ -123,28 +123,28 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         folder::check(path, &Exec::new())?;
     }
     let running = args.exec.start()?;
-    let found = request.run(&running.exec)?;
+    let result = request.run(&running.exec)?;
     let mut notes = Vec::new();
     if let Some(path) = args.output() {
-        notes.push(folder::save(&found, path, VERSION, &running.exec)?);
+        notes.push(folder::save(&result, path, VERSION, &running.exec)?);
         written(path);
     }
     let threads = running.exec.threads();
     drop(running);
     if args.form.json {
-        to_stdout(&format!("{:#}\n", found.json(VERSION)))?;
+        to_stdout(&format!("{:#}\n", result.json(VERSION)))?;
     } else if args.form.csv {
-        to_stdout(&String::from_utf8(csv(&found.records())?)?)?;
-        if let Some(figure) = &found.figure {
+        to_stdout(&String::from_utf8(csv(&result.records())?)?)?;
+        if let Some(figure) = &result.figure {
             to_stdout(&String::from_utf8(csv(&figure.records())?)?)?;
         }
     } else if args.form.markdown {
         let effort = Effort { seconds: started.elapsed().as_secs_f64(), threads };
-        to_stdout(&found.markdown(VERSION, &effort)?)?;
+        to_stdout(&result.markdown(VERSION, &effort)?)?;
     } else {
-        to_stdout(&found.to_string())?;
+        to_stdout(&result.to_string())?;
     }
-    notes.extend(lines(&found.warnings()));
+    notes.extend(lines(&result.warnings()));
     to_stderr(&notes);
     Ok(ExitStatus::Done)
 }

@@ -76,14 +76,14 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     if output.wants_picture() {
         figure::ensure_fits(cells, exec)?;
     }
-    let found = compute(&problem, &settings, exec).map_err(refused)?;
+    let results = compute(&problem, &settings, exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let design = problem.design();
-    let report = SlicesReport::new(design, SlicesResult::of(&found, settings), Vec::new(), Some(timing));
-    let picture = || Ok(vec![("slices", figure::slice_matrix(design, problem.connector(), &found)?)]);
+    let report = SlicesReport::new(design, SlicesResult::of(&results, settings), Vec::new(), Some(timing));
+    let picture = || Ok(vec![("slices", figure::slice_matrix(design, problem.connector(), &results)?)]);
     let groups = |folder: &Path| {
-        save_slices(&found, folder, &problem, &report, exec)?;
-        Ok(format!(", {} Zarr groups", found.slices.len()))
+        save_slices(&results, folder, &problem, &report, exec)?;
+        Ok(format!(", {} Zarr groups", results.slices.len()))
     };
     let mut notes = lines(&problem.warnings());
     notes.extend(output.write(&report, picture, groups, exec)?);

@@ -80,10 +80,10 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let parts = args.result.output().map(FinishedDesigns::beside);
     let (kept_so_far, designs) = (parts.clone(), plan.len());
     running.may_be_left_after(move || tell_kept(kept_so_far.as_ref(), designs));
-    let found = compute(plan, parts.as_ref(), exec)?;
+    let results = compute(plan, parts.as_ref(), exec)?;
     signals::must_stay();
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
-    let report = SweepReport::new(&base, found, Vec::new(), Some(timing));
+    let report = SweepReport::new(&base, results, Vec::new(), Some(timing));
     let pictures = || {
         let map = sweep_map(&report).map(|picture| ("sweep", picture));
         let outlines = sweep_outlines(&report)?.map(|picture| ("outlines", picture));

@@ -88,7 +88,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
         Some(method) => return beside(args, with_changes(method, &changes)?),
         None => {
             if let Some(Change { option, .. }) = changes.first() {
-                let message = format!("{option} is a setting of drop, and no trials are asked for");
+                let message = format!("{option} is a setting of drop, and no trials were requested");
                 return Err(Failure::with_help(
                     message,
                     Some("add --beside drop, or leave it out".to_owned()),
@@ -174,9 +174,9 @@ fn beside(args: &ZraaArgs, method: Method) -> Result<ExitStatus, Failure> {
     }
     let resolutions = args.resolution.clone();
     let settings = trials::TrialsSettings { method, resolutions, halvings: args.halvings, seed: args.seed };
-    let found = trials::run(&problem, &settings, &running.exec)?;
+    let results = trials::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
-    let report = TrialsReport::new(problem.design(), found, problem.warnings(), Some(timing));
+    let report = TrialsReport::new(problem.design(), results, problem.warnings(), Some(timing));
     output.finish(&report, || Ok(figure::trials(&report)))
 }

@@ -134,8 +134,8 @@ impl Rates {
             let three_digits = |rate: f64| format!("{rate:.2e}").parse().expect("a number");
             *stored = Stored {
                 machine: here,
-                date: said("date", &["-u", "+%F"]),
-                commit: said("git", &["describe", "--always", "--dirty"]),
+                date: output_of("date", &["-u", "+%F"]),
+                commit: output_of("git", &["describe", "--always", "--dirty"]),
                 per_second: self.rows.iter().map(|r| (r.name.clone(), three_digits(r.per_second))).collect(),
             };
             let text = serde_json::to_string_pretty(&all).expect("plain data") + "\n";
@@ -197,7 +197,7 @@ fn machine() -> String {
 }
 
 /// What a program says, in one line; "unknown" where it is not there.
-fn said(program: &str, arguments: &[&str]) -> String {
+fn output_of(program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).output().ok().filter(|o| o.status.success());
     output.map_or_else(|| "unknown".to_owned(), |o| String::from_utf8_lossy(&o.stdout).trim().to_owned())
 }

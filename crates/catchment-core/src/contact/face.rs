@@ -38,7 +38,7 @@ pub fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProb
 
 /// The halves of `own`, moved to their common face centre if the design does not state it; unchanged if they
 /// pass each other by.
-pub fn found(connector: Connector, own: &OwnSpec) -> Connector {
+pub fn with_derived_face(connector: Connector, own: &OwnSpec) -> Connector {
     if !own.is_face_unknown() {
         return connector;
     }

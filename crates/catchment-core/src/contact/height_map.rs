@@ -193,8 +193,8 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
             (is_gone && a + b > f32::NEG_INFINITY).then_some((a + b, [i, j], a, b))
         };
         let [wide, deep] = bottom.counts.map(signed);
-        let found = (0..deep).flat_map(|j| (0..wide).map(move |i| [i, j])).filter_map(narrow);
-        let (_, [i, j], a, b) = found.max_by(|one, other| one.0.total_cmp(&other.0))?;
+        let result = (0..deep).flat_map(|j| (0..wide).map(move |i| [i, j])).filter_map(narrow);
+        let (_, [i, j], a, b) = result.max_by(|one, other| one.0.total_cmp(&other.0))?;
         let place = |map: &HeightMap, [i, j]: [i32; 2], z: f32| {
             (map.first + cell * DVec2::new(f64::from(i), f64::from(j))).extend(f64::from(z))
         };
@@ -204,8 +204,8 @@ pub fn in_the_way(top: &HeightMap, bottom: &HeightMap, moved: [i32; 2], cell: f6
 }
 
 /// The result in words, with both points as given text.
-pub fn in_words(found: &Obstruction, at: &[String; 2], unit: DisplayUnit) -> String {
-    let Obstruction { side, deeper, .. } = found;
+pub fn in_words(result: &Obstruction, at: &[String; 2], unit: DisplayUnit) -> String {
+    let Obstruction { side, deeper, .. } = result;
     let (whose, [fixed, moving]) = (if *side == HalfRole::Fixed { "fixed" } else { "moving" }, at);
     format!(
         "something narrow of the {whose} part is in the way, touched at {fixed} of the fixed and {moving} of the moving part as drawn: without it \

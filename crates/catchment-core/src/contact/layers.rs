@@ -22,8 +22,8 @@ impl Pair {
         let mut nearby = self.about(TOUCHING);
         nearby.turn(&pose.rotation, pose.lateral, TOUCHING / rotation_length, TOUCHING);
         let Some(height) = nearby.height_below(pose.lateral, f64::INFINITY).0 else { return false };
-        let mut found = Vec::new();
-        nearby.contacts(pose.lateral.extend(height), TOUCHING, &mut found);
-        found.iter().any(|(_, meeting)| meeting.shapes[0] != meeting.shapes[1])
+        let mut result = Vec::new();
+        nearby.contacts(pose.lateral.extend(height), TOUCHING, &mut result);
+        result.iter().any(|(_, meeting)| meeting.shapes[0] != meeting.shapes[1])
     }
 }

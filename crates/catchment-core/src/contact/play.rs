@@ -56,7 +56,7 @@ pub fn play(pair: &Pair) -> Vec<Play> {
 
 /// The same, only for the errors in `asked`, on these threads and with its progress: for other errors the
 /// play may be larger.
-pub fn play_on(pair: &Pair, asked: DofSet, exec: &Exec) -> Vec<Play> {
+pub fn play_on(pair: &Pair, requested: DofSet, exec: &Exec) -> Vec<Play> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
     let mut play: Vec<Play> = free.iter().map(|dof| Play { axis: *dof, minus: 0.0, plus: 0.0 }).collect();
@@ -67,7 +67,7 @@ pub fn play_on(pair: &Pair, asked: DofSet, exec: &Exec) -> Vec<Play> {
     let loose = along(pair, &free, &alone, &mut play, &exec.part([0.0, split], STAGE));
     let matters = |signs: &Vec<f64>| {
         let among = || free.iter().zip(signs).filter(|(_, sign)| **sign != 0.0).map(|(dof, _)| *dof);
-        among().all(|dof| !loose.contains(dof)) && among().any(|dof| asked.contains(dof))
+        among().all(|dof| !loose.contains(dof)) && among().any(|dof| requested.contains(dof))
     };
     let together: Vec<Vec<f64>> = together.into_iter().filter(matters).collect();
     along(pair, &free, &together, &mut play, &exec.part([split, 1.0], STAGE));
@@ -94,12 +94,12 @@ fn along(pair: &Pair, free: &[Dof], ways: &[Vec<f64>], play: &mut [Play], exec: 
         (way, reach(nearby, pair.mated_energy() + LEVEL, &way, farthest), farthest)
     };
     let groups: Vec<&[Vec<f64>]> = ways.chunks(TOGETHER).collect();
-    let found = exec.each(groups.len(), usize::MAX, STAGE, |k, _| {
+    let result = exec.each(groups.len(), usize::MAX, STAGE, |k, _| {
         let mut nearby = pair.about(4.0 * PATH_STEP);
         groups[k].iter().map(|signs| look(signs, &mut nearby)).collect::<Vec<_>>()
     });
     let mut loose = DofSet::EMPTY;
-    for (way, length, farthest) in found.into_iter().flatten() {
+    for (way, length, farthest) in result.into_iter().flatten() {
         for (dof, play) in free.iter().zip(&mut *play) {
             let off = length * way[dof.index()];
             (play.minus, play.plus) = (play.minus.max(-off), play.plus.max(off));

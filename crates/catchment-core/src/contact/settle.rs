@@ -53,7 +53,7 @@ pub fn rest(pair: &Pair) -> Option<PoseError> {
                 continue;
             }
             match nearby.energy(&PoseError::from_array(next)) {
-                Some(found) if found < lowest => best = Some((found, *way)),
+                Some(result) if result < lowest => best = Some((result, *way)),
                 Some(_) => {}
                 // They pass each other by: nothing holds them.
                 None => return None,
@@ -66,7 +66,7 @@ pub fn rest(pair: &Pair) -> Option<PoseError> {
         loop {
             let next = going(at, &way, step);
             match nearby.energy(&PoseError::from_array(next)) {
-                Some(found) if found < energy - SLOPE * step => (at, energy) = (next, found),
+                Some(result) if result < energy - SLOPE * step => (at, energy) = (next, result),
                 Some(_) => break,
                 None => return None,
             }
@@ -128,8 +128,8 @@ mod tests {
             let drawn = askew(&straight, &PoseError::from_array(e));
             prop_assume!(!problems(&Pair::new(&drawn, &design.alignment)).is_empty());
             let settled = settled(drawn, &design.alignment).unwrap();
-            let found = problems(&Pair::new(&settled, &design.alignment));
-            prop_assert!(!found.iter().any(|p| matches!(p, MatedProblem::Collision { .. } | MatedProblem::Gap { .. })), "{:?}", found);
+            let result = problems(&Pair::new(&settled, &design.alignment));
+            prop_assert!(!result.iter().any(|p| matches!(p, MatedProblem::Collision { .. } | MatedProblem::Gap { .. })), "{:?}", result);
             for (a, b) in settled.moving.surfaces[0].vertices.iter().zip(&straight.moving.surfaces[0].vertices) {
                 prop_assert!(a.distance(*b) < 0.02, "{} {}", a, b);
             }

@@ -163,10 +163,10 @@ impl<'a> Turned<'a> {
 
     /// Only supporting features count: features that support only within a slack lie above the other half,
     /// and carry nothing.
-    fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: HeightQuery) -> Carried {
+    fn carried(&mut self, trees: &Trees, lateral: DVec2, query: HeightQuery) -> Carried {
         let counts = Counts { slack: FLUSH, lowest: VERTICAL };
-        let carrier = &mut self.carriers[usize::from(asked.ceiling.is_finite())];
-        let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, *carrier);
+        let carrier = &mut self.carriers[usize::from(query.ceiling.is_finite())];
+        let carried = trees.carried(self.pair, &self.rotation, lateral, counts, query, *carrier);
         *carrier = carried.by.map(|(_, number, _)| number).or(*carrier);
         self.lowering += carried.took;
         carried

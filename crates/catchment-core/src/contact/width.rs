@@ -114,7 +114,7 @@ mod tests {
         };
         // Tip down to z = −10 from a ring at 0; a floor reaches up to −4: of the slope 6 of 10 count.
         let (moving, fixed) = (cone(0.0, -10.0, 20.0), block([-30.0; 3], [30.0, 30.0, -4.0]));
-        let found = width(&fixed, &moving, 0.0).unwrap();
-        assert!((found - 2.0 * 12.0).abs() < 0.02, "{found}");
+        let result = width(&fixed, &moving, 0.0).unwrap();
+        assert!((result - 2.0 * 12.0).abs() < 0.02, "{result}");
     }
 }

@@ -91,9 +91,9 @@ impl Design {
     #[must_use]
     pub fn with_contents(mut self, contents: &Contents) -> Self {
         if let ConnectorSpec::Own(own) = &mut self.connector {
-            for (half, found) in [(&mut own.fixed, &contents.fixed), (&mut own.moving, &contents.moving)] {
-                for (file, found) in half.files_mut().into_iter().zip(found) {
-                    file.content = Some(found.clone());
+            for (half, result) in [(&mut own.fixed, &contents.fixed), (&mut own.moving, &contents.moving)] {
+                for (file, result) in half.files_mut().into_iter().zip(result) {
+                    file.content = Some(result.clone());
                 }
             }
         }

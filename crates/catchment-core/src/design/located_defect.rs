@@ -47,11 +47,11 @@ impl LocatedDefects {
     pub const MOST: usize = Diagnostics::MOST;
 
     /// Sorts and shortens a list, from which `omitted` errors were already dropped.
-    pub(super) fn new(mut found: Vec<(DesignDefect, Range<usize>)>, omitted: usize, text: &str) -> Self {
-        found.sort_by_key(|(_, span)| (span.start, span.end));
-        let omitted = omitted + found.len().saturating_sub(Self::MOST);
-        found.truncate(Self::MOST);
-        let list = found.into_iter().map(|(defect, span)| LocatedDefect::new(defect, span, text)).collect();
+    pub(super) fn new(mut result: Vec<(DesignDefect, Range<usize>)>, omitted: usize, text: &str) -> Self {
+        result.sort_by_key(|(_, span)| (span.start, span.end));
+        let omitted = omitted + result.len().saturating_sub(Self::MOST);
+        result.truncate(Self::MOST);
+        let list = result.into_iter().map(|(defect, span)| LocatedDefect::new(defect, span, text)).collect();
         Self { list, omitted }
     }
 }

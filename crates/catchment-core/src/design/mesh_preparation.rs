@@ -266,14 +266,14 @@ mod tests {
 
     #[test]
     fn lengths_are_rounded_up_to_three_digits() {
-        for (value, said) in [
+        for (value, message) in [
             (0.01, "0.01"),
             (0.009_889_1, "0.00989"),
             (0.0048, "0.0048"),
             (12.341, "12.4"),
             (12341.0, "12400"),
         ] {
-            assert_eq!(rounded_up(value).to_string(), said);
+            assert_eq!(rounded_up(value).to_string(), message);
         }
     }
 

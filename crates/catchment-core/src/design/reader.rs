@@ -32,7 +32,7 @@ pub(super) const DIRECTIONS: [(&str, [f64; 3]); 6] = [
 /// Collects problems and sources.
 pub(super) struct Reader<'t> {
     text: &'t str,
-    found: Vec<(DesignDefect, Range<usize>)>,
+    defects: Vec<(DesignDefect, Range<usize>)>,
     omitted: usize,
     broken: Vec<Range<usize>>,
     pub sources: Sources,
@@ -50,7 +50,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str, syntax: Vec<toml::de::Error>) -> Self {
         let mut reader = Self {
             text,
-            found: Vec::new(),
+            defects: Vec::new(),
             omitted: 0,
             broken: Vec::new(),
             sources: Sources::default(),
@@ -73,16 +73,16 @@ impl<'t> Reader<'t> {
 
     /// All problems, if any.
     pub(super) fn finish(self) -> Result<Sources, LocatedDefects> {
-        if self.found.is_empty() {
+        if self.defects.is_empty() {
             Ok(self.sources)
         } else {
-            Err(LocatedDefects::new(self.found, self.omitted, self.text))
+            Err(LocatedDefects::new(self.defects, self.omitted, self.text))
         }
     }
 
     fn note(&mut self, defect: impl FnOnce() -> DesignDefect, span: Range<usize>) {
-        if self.found.len() < MOST_KEPT {
-            self.found.push((defect(), span));
+        if self.defects.len() < MOST_KEPT {
+            self.defects.push((defect(), span));
         } else {
             self.omitted += 1;
         }

@@ -364,15 +364,15 @@ mod tests {
                 envelope.contacts(cor, 1e-9, &mut contacts);
                 let nx = grid.axis(Dof::X).map_or(1, |a| a.cells);
                 let patch = field.patches[representative][usize::from(field.carriers[kept])];
-                let found = patch.at(kept % slab % nx, kept % slab / nx);
+                let result = patch.at(kept % slab % nx, kept % slab / nx);
                 let near = contacts.iter().any(|c| {
                     let ([gx, gy], turn) = c.gradient(cor);
                     [gx, gy, turn.x, turn.y, turn.z]
                         .iter()
-                        .zip(found)
+                        .zip(result)
                         .all(|(a, b)| (a - f64::from(b)).abs() < 1e-4 * (1.0 + a.abs()))
                 });
-                assert!(near, "{family:?} {cell}: {found:?} is none of {contacts:?}");
+                assert!(near, "{family:?} {cell}: {result:?} is none of {contacts:?}");
             }
             assert!(carried > 10, "{family:?}: {carried}");
         }

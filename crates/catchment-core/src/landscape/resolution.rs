@@ -249,13 +249,13 @@ mod tests {
                 // both numbers.
                 let centers = (0..cells).map(|k| (2 * k + 1).abs_diff(cells));
                 let divides = |d: usize, j: usize| (j * denominator).is_multiple_of(d);
-                let found =
+                let result =
                     centers.filter(|j| divides(cells, *j)).map(|j| j * denominator / cells).any(|k| {
                         (2..=denominator).all(|d| !(k.is_multiple_of(d) && denominator.is_multiple_of(d)))
                             && k > 0
                             && k < denominator
                     });
-                assert_eq!(Resolution::is_centred_on(cells, denominator), found, "{cells} {denominator}");
+                assert_eq!(Resolution::is_centred_on(cells, denominator), result, "{cells} {denominator}");
             }
         }
         assert!(Resolution::is_centred_on(30, 2) && !Resolution::is_centred_on(32, 2));

@@ -166,9 +166,9 @@ pub trait PoseMethod: DecisionMethod {
         exec: &Exec,
         finished: PoseObserver<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
-        let found = self.rest(problem, domain, exec)?;
-        found.1.iter().enumerate().for_each(|(number, end)| finished(number, *end));
-        Ok(found)
+        let result = self.rest(problem, domain, exec)?;
+        result.1.iter().enumerate().for_each(|(number, end)| finished(number, *end));
+        Ok(result)
     }
 
     /// Whether its motions are those of exact descent.

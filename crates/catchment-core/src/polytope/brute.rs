@@ -14,7 +14,7 @@ const DEPENDENT: f64 = 1e-7;
 
 /// The facets of the hull of points, one for each plane.
 pub fn facets(dimension: usize, points: &[PolytopePoint]) -> Vec<Halfspace> {
-    let mut found: Vec<Halfspace> = Vec::new();
+    let mut result: Vec<Halfspace> = Vec::new();
     let mut chosen = Vec::new();
     each_subset(points.len(), dimension, 0, &mut chosen, &mut |subset| {
         let Some(normal) = normal(dimension, points, subset) else { return };
@@ -24,12 +24,12 @@ pub fn facets(dimension: usize, points: &[PolytopePoint]) -> Vec<Halfspace> {
             let known = |other: &Halfspace| {
                 subset.iter().all(|vertex| other.excess(&points[*vertex]).abs() <= RESOLUTION)
             };
-            if behind && !found.iter().any(known) {
-                found.push(side);
+            if behind && !result.iter().any(known) {
+                result.push(side);
             }
         }
     });
-    found
+    result
 }
 
 /// Is the point behind all of these?

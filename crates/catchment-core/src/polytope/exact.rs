@@ -228,11 +228,11 @@ fn exact_minors(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> [Wide; 
         extend(&mut minor, rows);
         minors[columns] = minor;
     }
-    let mut found = [[0; MAX_DIMENSION]; MAX_DIMENSION];
-    for (column, minor) in found.iter_mut().enumerate().take(dimension) {
+    let mut result = [[0; MAX_DIMENSION]; MAX_DIMENSION];
+    for (column, minor) in result.iter_mut().enumerate().take(dimension) {
         *minor = minors[all ^ 1 << column];
     }
-    found
+    result
 }
 
 fn is_negative(number: &Wide) -> bool {

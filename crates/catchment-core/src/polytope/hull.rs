@@ -143,8 +143,8 @@ impl Hull {
         }
         for (made, &(facet, slot, _)) in horizon.iter().enumerate() {
             for other in (0..dimension).filter(|other| *other != slot) {
-                let found = self.around(facet, slot, other, fresh, seen.len())?;
-                self.simplices[fresh + made].neighbours[other] = found;
+                let result = self.around(facet, slot, other, fresh, seen.len())?;
+                self.simplices[fresh + made].neighbours[other] = result;
             }
         }
         waiting.facet[point] = NONE;

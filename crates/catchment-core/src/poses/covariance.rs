@@ -138,8 +138,8 @@ mod tests {
             let l = cholesky(&covariance).unwrap();
             let back = product(&l, &transposed(&l));
             for (row, wanted) in back.iter().zip(&covariance) {
-                for (found, wanted) in row.iter().zip(wanted) {
-                    prop_assert!((found - wanted).abs() < 1e-10);
+                for (result, wanted) in row.iter().zip(wanted) {
+                    prop_assert!((result - wanted).abs() < 1e-10);
                 }
             }
             let z = solve_lower(&l, &y);

@@ -70,17 +70,17 @@ fn sizes(text: &str, design: &Design) -> Result<PoseError, Diagnostics> {
 /// # Errors
 /// All errors of the text: sizes must not be negative, and must belong to free errors of the design.
 pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Diagnostics> {
-    let mut found = DiagnosticCollector::default();
-    let (written, spans) = terms(text, &mut found);
+    let mut result = DiagnosticCollector::default();
+    let (written, spans) = terms(text, &mut result);
     let mut values = [None; 5];
     for dof in Dof::ALL {
         let Some(quantity) = written[dof.index()] else { continue };
         match size(dof, quantity, design) {
             Ok(value) => values[dof.index()] = Some(value),
-            Err(fault) => found.push_at(fault, || Some(spans[dof.index()].clone())),
+            Err(fault) => result.push_at(fault, || Some(spans[dof.index()].clone())),
         }
     }
-    found.refuse()?;
+    result.refuse()?;
     Ok(values)
 }
 

@@ -31,13 +31,13 @@ pub(super) fn spans(text: &str, start: usize) -> Vec<Range<usize>> {
         Quoted,
         Closed,
     }
-    let (mut found, mut from, mut end, mut state) = (Vec::new(), start, text.len(), State::Begin);
+    let (mut result, mut from, mut end, mut state) = (Vec::new(), start, text.len(), State::Begin);
     for (at, byte) in text.bytes().enumerate().skip(start) {
         state = match (state, byte) {
             (State::Quoted, b'"') => State::Closed,
             (State::Quoted, _) | (State::Begin | State::Closed, b'"') => State::Quoted,
             (_, b',') => {
-                found.push(trimmed(text, from..at));
+                result.push(trimmed(text, from..at));
                 from = at + 1;
                 State::Begin
             }
@@ -48,8 +48,8 @@ pub(super) fn spans(text: &str, start: usize) -> Vec<Range<usize>> {
             _ => State::Plain,
         };
     }
-    found.push(trimmed(text, from..end));
-    found
+    result.push(trimmed(text, from..end));
+    result
 }
 
 /// The range without the blanks at its ends; the whole range if it is blank.
@@ -77,9 +77,9 @@ mod tests {
         #[test]
         fn fields_are_those_that_the_reader_sees(text in "[a,\" \r\n]{0,40}") {
             for (start, record) in records(&text) {
-                let found = spans(&text, start);
-                prop_assert_eq!(found.len(), record.len());
-                for (span, field) in found.into_iter().zip(&record) {
+                let result = spans(&text, start);
+                prop_assert_eq!(result.len(), record.len());
+                for (span, field) in result.into_iter().zip(&record) {
                     let written = &text[span];
                     prop_assert!(written.contains('"') || written.trim() == field, "{written:?} {field:?}");
                 }

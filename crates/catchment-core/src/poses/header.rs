@@ -260,9 +260,10 @@ mod tests {
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
             assert_eq!(fault.help().as_deref(), Some(help.as_str()), "{name}");
         }
-        for (name, said) in [("x_ft", "unknown unit"), ("x [ft]", "unknown unit"), ("x (deg)", "is a length")]
+        for (name, stated) in
+            [("x_ft", "unknown unit"), ("x [ft]", "unknown unit"), ("x (deg)", "is a length")]
         {
-            assert!(read(name).unwrap_err().message.contains(said), "{name}");
+            assert!(read(name).unwrap_err().message.contains(stated), "{name}");
         }
         for name in ["outcome", "final_height", "contacts", "final_x", "final_x [mm]", "final_yaw_deg"] {
             assert!(read(name).unwrap_err().message.contains("the answer adds"), "{name}");

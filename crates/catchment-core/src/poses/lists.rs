@@ -25,8 +25,8 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// Everything that is wrong with the text, each with its bytes.
 pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], Diagnostics> {
-    let mut found = DiagnosticCollector::default();
-    let (written, spans) = terms(text, &mut found);
+    let mut result = DiagnosticCollector::default();
+    let (written, spans) = terms(text, &mut result);
     let mut counts = [None; 5];
     for dof in Dof::ALL {
         let Some(Quantity { value, unit }) = written[dof.index()] else { continue };
@@ -34,11 +34,11 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
         let name = dof.name();
         if !design.alignment.free.contains(dof) {
             let help = format!("leave {name} out, or free it in [alignment] of the design");
-            found.push_at(defect(format!("{name} is locked, so it has one place"), help), span);
+            result.push_at(defect(format!("{name} is locked, so it has one place"), help), span);
         } else if unit != QuantityUnit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value)
         {
             let help = "write how many points, such as 5: 2 or more";
-            found.push_at(
+            result.push_at(
                 defect(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help),
                 span,
             );
@@ -46,7 +46,7 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
             counts[dof.index()] = Some(value as usize);
         }
     }
-    found.refuse()?;
+    result.refuse()?;
     Ok(counts)
 }
 

@@ -12,20 +12,20 @@ use crate::diagnostic::{DiagnosticCollector, Diagnostics};
 /// # Errors
 /// The first invalid rows, each with its number from 0, and the number of further invalid rows.
 pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Diagnostics> {
-    let mut found = DiagnosticCollector::default();
+    let mut result = DiagnosticCollector::default();
     for (number, row) in rows.iter().enumerate() {
         if row.iter().any(|value| !value.is_finite()) {
-            found.push(defect(format!("row {number} holds a value that is no number"), "leave it out"));
+            result.push(defect(format!("row {number} holds a value that is no number"), "leave it out"));
             continue;
         }
         let written = row.map(|value| Some(Quantity { value, unit: QuantityUnit::Bare }));
         if let Err(faults) = resolve(&written, OffsetsAt::Face, design) {
             for (_, fault) in faults {
-                found.push(fault.prefixed(&format!("row {number}")));
+                result.push(fault.prefixed(&format!("row {number}")));
             }
         }
     }
-    found.refuse()
+    result.refuse()
 }
 
 #[cfg(test)]
@@ -44,15 +44,18 @@ mod tests {
             [0.0, 0.0, 0.0, 0.0, 0.1],
             [101.0, 0.0, 0.0, 4.0, 0.0],
         ];
-        let said: Vec<String> = check_rows(&wrong, &design)
+        let stated: Vec<String> = check_rows(&wrong, &design)
             .unwrap_err()
             .list
             .into_iter()
             .map(|diagnostic| diagnostic.message)
             .collect();
-        assert!(said[0].starts_with("row 1 holds a value that is no number"), "{said:?}");
-        assert!(said[1].starts_with("row 2: yaw = 0.1, but yaw is locked"), "{said:?}");
-        assert!(said[2].contains("x = 101 is out of range") && said[3].contains("pitch = 4"), "{said:?}");
+        assert!(stated[0].starts_with("row 1 holds a value that is no number"), "{stated:?}");
+        assert!(stated[1].starts_with("row 2: yaw = 0.1, but yaw is locked"), "{stated:?}");
+        assert!(
+            stated[2].contains("x = 101 is out of range") && stated[3].contains("pitch = 4"),
+            "{stated:?}"
+        );
         // The list ends, the count does not.
         let many = check_rows(&[[200.0, 0.0, 0.0, 0.0, 0.0]; 50], &design).unwrap_err();
         assert_eq!(many.list.len() + many.omitted, 50);

@@ -56,7 +56,7 @@ impl<'a> PoseTable<'a> {
         at: OffsetsAt,
         known: &[&str],
     ) -> Result<Self, Diagnostics> {
-        let mut found = DiagnosticCollector::default();
+        let mut result = DiagnosticCollector::default();
         let mut rows = records(text);
         let Some((start, names)) = rows.next() else {
             return Err(empty("the table is empty"));
@@ -67,35 +67,35 @@ impl<'a> PoseTable<'a> {
                 format!("{width} columns"),
                 format!("a table has at most {MOST_COLUMNS}; is it one of poses?"),
             );
-            found.push_at(fault, || spans(text, start).into_iter().next());
-            return Err(found.sorted());
+            result.push_at(fault, || spans(text, start).into_iter().next());
+            return Err(result.sorted());
         }
         if width == 1 && names[0].contains([';', '\t']) {
             let fault = defect("one column alone", "separate the columns with commas");
-            found.push_at(fault, || spans(text, start).into_iter().next());
-            return Err(found.sorted());
+            result.push_at(fault, || spans(text, start).into_iter().next());
+            return Err(result.sorted());
         }
-        let columns = columns(&names, &spans(text, start), design, known, &mut found);
+        let columns = columns(&names, &spans(text, start), design, known, &mut result);
         let mut errors = Vec::new();
-        let mut locked_said = [false; 5];
+        let mut locked_before = [false; 5];
         for (start, record) in rows {
             if record.len() != width {
                 let message = format!("{} values under {width} column names", record.len());
                 let help = "every row has as many values as the header has names";
-                found.push_at(defect(message, help), || whole(&spans(text, start)));
+                result.push_at(defect(message, help), || whole(&spans(text, start)));
             } else if errors.len() == MOST_POSES {
                 let fault = defect(format!("more than {MOST_POSES} poses"), "split the table");
-                found.push_at(fault, || spans(text, start).into_iter().next());
+                result.push_at(fault, || spans(text, start).into_iter().next());
                 break;
             } else {
                 let error = row(&record, &columns, at, design).unwrap_or_else(|faults| {
                     // Once for all diagnostics to the row, and only if there are any.
                     let spans = spans(text, start);
                     for (dof, fault, locked) in faults {
-                        let said = locked && std::mem::replace(&mut locked_said[dof.index()], true);
-                        if !said {
+                        let stated = locked && std::mem::replace(&mut locked_before[dof.index()], true);
+                        if !stated {
                             let column = columns[dof.index()].as_ref();
-                            found.push_at(fault, || column.map(|column| spans[column.index].clone()));
+                            result.push_at(fault, || column.map(|column| spans[column.index].clone()));
                         }
                     }
                     PoseError::default()
@@ -103,10 +103,10 @@ impl<'a> PoseTable<'a> {
                 errors.push(error);
             }
         }
-        if errors.is_empty() && found.is_empty() {
+        if errors.is_empty() && result.is_empty() {
             return Err(empty("the table has no rows"));
         }
-        found.refuse()?;
+        result.refuse()?;
         Ok(Self { text, design, at, columns, errors })
     }
 
@@ -184,7 +184,7 @@ fn columns(
     spans: &[Range<usize>],
     design: &Design,
     known: &[&str],
-    found: &mut DiagnosticCollector,
+    result: &mut DiagnosticCollector,
 ) -> Columns {
     let mut columns = Columns::default();
     let mut wrong = false;
@@ -203,12 +203,12 @@ fn columns(
             Err(fault) => fault,
         };
         wrong = true;
-        found.push_at(fault, || spans.get(index).cloned());
+        result.push_at(fault, || spans.get(index).cloned());
     }
     if columns.iter().all(Option::is_none) && !wrong {
         let help = "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
                     x_mm and pitch_deg";
-        found.push_at(defect("no column is a pose error", help), || whole(spans));
+        result.push_at(defect("no column is a pose error", help), || whole(spans));
     }
     columns
 }
@@ -311,8 +311,8 @@ mod tests {
 
     #[test]
     fn every_cell_is_complained_about_in_its_place() {
-        let found = wrong("x,pitch,y\n1,2\nnan,,0\n1e9,4,0.5\n0,0,0.5\n0,0,0.6\n1 mm,0,0\n");
-        let cells: Vec<&str> = found.iter().map(|(cell, _)| cell.as_str()).collect();
+        let result = wrong("x,pitch,y\n1,2\nnan,,0\n1e9,4,0.5\n0,0,0.5\n0,0,0.6\n1 mm,0,0\n");
+        let cells: Vec<&str> = result.iter().map(|(cell, _)| cell.as_str()).collect();
         // The second value of the locked y adds no new error.
         assert_eq!(cells, ["1,2", "nan", "", "1e9", "4", "0.5", "1 mm"]);
         assert_eq!(wrong("x_ft,Pitch,rol,x,x_mm,final_x\n0,0,0,0,0,0\n").len(), 5);

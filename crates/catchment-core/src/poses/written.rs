@@ -151,9 +151,9 @@ mod tests {
                 panic!("one fault of y");
             };
             // The value that the message proposes is valid input.
-            let said = fault.message.split("face centre at ").nth(1).unwrap();
-            let said = said.strip_suffix(" at this rotation").unwrap();
-            assert!(read(said, OffsetsAt::Face).is_ok(), "{said}");
+            let stated = fault.message.split("face centre at ").nth(1).unwrap();
+            let stated = stated.strip_suffix(" at this rotation").unwrap();
+            assert!(read(stated, OffsetsAt::Face).is_ok(), "{stated}");
         }
     }
 

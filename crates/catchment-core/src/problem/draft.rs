@@ -175,11 +175,11 @@ impl Draft {
             Ok(connector) => {
                 let connector = match &self.design.connector {
                     ConnectorSpec::Own(own) => {
-                        let found = face::found(connector, own);
-                        match own.settle.then(|| settle::settled(found.clone(), &self.design.alignment)) {
-                            None => found,
+                        let result = face::with_derived_face(connector, own);
+                        match own.settle.then(|| settle::settled(result.clone(), &self.design.alignment)) {
+                            None => result,
                             Some(Some(settled)) => settled,
-                            Some(None) => return Ok(self.run_off(found)),
+                            Some(None) => return Ok(self.run_off(result)),
                         }
                     }
                     ConnectorSpec::Family(_) => connector,

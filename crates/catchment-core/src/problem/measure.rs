@@ -27,14 +27,14 @@ const DIGITS: i32 = 9;
 pub(super) fn measured(draft: Draft, exec: &Exec) -> Result<Draft, ProblemError> {
     let Some(source) = draft.source().cloned() else { return Ok(draft) };
     let is_round = is_round(draft.design());
-    let (mut found, from) = of(draft, exec)?;
+    let (mut result, from) = of(draft, exec)?;
     let mut why = from;
     if is_round {
-        let (draft, _) = Draft::read_as(source.clone(), Width::Provisional(Some(found)))?;
+        let (draft, _) = Draft::read_as(source.clone(), Width::Provisional(Some(result)))?;
         let (share, from) = of(draft, exec)?;
-        (found, why) = (found * share, from);
+        (result, why) = (result * share, from);
     }
-    Draft::read_as(source, Width::Measured(rounded(found), why)).map(|(draft, _)| draft)
+    Draft::read_as(source, Width::Measured(rounded(result), why)).map(|(draft, _)| draft)
 }
 
 /// D of the halves of a draft, in the width that the draft was read with.
@@ -49,8 +49,8 @@ fn of(draft: Draft, exec: &Exec) -> Result<(f64, WidthFrom), ProblemError> {
         };
     // The mated height does not depend on the alignment problem.
     let lift = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X)).mated_height();
-    let found = lift.is_finite().then(|| width::default(&connector.fixed, &connector.moving, lift, widest));
-    found.flatten().ok_or_else(|| draft.unmated(&[MatedProblem::Apart], None).into())
+    let result = lift.is_finite().then(|| width::default(&connector.fixed, &connector.moving, lift, widest));
+    result.flatten().ok_or_else(|| draft.unmated(&[MatedProblem::Apart], None).into())
 }
 
 /// Whether parts are round, so that how finely they are drawn depends on D.

@@ -87,11 +87,11 @@ fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let top = HeightMap::centered(halves[0], &DMat3::IDENTITY, 1.0, cell);
     let bottom = HeightMap::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
     let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();
-    let found = height_map::in_the_way(&top, &bottom, moved, cell)?;
+    let result = height_map::in_the_way(&top, &bottom, moved, cell)?;
     // The height map of the moving half has its origin at the face centre.
     let at = [HalfRole::Fixed, HalfRole::Moving]
-        .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
-    Some(height_map::in_words(&found, &at, DisplayUnit::of(design)))
+        .map(|side| place(design, connector.origin.drawn(side, result.at[side as usize])));
+    Some(height_map::in_words(&result, &at, DisplayUnit::of(design)))
 }
 
 /// First contact of the halves at zero error, and its height above the drawn pose.

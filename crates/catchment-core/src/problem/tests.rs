@@ -78,9 +78,9 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
 #[test]
 fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
     let place = |text: &str| {
-        let found = diagnostics(read(text).unwrap_err());
-        let source = found.source.unwrap();
-        let span = found.list[0].span.clone().unwrap();
+        let result = diagnostics(read(text).unwrap_err());
+        let source = result.source.unwrap();
+        let span = result.list[0].span.clone().unwrap();
         source.text[span].to_owned()
     };
     assert_eq!(place("[connector]\nfamily = \"v-fac\"\n"), "\"v-fac\"");
@@ -109,9 +109,9 @@ fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
 fn a_refused_change_says_what_asked_for_it() {
     let draft = Draft::read(SourceText::new("d.toml", V_FACE)).unwrap();
     let all = DofSet::ALL;
-    let found = diagnostics(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
-    assert!(found.list[0].message.starts_with("free: "), "{found}");
-    assert_eq!(&found.source.unwrap().text[found.list[0].span.clone().unwrap()], "\"v-face\"");
+    let result = diagnostics(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
+    assert!(result.list[0].message.starts_with("free: "), "{result}");
+    assert_eq!(&result.source.unwrap().text[result.list[0].span.clone().unwrap()], "\"v-face\"");
     let changed = draft.change("aspect ratio", |design| design.with_aspect_ratio(0.5)).unwrap();
     assert_ne!(changed.build().unwrap().digest(), read(V_FACE).unwrap().digest());
 }
@@ -157,9 +157,9 @@ fn what_is_wrong_in_memory_is_said_without_a_file() {
     let mut open = soup(Family::Pyramid, true);
     open.pop();
     let fixed = HalfSource::Triangles(soup(Family::Pyramid, false));
-    let found = diagnostics(Problem::new(fixed, HalfSource::Triangles(open), alignment).unwrap_err());
-    assert!(found.source.is_none() && !found.list.is_empty());
-    assert!(found.to_string().contains("moving half"), "{found}");
+    let result = diagnostics(Problem::new(fixed, HalfSource::Triangles(open), alignment).unwrap_err());
+    assert!(result.source.is_none() && !result.list.is_empty());
+    assert!(result.to_string().contains("moving half"), "{result}");
 }
 
 /// A plate of the given size, a cylinder of radius 6 that stands on it, in mm.
@@ -178,11 +178,11 @@ fn a_width_that_is_left_out_is_measured() {
         ConnectorSpec::Own(own) => own.width_from,
         ConnectorSpec::Family(_) => panic!("own halves"),
     };
-    let found = draft(&pin_on("", 40.0));
-    let design = found.design();
+    let result = draft(&pin_on("", 40.0));
+    let design = result.design();
     // The cylinder is a polygon inside of the circle, by at most 0.001 D to either side.
     assert!((12.0 - 0.002 * 12.0..=12.0).contains(&design.width), "{}", design.width);
-    assert_eq!(from(&found), WidthFrom::Touching);
+    assert_eq!(from(&result), WidthFrom::Touching);
     // Lengths with a unit are converted with this D; plain numbers are in D.
     assert!((design.alignment.center_of_rotation * design.width - 3.0).abs() < 1e-12);
     assert!((design.alignment.half_ranges[0] * design.width - 6.0).abs() < 1e-12);
@@ -216,23 +216,23 @@ fn a_measured_width_gives_the_digest_of_a_written_one() {
 
 #[test]
 fn what_is_wrong_beside_a_width_that_is_left_out_is_said() {
-    let said = |text: &str| {
+    let error_of = |text: &str| {
         let diagnostics = diagnostics(Draft::read(SourceText::new("d.toml", text)).unwrap_err());
         diagnostics.list.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; ")
     };
     let pin = pin_on("", 40.0);
     // D depends on it.
-    let message = said(&pin.replace("radius = 6", "radius = \"0.5 D\""));
+    let message = error_of(&pin.replace("radius = 6", "radius = \"0.5 D\""));
     assert!(message.contains("0.5 D depends on D"), "{message}");
     // Out of range once D is known, and not before.
-    let message = said(&pin.replace("\"6 mm\"", "\"6 m\""));
+    let message = error_of(&pin.replace("\"6 mm\"", "\"6 m\""));
     assert!(message.contains("outside of"), "{message}");
     // Nothing to measure, nothing that touches, nothing there.
-    let message = said("[connector]\nunit = \"mm\"\nfamily = \"pyramid\"\n");
+    let message = error_of("[connector]\nunit = \"mm\"\nfamily = \"pyramid\"\n");
     assert!(message.contains("width"), "{message}");
-    let message = said(&pin.replace("height = 10 }", "height = 10 }\nat = [400, 0, 0]"));
+    let message = error_of(&pin.replace("height = 10 }", "height = 10 }\nat = [400, 0, 0]"));
     assert!(message.contains("pass each other by"), "{message}");
     let half = "{ mesh = \"no.stl\", unit = \"mm\" }";
-    let message = said(&format!("[connector]\nunit = \"mm\"\nfixed = {half}\nmoving = {half}\n"));
+    let message = error_of(&format!("[connector]\nunit = \"mm\"\nfixed = {half}\nmoving = {half}\n"));
     assert!(message.contains("there is no such file"), "{message}");
 }

@@ -51,7 +51,7 @@ pub struct Answer {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunCorrection {
     /// The estimate with its interval and strata.
-    pub found: correction::UnbiasedSum,
+    pub estimate: correction::UnbiasedSum,
     /// Seed of the poses.
     pub seed: u64,
     /// Name of the method that followed them.
@@ -63,12 +63,12 @@ pub struct RunCorrection {
 impl Answer {
     /// Measure of the accepted set, Dᵃ·radᵇ: the unbiased estimate if available.
     pub fn sum(&self) -> f64 {
-        self.corrected.as_ref().map_or(self.merits.sum.sum, |corrected| corrected.found.sum)
+        self.corrected.as_ref().map_or(self.merits.sum.sum, |corrected| corrected.estimate.sum)
     }
 
     /// Its 95 % interval; `None` without samples.
     pub fn sum_ci95(&self) -> Option<[f64; 2]> {
-        self.corrected.as_ref().map_or(self.merits.sum.ci95, |corrected| Some(corrected.found.ci95))
+        self.corrected.as_ref().map_or(self.merits.sum.ci95, |corrected| Some(corrected.estimate.ci95))
     }
 
     /// The unit of the Sum, such as `D·rad`.
@@ -94,13 +94,14 @@ impl Answer {
         let is_certain = self.by_products.certificate.is_some();
         match &self.corrected {
             Some(corrected) => {
-                let ([lo, hi], sum_grid) = (corrected.found.ci95, self.merits.sum.sum);
+                let ([lo, hi], sum_grid) = (corrected.estimate.ci95, self.merits.sum.sum);
                 if !is_certain && !(lo..=hi).contains(&sum_grid) {
                     warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] }.into());
                 }
-                let motions = corrected.found.strata.iter().map(|stratum| stratum.undecided).sum();
+                let motions = corrected.estimate.strata.iter().map(|stratum| stratum.undecided).sum();
                 if motions > 0 {
-                    warnings.push(Warning::UndecidedSample { motions, of: corrected.found.descents }.into());
+                    warnings
+                        .push(Warning::UndecidedSample { motions, of: corrected.estimate.descents }.into());
                 }
             }
             None if !(descended || is_certain) && self.grid().is_some() => {

@@ -163,7 +163,7 @@ mod tests {
         let exec = Exec::new();
         exec.cancel_flag().store(true, Ordering::Relaxed);
         let method = "descent".parse().unwrap();
-        let found = v_face().follow_keeping(&method, &[PoseError::default()], &exec);
-        assert!(matches!(found, Err(DecideError::Cancelled(_))));
+        let result = v_face().follow_keeping(&method, &[PoseError::default()], &exec);
+        assert!(matches!(result, Err(DecideError::Cancelled(_))));
     }
 }

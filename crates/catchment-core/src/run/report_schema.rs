@@ -35,7 +35,7 @@ impl<'a> ReportSchema<'a> {
 
     /// Every alternative that a place may have, without references.
     fn alternatives(&self, schema: &'a Value) -> Vec<&'a Value> {
-        let (mut found, mut open) = (Vec::new(), vec![(schema, 0)]);
+        let (mut result, mut open) = (Vec::new(), vec![(schema, 0)]);
         while let Some((schema, depth)) = open.pop() {
             if depth > DEEPEST {
                 continue;
@@ -52,10 +52,10 @@ impl<'a> ReportSchema<'a> {
                 open.extend(choices.into_iter().flatten().rev().map(|choice| (choice, depth + 1)));
             }
             if !is_choice || schema.get("properties").is_some() {
-                found.push(schema);
+                result.push(schema);
             }
         }
-        found
+        result
     }
 
     /// The schemas after a step; empty if the step does not exist.
@@ -69,11 +69,11 @@ impl<'a> ReportSchema<'a> {
             return (schema == &Value::Bool(true)).then_some(schema);
         };
         let named = |key: &str| fields.get(key).and_then(Value::as_object);
-        if let Some(found) = named("properties").and_then(|properties| properties.get(step)) {
-            return Some(found);
+        if let Some(result) = named("properties").and_then(|properties| properties.get(step)) {
+            return Some(result);
         }
-        if let Some(found) = named("patternProperties").and_then(|patterns| patterns.values().next()) {
-            return Some(found);
+        if let Some(result) = named("patternProperties").and_then(|patterns| patterns.values().next()) {
+            return Some(result);
         }
         let position = step.parse::<usize>();
         if let Some(items) =
@@ -126,17 +126,17 @@ impl<'a> ReportSchema<'a> {
 
     /// The types at a place, `integer` as `number`; empty if any type is possible.
     pub fn types(&self, here: &[&'a Value]) -> Vec<&'a str> {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         for schema in here {
             match schema.get("type") {
-                Some(Value::String(one)) => found.push(one.as_str()),
-                Some(Value::Array(several)) => found.extend(several.iter().filter_map(Value::as_str)),
-                _ if schema.get("const").or_else(|| schema.get("enum")).is_some() => found.push("string"),
+                Some(Value::String(one)) => result.push(one.as_str()),
+                Some(Value::Array(several)) => result.extend(several.iter().filter_map(Value::as_str)),
+                _ if schema.get("const").or_else(|| schema.get("enum")).is_some() => result.push("string"),
                 _ => return Vec::new(),
             }
         }
-        found.iter_mut().filter(|of| **of == "integer").for_each(|of| *of = "number");
-        found
+        result.iter_mut().filter(|of| **of == "integer").for_each(|of| *of = "number");
+        result
     }
 
     /// The type at a place that cannot hold a number.

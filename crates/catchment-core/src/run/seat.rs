@@ -231,19 +231,19 @@ impl Problem {
     /// remedy.
     fn sentence(&self, problem: &MatedProblem) -> String {
         let unit = DisplayUnit::of(self.design());
-        let said = problem.in_words(unit);
+        let stated = problem.in_words(unit);
         if !is_unstable(problem) {
-            return said;
+            return stated;
         }
         let End { outcome, error, height } = self.settled();
         if outcome == Outcome::Missed {
             return format!(
-                "{said}. Released without an error the half runs off: draw the halves so that they hold each other where they are mated"
+                "{stated}. Released without an error the half runs off: draw the halves so that they hold each other where they are mated"
             );
         }
         if error.to_array().into_iter().all(|part| part.abs() <= CONTACT_TOLERANCE) {
             return format!(
-                "{said}. Released without an error the half balances, and any push lets it fall: draw the halves so that they are mated where they rest"
+                "{stated}. Released without an error the half balances, and any push lets it fall: draw the halves so that they are mated where they rest"
             );
         }
         let turn = rotation_angle(&rotation(error.roll, error.pitch, error.yaw));
@@ -256,7 +256,7 @@ impl Problem {
             ConnectorSpec::Family(_) => "lock what moves there, or move the centre of rotation",
         };
         format!(
-            "{said}. Released without an error the half comes to rest {} and {} away, {} deeper, at {}: {takes}",
+            "{stated}. Released without an error the half comes to rest {} and {} away, {} deeper, at {}: {takes}",
             unit.length(error.x.hypot(error.y)),
             unit.amount(Dof::Yaw, turn),
             unit.length(sinks),

@@ -111,10 +111,10 @@ pub(super) fn entered(
     }
     style.refuse_changes(is_shape)?;
     for condition in ["systemLanguage", "requiredExtensions", "requiredFeatures"] {
-        if let Some(found) = tag.attribute(condition) {
+        if let Some(result) = tag.attribute(condition) {
             let message = format!("`{condition}` is not read, which draws an element for some readers only");
             return Err(UnsupportedSvg {
-                at: found.span,
+                at: result.span,
                 message,
                 help: "delete the attribute, or the element",
             });

@@ -171,7 +171,7 @@ impl Sheet {
     /// The properties of an element in their order of precedence, the strongest last; without attributes of their names.
     pub(super) fn declared(&mut self, tag: &Tag<'_>) -> Result<Vec<Declaration>, UnsupportedSvg> {
         let text = |name: &str| tag.attribute(name).map(|own| own.value);
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         if !self.rules.is_empty() {
             let class = text("class").unwrap_or_default();
             let classes: Vec<&str> = class.split_ascii_whitespace().collect();
@@ -184,12 +184,12 @@ impl Sheet {
                     && selector.classes.iter().all(|class| classes.contains(&class.as_str()))
             };
             let meant = self.rules.iter().filter(|rule| matches(&rule.selector));
-            found.extend(meant.flat_map(|rule| rule.declarations.iter().cloned()));
+            result.extend(meant.flat_map(|rule| rule.declarations.iter().cloned()));
         }
         if let Some(own) = tag.attribute("style") {
-            found.extend(declarations(&own.value, own.span.start)?);
+            result.extend(declarations(&own.value, own.span.start)?);
         }
-        Ok(found)
+        Ok(result)
     }
 }
 
@@ -209,7 +209,7 @@ fn at_rule(head: &str, body: &str, at: Range<usize>) -> Result<(), UnsupportedSv
 /// The relevant properties of a block; `start` is its position in the picture.
 pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>, UnsupportedSvg> {
     let block = without_comments(block);
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut at = 0;
     while at < block.len() {
         let end = end_of_declaration(&block, at);
@@ -228,9 +228,9 @@ pub(super) fn declarations(block: &str, start: usize) -> Result<Vec<Declaration>
                 help: "write a plain value without !important and var()",
             });
         }
-        found.push(Declaration { name, value, span });
+        result.push(Declaration { name, value, span });
     }
-    Ok(found)
+    Ok(result)
 }
 
 /// The same text with blanks in the place of comments, byte for byte.
@@ -317,8 +317,8 @@ mod tests {
     #[test]
     fn declarations_are_split_where_css_splits_them() {
         let names = |text: &str| {
-            let found = declarations(text, 0).unwrap();
-            found.into_iter().map(|d| format!("{}={}", d.name, d.value)).collect::<Vec<_>>().join(" ")
+            let result = declarations(text, 0).unwrap();
+            result.into_iter().map(|d| format!("{}={}", d.name, d.value)).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(names("fill: RED ;display:none"), "fill=red display=none");
         assert_eq!(

@@ -157,36 +157,36 @@ class Interval(TypedDict):
     hi: float
 
 
-class OnaaReport(TypedDict):
+class Onaa(TypedDict):
     """The largest axis-oriented n-cube in the accepted set."""
 
     #: Edge of the cube, with each axis divided by its range: in [0, 1].
     edge: float
-    #: Bounds of the cube; empty if the edge is 0.
+    #: Bounds of the cube, of several the one with its centre nearest to zero; empty if the edge is 0.
     bounds: list[Interval]
     #: Whether exact motions determined the size, independently of the cells; false in reports of older versions.
     followed: bool
 
 
-class CenteredReport(TypedDict):
-    """The largest n-cube around zero in the accepted set."""
+class CenteredBox(TypedDict):
+    """The largest box around zero in the accepted set."""
 
-    #: Edge of the cube, with each axis divided by its range: in [0, 1].
+    #: Size relative to the wanted proportions; for the cube, its edge with each axis divided by its range: in [0, 1].
     edge: float
-    #: Bounds of the cube.
+    #: Bounds of the box, from −h to h along each axis.
     bounds: list[Interval]
-    #: Whether the border of the error box limits the cube, so that it may be larger.
+    #: Whether the border of the error box limits the box, so that it may be larger.
     reaches_border: bool
     #: Whether exact motions determined the size, independently of the cells; false in reports of older versions.
     followed: bool
-    #: Number of sampled poses of the final cube, all of which dock.
+    #: Number of sampled poses of the final box, all of which dock.
     sampled: NotRequired[int | None]
-    #: Errors that limit the cube: with one of them slightly larger and the others inside the cube a pose fails; absent if the cells determined the size.
+    #: Errors that limit the box: with one of them slightly larger and the others inside it a pose fails; absent if the cells determined the size.
     limited_by: NotRequired[list[Literal['x', 'y', 'roll', 'pitch', 'yaw']]]
 
 
-class ToleranceReport(TypedDict):
-    """Single-axis limits of an error."""
+class Tolerance(TypedDict):
+    """Single-axis limits of an error, in D or radians."""
 
     #: The error.
     axis: Literal['x', 'y', 'roll', 'pitch', 'yaw']
@@ -206,13 +206,13 @@ class ToleranceReport(TypedDict):
     plus_reaches_border: bool
 
 
-class UprightReport(TypedDict):
+class Upright(TypedDict):
     """Figures of merit of the connector with roll and pitch locked."""
 
     #: The largest box around zero in which every sampled pose docks, in the proportions of the tolerances; its edge is a multiple of these.
-    window: CenteredReport
+    window: CenteredBox
     #: Single-axis limits of each error.
-    tolerances: list[ToleranceReport]
+    tolerances: list[Tolerance]
 
 
 class SuccessReport(TypedDict):
@@ -770,13 +770,13 @@ class RunReport(TypedDict):
     #: The accepted set.
     acceptance: AcceptanceReport
     #: The largest axis-oriented cube; null for listed poses.
-    onaa: OnaaReport | None
+    onaa: Onaa | None
     #: The largest cube around zero; null for listed poses.
-    centered: CenteredReport | None
+    centered: CenteredBox | None
     #: Single-axis limits of each error; empty for listed poses.
-    tolerances: list[ToleranceReport]
+    tolerances: list[Tolerance]
     #: Figures of merit with roll and pitch locked, if all five errors are free and motions were followed; null if not, and in reports of older versions.
-    upright: UprightReport | None
+    upright: Upright | None
     #: Success probability for the given errors; null if no errors were given.
     success: SuccessReport | None
     #: The basins behind the outcomes; null for methods without basins.

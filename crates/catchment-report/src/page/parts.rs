@@ -87,8 +87,8 @@ impl PageParts {
             .jams
             .clone()
             .map(|result| JamsReport::of(OfDesign { design: design(), result }, Vec::new(), None));
-        let window = report.window.clone().map(|WindowSection { half_widths, found }| {
-            let result = ToleranceWindow { window: half_widths, found };
+        let window = report.window.clone().map(|WindowSection { half_widths, details }| {
+            let result = ToleranceWindow { window: half_widths, details };
             WindowReport::of(OfDesign { design: design(), result }, Vec::new(), None)
         });
         Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })

@@ -44,14 +44,14 @@ impl Report {
     /// Adds certified bounds: the Sum is at least the certified measure, and at most that plus the undecided
     /// measure.
     #[must_use]
-    pub(crate) fn with_certificate(mut self, found: BoxCertificate) -> Self {
-        let [docks, _, open] = found.measures;
+    pub(crate) fn with_certificate(mut self, estimate: BoxCertificate) -> Self {
+        let [docks, _, open] = estimate.measures;
         let acceptance = &mut self.body.acceptance;
         acceptance.sum_bracket = Some([docks, docks + open]);
         if acceptance.sample.is_none() {
-            (acceptance.sum, acceptance.fraction) = (docks, found.yes);
+            (acceptance.sum, acceptance.fraction) = (docks, estimate.yes);
         }
-        self.body.certificate = Some(found);
+        self.body.certificate = Some(estimate);
         self
     }
 
@@ -59,18 +59,18 @@ impl Report {
     #[must_use]
     pub fn with_sample(mut self, corrected: &RunCorrection) -> Self {
         let acceptance = &mut self.body.acceptance;
-        let RunCorrection { found, seed, method, settings } = corrected;
-        acceptance.sum = found.sum;
-        acceptance.sum_ci95 = Some(found.ci95);
-        acceptance.fraction = found.fraction;
+        let RunCorrection { estimate, seed, method, settings } = corrected;
+        acceptance.sum = estimate.sum;
+        acceptance.sum_ci95 = Some(estimate.ci95);
+        acceptance.fraction = estimate.fraction;
         acceptance.sample = Some(SampleReport {
             method: (*method).to_owned(),
             settings: settings.clone(),
             seed: *seed,
-            descents: found.descents,
-            misclassified: found.misclassified,
-            misclassified_ci95: found.misclassified_ci95,
-            strata: found.strata.clone(),
+            descents: estimate.descents,
+            misclassified: estimate.misclassified,
+            misclassified_ci95: estimate.misclassified_ci95,
+            strata: estimate.strata.clone(),
         });
         self
     }

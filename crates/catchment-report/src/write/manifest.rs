@@ -147,7 +147,7 @@ fn word(name: &Path) -> Option<String> {
 
 /// Everything below a folder by its path there, sorted, and whether it is a folder. Links are not followed.
 fn walk(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut open = vec![PathBuf::new()];
     while let Some(inner) = open.pop() {
         for entry in fs::read_dir(folder.join(&inner))? {
@@ -156,11 +156,11 @@ fn walk(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
             if is_folder {
                 open.push(name.clone());
             }
-            found.push((name, is_folder));
+            result.push((name, is_folder));
         }
     }
-    found.sort();
-    Ok(found)
+    result.sort();
+    Ok(result)
 }
 
 /// SHA-256 of an ordinary file, in hexadecimal digits.

@@ -158,7 +158,7 @@ fn start(name: &OsStr) -> OsString {
 fn ending(name: &OsStr, start: &OsStr) -> Option<(&'static str, bool)> {
     let rest = name.as_encoded_bytes().strip_prefix(start.as_encoded_bytes())?;
     let (number, rest) = std::str::from_utf8(rest).ok()?.split_once('.')?;
-    let marked = rest.split_once('.').filter(|(found, _)| *found == mark(start, number));
+    let marked = rest.split_once('.').filter(|(result, _)| *result == mark(start, number));
     let ending = marked.map_or(rest, |(_, ending)| ending);
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_number = number.split_once('-').map_or_else(|| digits(number), |(a, b)| digits(a) && digits(b));

@@ -112,7 +112,7 @@ pub struct Question {
 #[derive(Debug, thiserror::Error)]
 pub enum ChanceError {
     /// The question is empty.
-    #[error("nothing is asked: name poses, errors to expect, or the axes of a map")]
+    #[error("nothing to compute: name poses, errors to expect, or the axes of a map")]
     Nothing,
     /// A held speed of 0.
     #[error(

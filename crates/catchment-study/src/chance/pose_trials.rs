@@ -56,26 +56,28 @@ pub(super) struct Trials<'a> {
 /// ```
 pub fn run(
     problem: &Problem,
-    asked: &Question,
+    requested: &Question,
     settings: &ChanceSettings,
     exec: &Exec,
 ) -> Result<Chance, ChanceError> {
     check(problem, settings)?;
-    sound(problem, asked, settings)?;
+    sound(problem, requested, settings)?;
     let bench = Bench::new(problem.pair())?;
     let nominal = nominal(settings, &bench);
     let trials = Trials { problem, settings, bench, nominal };
-    let grid = (!asked.map.is_empty()).then(|| Grid { axes: asked.map.clone() });
+    let grid = (!requested.map.is_empty()).then(|| Grid { axes: requested.map.clone() });
     let cells: Vec<PoseError> =
         grid.iter().flat_map(|grid| (0..grid.len()).map(|cell| grid.pose(cell))).collect();
     // By their trials, so that progress is even.
-    let all = asked.trials(settings).max(1) as f64;
-    let ends = [asked.poses.len(), asked.poses.len() + cells.len()]
+    let all = requested.trials(settings).max(1) as f64;
+    let ends = [requested.poses.len(), requested.poses.len() + cells.len()]
         .map(|places| (places * settings.trials) as f64 / all);
-    let poses = trials.poses(&asked.poses, &exec.part([0.0, ends[0]], STAGE))?;
+    let poses = trials.poses(&requested.poses, &exec.part([0.0, ends[0]], STAGE))?;
     let cells = trials.poses(&cells, &exec.part(ends, STAGE))?;
-    let (overall, curve) = match &asked.errors {
-        Some(errors) => spread::overall(&trials, errors, &asked.times, &exec.part([ends[1], 1.0], STAGE))?,
+    let (overall, curve) = match &requested.errors {
+        Some(errors) => {
+            spread::overall(&trials, errors, &requested.times, &exec.part([ends[1], 1.0], STAGE))?
+        }
         None => (None, Vec::new()),
     };
     let map = grid.map(|grid| ChanceMap { axes: grid.axes, cells });
@@ -102,26 +104,26 @@ pub fn run(
     })
 }
 
-fn sound(problem: &Problem, asked: &Question, settings: &ChanceSettings) -> Result<(), ChanceError> {
-    if asked.poses.is_empty() && asked.map.is_empty() && asked.errors.is_none() {
+fn sound(problem: &Problem, requested: &Question, settings: &ChanceSettings) -> Result<(), ChanceError> {
+    if requested.poses.is_empty() && requested.map.is_empty() && requested.errors.is_none() {
         return Err(ChanceError::Nothing);
     }
-    let trials = asked.trials(settings);
+    let trials = requested.trials(settings);
     if trials > MOST_TRIALS {
         return Err(ChanceError::TooMany { trials });
     }
     if settings.trials == 0 {
         return Err(ChanceError::TooFew { trials: 0, what: "each pose", least: 1 });
     }
-    if asked.errors.is_some() && settings.overall < FEWEST_OVERALL {
+    if requested.errors.is_some() && settings.overall < FEWEST_OVERALL {
         let (trials, what) = (settings.overall, "a probability under errors");
         return Err(ChanceError::TooFew { trials, what, least: FEWEST_OVERALL });
     }
-    if let Some(factor) = asked.times.iter().find(|factor| !(**factor > 0.0 && **factor <= MOST_FACTOR)) {
+    if let Some(factor) = requested.times.iter().find(|factor| !(**factor > 0.0 && **factor <= MOST_FACTOR)) {
         return Err(ChanceError::Factor { factor: *factor });
     }
     let free = problem.alignment().free;
-    if let Some(axis) = asked.map.iter().find(|axis| !free.contains(axis.dof)) {
+    if let Some(axis) = requested.map.iter().find(|axis| !free.contains(axis.dof)) {
         return Err(ChanceError::LockedError { axis: axis.dof });
     }
     Ok(())

@@ -48,8 +48,8 @@ pub(super) fn overall(
     let source = Source::of(errors, 0, settings.seed);
     let part = |from: f64, to: f64| exec.part([from, to], STAGE);
     let strata = Strata::decide(problem, &source, None, &part(0.0, PARTS[0]))?;
-    let asked = StratifiedTrials { trials, source: &source, strata: &strata };
-    let still = asked.quasi_static(&part(PARTS[0], PARTS[1]))?;
+    let requested = StratifiedTrials { trials, source: &source, strata: &strata };
+    let still = requested.quasi_static(&part(PARTS[0], PARTS[1]))?;
     let mut factors: Vec<f64> = times.to_vec();
     factors.sort_by(f64::total_cmp);
     factors.dedup();
@@ -58,23 +58,23 @@ pub(super) fn overall(
         let at = |k: f64| PARTS[1] + (1.0 - PARTS[1]) * k / count;
         part(at(k as f64), at(k as f64 + 1.0))
     };
-    let found = asked.sample(1.0, &step(0))?;
+    let result = requested.sample(1.0, &step(0))?;
     let mut curve = Vec::new();
     for (k, factor) in factors.into_iter().enumerate() {
-        let Sample { probability, ci95, motions, .. } = asked.sample(factor, &step(k + 1))?;
+        let Sample { probability, ci95, motions, .. } = requested.sample(factor, &step(k + 1))?;
         curve.push(AtSpeed { factor, speed: factor * trials.speed(), trials: motions, probability, ci95 });
     }
     let outcomes = Outcome::ALL.map(|outcome| {
-        found.poses.iter().filter(|pose| pose.outcome == outcome).map(|pose| pose.weight).sum::<f64>()
+        result.poses.iter().filter(|pose| pose.outcome == outcome).map(|pose| pose.weight).sum::<f64>()
     });
     let overall = Overall {
         errors: errors.kind(),
-        probability: found.probability,
-        ci95: found.ci95,
-        trials: found.motions,
-        plain_trials: found.plain,
+        probability: result.probability,
+        ci95: result.ci95,
+        trials: result.motions,
+        plain_trials: result.plain,
         outcomes,
-        strata: found.strata,
+        strata: result.strata,
         grid_cells: strata.cells(),
         quasi_static: still.probability,
         quasi_static_ci95: still.ci95,

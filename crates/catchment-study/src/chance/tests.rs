@@ -31,8 +31,8 @@ fn normal(x: f64, pitch: f64) -> Spread {
     Spread::normal(PoseError { x, pitch, ..PoseError::default() })
 }
 
-fn ask(problem: &Problem, asked: &Question, settings: &ChanceSettings) -> Chance {
-    run(problem, asked, settings, &Exec::new()).unwrap()
+fn ask(problem: &Problem, requested: &Question, settings: &ChanceSettings) -> Chance {
+    run(problem, requested, settings, &Exec::new()).unwrap()
 }
 
 fn of_poses(problem: &Problem, poses: &[PoseError], settings: &ChanceSettings) -> Vec<PoseChance> {
@@ -64,15 +64,15 @@ fn what_drifts_lands_where_the_closed_form_says() {
 #[test]
 fn slow_halves_have_the_probability_of_the_closed_form() {
     let exact = libm::erf(0.5 / (0.3 * 2f64.sqrt()));
-    let asked = Question { errors: Some(normal(0.3, 0.0)), ..Question::default() };
+    let requested = Question { errors: Some(normal(0.3, 0.0)), ..Question::default() };
     let mut held = 0;
     for seed in 0..20 {
         let settings =
             ChanceSettings { dynamics: speed(0.02), overall: 100, seed, ..ChanceSettings::default() };
-        let found = ask(&sliding(), &asked, &settings).overall.unwrap();
-        held += usize::from(holds(found.ci95, exact));
-        assert!(holds(found.quasi_static_ci95, exact) || (found.quasi_static - exact).abs() < 0.02);
-        assert!((found.outcomes.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        let result = ask(&sliding(), &requested, &settings).overall.unwrap();
+        held += usize::from(holds(result.ci95, exact));
+        assert!(holds(result.quasi_static_ci95, exact) || (result.quasi_static - exact).abs() < 0.02);
+        assert!((result.outcomes.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     }
     assert!(held >= 16, "{held} of 20 hold {exact}");
 }
@@ -89,10 +89,10 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
             .with(Circumstance::Restitution, ScalarDistribution::constant(0.2));
         let settings = ChanceSettings { dynamics, overall: 300, ..ChanceSettings::default() };
         let errors = Some(normal(0.3, 0.5));
-        let asked = Question { errors, times: vec![16.0, 0.01], ..Question::default() };
-        let found = ask(&problem, &asked, &settings);
-        let overall = found.overall.unwrap();
-        let [slow, fast] = found.curve[..] else { panic!("{:?}", found.curve) };
+        let requested = Question { errors, times: vec![16.0, 0.01], ..Question::default() };
+        let result = ask(&problem, &requested, &settings);
+        let overall = result.overall.unwrap();
+        let [slow, fast] = result.curve[..] else { panic!("{:?}", result.curve) };
         assert!((slow.factor, fast.factor) == (0.01, 16.0));
         // Both values are estimates with intervals of their own.
         let apart = (slow.probability - overall.quasi_static).abs();
@@ -123,8 +123,8 @@ fn a_given_push_is_taken_as_it_is() {
     let mut met = Vec::new();
     for at in [-0.9, -0.6, -0.3, 0.0, 0.3, 0.45] {
         let end = bench.fall(&x(at), &by_hand, &Exec::new()).unwrap();
-        let found = of_poses(&problem, &[x(at)], &settings)[0];
-        assert_eq!(found.outcomes[results::place(end.outcome)], 1, "{at}");
+        let result = of_poses(&problem, &[x(at)], &settings)[0];
+        assert_eq!(result.outcomes[results::place(end.outcome)], 1, "{at}");
         met.push(end.outcome);
     }
     assert!(met.contains(&Outcome::Aligned) && met.contains(&Outcome::Missed), "{met:?}");
@@ -170,20 +170,20 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     let settings = ChanceSettings { dynamics, trials: 8, overall: 100, ..ChanceSettings::default() };
     let axis = |dof, cells| GridAxis { dof, lo: -0.6, hi: 0.6, cells };
     let poses = vec![x(0.3), x(0.45), PoseError { pitch: 0.4, ..x(0.2) }];
-    let asked = Question {
+    let requested = Question {
         poses: poses.clone(),
         map: vec![axis(Dof::X, 3), axis(Dof::Pitch, 2)],
         errors: Some(normal(0.3, 0.3)),
         times: vec![2.0],
     };
     let on = |threads: usize| {
-        run(&problem, &asked, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap()
+        run(&problem, &requested, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap()
     };
     let one = on(1);
     assert_eq!(one, on(2));
     assert_eq!(one, on(4));
     // Strata that run out leave a few.
-    assert!(one.trials <= asked.trials(&settings) && one.trials + 10 > asked.trials(&settings));
+    assert!(one.trials <= requested.trials(&settings) && one.trials + 10 > requested.trials(&settings));
     let reversed: Vec<PoseError> = poses.into_iter().rev().collect();
     let mut alone = of_poses(&problem, &reversed, &settings);
     alone.reverse();
@@ -192,7 +192,7 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     assert_eq!(map.cells.len(), 6);
     assert!((map.cells[0].error.x + 0.4).abs() < 1e-12 && (map.cells[1].error.x).abs() < 1e-12);
     let other = ChanceSettings { seed: 2, ..settings };
-    assert_ne!(ask(&problem, &asked, &other).overall, one.overall);
+    assert_ne!(ask(&problem, &requested, &other).overall, one.overall);
 }
 
 /// Both sides of a symmetric half are as likely, within both intervals.
@@ -226,11 +226,11 @@ fn the_majority_of_three_errs_seldom() {
 fn what_is_asked_in_vain_is_refused() {
     let problem = sliding();
     let pose = || Question { poses: vec![x(0.1)], ..Question::default() };
-    let refused = |asked: &Question, settings: &ChanceSettings| {
-        run(&problem, asked, settings, &Exec::new()).unwrap_err().to_string()
+    let refused = |requested: &Question, settings: &ChanceSettings| {
+        run(&problem, requested, settings, &Exec::new()).unwrap_err().to_string()
     };
     let sound = ChanceSettings { dynamics: speed(1.0), ..ChanceSettings::default() };
-    assert!(refused(&Question::default(), &sound).starts_with("nothing is asked"));
+    assert!(refused(&Question::default(), &sound).starts_with("nothing to compute"));
     assert!(refused(&pose(), &ChanceSettings::default()).contains("approach speed may be 0"));
     let stands = ChanceSettings { dynamics: speed(0.0), ..ChanceSettings::default() };
     assert!(refused(&pose(), &stands).contains("approach speed may be 0"));

@@ -225,8 +225,8 @@ fn sequence(
         Some(sampled) if settings.descents != Some(0) => {
             let stop = Stop::Samples(settings.descents.unwrap_or_default());
             let sample = correction::CorrectionSettings { seed: settings.seed, stop };
-            let found = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
-            Some(CorrectedSum { sum: found.sum, ci95: found.ci95, descents: found.descents })
+            let result = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
+            Some(CorrectedSum { sum: result.sum, ci95: result.ci95, descents: result.descents })
         }
         _ => None,
     };
@@ -293,13 +293,13 @@ mod tests {
             descents: Some(200),
             ..ConvergenceSettings::default()
         };
-        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        let result = run(&problem, &settings, &Exec::new()).unwrap();
         assert_eq!(
-            found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(),
+            result.sequences.iter().map(|s| s.method).collect::<Vec<_>>(),
             ["confluence", "descent", "flood", "steepest", "transport"]
         );
-        assert_eq!(found.unit, "D·rad");
-        for sequence in &found.sequences {
+        assert_eq!(result.unit, "D·rad");
+        for sequence in &result.sequences {
             assert_eq!(sequence.end, StopReason::Stable);
             assert!(sequence.trials.len() >= 3 && sequence.trials[0].resolution == 11);
             let corrected = sequence.corrected.unwrap();
@@ -311,23 +311,23 @@ mod tests {
         }
         let few =
             ConvergenceSettings { most_cells: 300, tolerance: 1e-9, descents: Some(0), ..settings.clone() };
-        let found = run(&problem, &few, &Exec::new()).unwrap();
+        let result = run(&problem, &few, &Exec::new()).unwrap();
         assert!(
-            found
+            result
                 .sequences
                 .iter()
                 .all(|s| s.end == StopReason::Cells { resolution: 21 } && s.trials.len() == 2)
         );
         let hasty = ConvergenceSettings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
-        let found = run(&problem, &hasty, &Exec::new()).unwrap();
+        let result = run(&problem, &hasty, &Exec::new()).unwrap();
         let once = |s: &RefinementSequence| {
             s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. })
         };
-        assert!(found.sequences.iter().all(once));
+        assert!(result.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
         let strict = ConvergenceSettings { tolerance: 1e-9, ..settings.clone() };
-        let found = run(&problem, &strict, &small).unwrap();
-        assert!(found.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{found:?}");
+        let result = run(&problem, &strict, &small).unwrap();
+        assert!(result.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{result:?}");
         assert!(matches!(
             run(&problem, &settings, &Exec::new().with_memory_budget(10)),
             Err(ConvergenceError::Refinement(RefinementError::OutOfBudget(_)))

@@ -14,31 +14,31 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
         let problem = Problem::of(catchment_core::design::read(&text, ".".as_ref()).unwrap().design).unwrap();
         let settings =
             FrictionSettings { frictions: vec![0.1, 0.15, 1.05 * slope, 0.4], motions: Some(200), seed: 2 };
-        let found = run(&problem, &settings, &Exec::new()).unwrap();
-        let docked = found.curve[0].aligned.count;
+        let result = run(&problem, &settings, &Exec::new()).unwrap();
+        let docked = result.curve[0].aligned.count;
         assert!(docked > 50);
-        for kept in &found.kept {
+        for kept in &result.kept {
             assert!((kept.friction - slope).abs() <= EXACT, "{family:?} {kept:?}");
             assert!(kept.ci95[0] <= kept.friction && kept.friction <= kept.ci95[1]);
             assert!(!kept.is_top);
         }
         // The paths are straight, so more friction never helps.
-        assert!(found.curve.windows(2).all(|two| two[1].aligned.count <= two[0].aligned.count));
+        assert!(result.curve.windows(2).all(|two| two[1].aligned.count <= two[0].aligned.count));
         // All poses fail at the slope of the face: within a tenth above it, all lost poses hold weakly.
-        for tally in &found.curve {
+        for tally in &result.curve {
             let friction = &tally.friction;
             let is_near = *friction > slope && *friction < HARDLY * slope;
             assert_eq!(tally.barely_stuck, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
         }
-        let last = found.curve[4];
+        let last = result.curve[4];
         // Poses that start within the depth of the seat dock without motion.
-        assert_eq!((last.lost + last.aligned.count, last.gained, found.come_back), (docked, 0, 0));
+        assert_eq!((last.lost + last.aligned.count, last.gained, result.come_back), (docked, 0, 0));
         assert!(last.aligned.count < docked / 10, "{last:?}");
         // The paths are straight here, so the static test is right, except for starts within a step of the
         // seat.
-        assert!(found.curve.iter().all(|rung| rung.static_wrong <= 2), "{:?}", found.curve);
-        assert_eq!(found.sticks_first.poses, AT_LEAST);
-        let pair = &found.sticks_first.features[0];
+        assert!(result.curve.iter().all(|rung| rung.static_wrong <= 2), "{:?}", result.curve);
+        assert_eq!(result.sticks_first.poses, AT_LEAST);
+        let pair = &result.sticks_first.features[0];
         assert_eq!(pair.count, AT_LEAST);
         for friction in [pair.critical_least, pair.critical_median] {
             assert!((friction - slope).abs() <= EXACT, "{family:?} {pair:?}");
@@ -51,11 +51,11 @@ fn tallies_add_up_and_threads_change_nothing() {
     let problem = problem(Family::XFace3d, DofSet::ALL);
     let settings = FrictionSettings { frictions: vec![0.3, 0.1, 0.3, 0.0], motions: Some(120), seed: 3 };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
-    let found = with(1);
-    assert_eq!(found, with(2));
-    assert_eq!(found.settings.frictions, [0.1, 0.3]);
-    let docked = found.curve[0].aligned.count;
-    for tally in &found.curve {
+    let result = with(1);
+    assert_eq!(result, with(2));
+    assert_eq!(result.settings.frictions, [0.1, 0.3]);
+    let docked = result.curve[0].aligned.count;
+    for tally in &result.curve {
         let friction = tally.friction;
         assert_eq!(
             [tally.aligned, tally.jammed, tally.missed, tally.undecided]
@@ -70,7 +70,7 @@ fn tallies_add_up_and_threads_change_nothing() {
     }
     // Up to less friction more of them dock still.
     assert!(
-        found.kept.windows(2).all(|two| two[0].share > two[1].share && two[0].friction <= two[1].friction)
+        result.kept.windows(2).all(|two| two[0].share > two[1].share && two[0].friction <= two[1].friction)
     );
     let direct = |friction: f64| {
         let Domain::Poses(poses) = Domain::random(problem.alignment(), 120, 3) else { unreachable!() };
@@ -81,7 +81,7 @@ fn tallies_add_up_and_threads_change_nothing() {
             .count()
     };
     assert_eq!(
-        found.curve.iter().map(|rung| rung.aligned.count).collect::<Vec<_>>(),
+        result.curve.iter().map(|rung| rung.aligned.count).collect::<Vec<_>>(),
         [0.0, 0.1, 0.3].map(direct)
     );
 }

@@ -376,7 +376,7 @@ fn other_signs(
     motions: &descent::DescentSettings,
     exec: &Exec,
 ) -> Result<(usize, usize), Cancelled> {
-    let found = for_each(
+    let result = for_each(
         points.len(),
         exec,
         || DockingOracle::new(problem, motions),
@@ -400,8 +400,8 @@ fn other_signs(
             (otherwise, judge.followed() - before)
         },
     )?;
-    let otherwise = found.iter().filter(|(otherwise, _)| *otherwise).count();
-    Ok((otherwise, found.iter().map(|(_, count)| count).sum()))
+    let otherwise = result.iter().filter(|(otherwise, _)| *otherwise).count();
+    Ok((otherwise, result.iter().map(|(_, count)| count).sum()))
 }
 
 /// The order of the trials: every pose once, then again; each time shuffled by itself. Blocks are runs of that order.

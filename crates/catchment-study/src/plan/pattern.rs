@@ -207,7 +207,7 @@ impl Maker<'_> {
         let steps = PoseError::from_array(step.map(Option::unwrap_or_default));
         let search = Search::new(self.problem, &steps, OBLIQUE);
         let random = Stream::new(self.seed).branch(1);
-        let found = for_each(
+        let result = for_each(
             poses.len(),
             exec,
             || DockingOracle::new(self.problem, self.motions),
@@ -220,8 +220,8 @@ impl Maker<'_> {
                 (near, judge.followed() - before)
             },
         )?;
-        let kept = poses.into_iter().zip(&found).filter(|(_, (near, _))| *near).map(|(placed, _)| placed);
-        Ok(Made { poses: numbered(kept.collect()), followed: found.iter().map(|(_, n)| n).sum(), open: 0 })
+        let kept = poses.into_iter().zip(&result).filter(|(_, (near, _))| *near).map(|(placed, _)| placed);
+        Ok(Made { poses: numbered(kept.collect()), followed: result.iter().map(|(_, n)| n).sum(), open: 0 })
     }
 
     fn arc(&self, lever: f64, pitch: &[f64], yaw: &[f64]) -> Result<Made, TrialPlanError> {
@@ -371,8 +371,8 @@ impl Maker<'_> {
             let error = self.scaled(along, t);
             let docks = judge.docks(&error);
             match search.nearest(judge, &error, docks, None, random) {
-                Some(found) if found.sigmas < wanted * LIMIT / TOLD_APART => {
-                    apart *= (wanted / found.sigmas).clamp(1.05, 2.0);
+                Some(result) if result.sigmas < wanted * LIMIT / TOLD_APART => {
+                    apart *= (wanted / result.sigmas).clamp(1.05, 2.0);
                 }
                 _ => break,
             }

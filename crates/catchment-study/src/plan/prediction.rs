@@ -80,10 +80,10 @@ pub(crate) fn for_each<T: Send, A>(
             .into_par_iter()
             .map_init(tool, |tool, k| {
                 exec.check()?;
-                let found = work(tool, k);
+                let result = work(tool, k);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 exec.report(done as f64 / count as f64, "motions");
-                Ok(found)
+                Ok(result)
             })
             .collect()
     })

@@ -127,8 +127,8 @@ fn the_arc_of_the_pyramid_ends_where_it_was_computed() {
             let motions = descent::DescentSettings::default();
             let mut judge = DockingOracle::new(&problem, &motions);
             let docking = made.poses.iter().take_while(|placed| judge.docks(&placed.error)).count();
-            let found = 0.25 * (docking as f64 - 1.0);
-            assert!((found - last).abs() <= 0.25, "{lever} D, {yaw}°: {found}° and not {last}°");
+            let result = 0.25 * (docking as f64 - 1.0);
+            assert!((result - last).abs() <= 0.25, "{lever} D, {yaw}°: {result}° and not {last}°");
         }
     }
 }

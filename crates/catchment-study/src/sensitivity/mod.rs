@@ -445,14 +445,14 @@ mod tests {
     fn without_rotation_rho_does_not_matter() {
         // Translation alone: ρ weighs nothing, the Sum is ZRAA's 1 D of the V-Face, and no pose changes sides.
         let design = Design::of_family(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(
+        let result = run(
             &Problem::of(design).unwrap(),
             &SensitivitySettings { poses: Some(300), ..SensitivitySettings::default() },
             &Exec::new(),
         )
         .unwrap();
-        assert_eq!((found.slopes[0].gained, found.slopes[0].lost, found.spread), (0, 0, 0.0));
-        assert!(found.sum_ci95[0] < 1.0 && 1.0 < found.sum_ci95[1], "{:?}", found.sum_ci95);
+        assert_eq!((result.slopes[0].gained, result.slopes[0].lost, result.spread), (0, 0, 0.0));
+        assert!(result.sum_ci95[0] < 1.0 && 1.0 < result.sum_ci95[1], "{:?}", result.sum_ci95);
     }
 
     #[test]

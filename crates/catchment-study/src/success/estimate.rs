@@ -161,10 +161,10 @@ fn follow(
     exec.install(|| {
         let outcome = |follower: &mut Follower<'_>, (_, number): &(usize, u64)| {
             exec.check()?;
-            let found = follower.follow(&source.pose(&source.standard(*number), factors)).outcome;
+            let result = follower.follow(&source.pose(&source.standard(*number), factors)).outcome;
             let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             exec.report(done as f64 / numbered.len() as f64, "random motions");
-            Ok(found)
+            Ok(result)
         };
         numbered.par_iter().map_init(|| Follower::new(problem.pair(), &source.motions), outcome).collect()
     })

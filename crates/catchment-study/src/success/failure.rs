@@ -61,7 +61,7 @@ pub(super) fn failures(
     let along = along(source, sample);
     let excess = |along: &AlongAxis| Some((along.axis, along.failed? - along.docked.unwrap_or(0.0)));
     let dominating = along.iter().filter_map(excess).max_by(|a, b| a.1.total_cmp(&b.1));
-    let found = Failures {
+    let result = Failures {
         share: 1.0 - sample.probability,
         jammed: of_failures(jammed),
         missed: of_failures(missed),
@@ -70,7 +70,7 @@ pub(super) fn failures(
         along,
         first,
     };
-    Ok((found, motions))
+    Ok((result, motions))
 }
 
 /// Statistics of failures, error by error.
@@ -139,9 +139,9 @@ fn first(
         let moves: Vec<[f64; 5]> = (0..MOVES as u64)
             .filter_map(|k| moved(source, &failing, spread, |j| random.uniform(8 * k + j)))
             .collect();
-        let (found, more) = nearest(problem, source, &moves, exec)?;
+        let (result, more) = nearest(problem, source, &moves, exec)?;
         motions += more + 1;
-        match found.filter(|found| found.distance < failing.distance) {
+        match result.filter(|result| result.distance < failing.distance) {
             Some(nearer) => best = Some(nearer),
             None => spread *= 0.5,
         }
@@ -199,13 +199,13 @@ fn nearest(
         let z = z.map(|v| v * failing);
         Ok((Some(Failing { z, distance: source.distance(&z), outcome: fails }), motions))
     };
-    let found: Vec<(Option<Failing>, usize)> = exec.install(|| {
+    let result: Vec<(Option<Failing>, usize)> = exec.install(|| {
         zs.par_iter()
             .map_init(|| Follower::new(problem.pair(), &source.motions), look)
             .collect::<Result<_, Cancelled>>()
     })?;
-    let motions = found.iter().map(|(_, motions)| motions).sum();
-    let failing = found.into_iter().filter_map(|(failing, _)| failing);
+    let motions = result.iter().map(|(_, motions)| motions).sum();
+    let failing = result.into_iter().filter_map(|(failing, _)| failing);
     Ok((failing.min_by(|a, b| a.distance.total_cmp(&b.distance)), motions))
 }
 

@@ -175,15 +175,15 @@ pub fn run(
     let motions = settings.motions.unwrap_or_else(by_method);
     check(problem, robots, settings, motions)?;
     let settings = SuccessSettings { motions: Some(motions), ..settings.clone() };
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut followed = 0;
     for (number, robot) in robots.iter().enumerate() {
         let [from, to] = [number, number + 1].map(|k| k as f64 / robots.len() as f64);
         let (docking, more) = of_robot(problem, robot, &settings, motions, &exec.part([from, to], STAGE))?;
         followed += more;
-        found.push(docking);
+        result.push(docking);
     }
-    Ok(Success { settings, success: Headline::of(&found), robots: found, motions: followed })
+    Ok(Success { settings, success: Headline::of(&result), robots: result, motions: followed })
 }
 
 const STAGE: &str = "motions";
@@ -231,10 +231,10 @@ fn of_robot(
     // Rows that are all followed need no grid.
     let cells = if source.rows().is_some() { Some(0) } else { settings.cells };
     let strata = Strata::decide(problem, &source, cells, &part(0))?;
-    let found = estimate::as_expected(problem, &source, &strata, motions, &part(1))?;
-    let (failures, more) = failure::failures(problem, &source, &found, &part(2))?;
-    let mut followed = found.motions + more;
-    let (improve, more) = gain::gains(problem, &source, &strata, &found, motions.div_ceil(2), &part(3))?;
+    let result = estimate::as_expected(problem, &source, &strata, motions, &part(1))?;
+    let (failures, more) = failure::failures(problem, &source, &result, &part(2))?;
+    let mut followed = result.motions + more;
+    let (improve, more) = gain::gains(problem, &source, &strata, &result, motions.div_ceil(2), &part(3))?;
     followed += more;
     let quarter = motions.div_ceil(4).max(FEWEST_MOTIONS);
     let (curves, fit_part) = (part(4).part([0.0, 0.9], STAGE), part(4).part([0.9, 1.0], STAGE));
@@ -244,7 +244,7 @@ fn of_robot(
         curves.part([k as f64 / of, (k + 1) as f64 / of], STAGE)
     };
     let mut all = Curve::new(problem, &source, &strata, quarter, [true; 5]);
-    all.know(&found);
+    all.know(&result);
     for factor in CURVE {
         all.look(factor, &step(0))?;
     }
@@ -257,7 +257,7 @@ fn of_robot(
         let mut changed = [false; 5];
         changed[axis.index()] = true;
         let mut alone = Curve::new(problem, &source, &strata, quarter, changed);
-        alone.know(&found);
+        alone.know(&result);
         let factor = alone.factor(settings.required, &step(k + 1))?;
         let sigma = factor.factor * sigma.to_array()[axis.index()];
         each.push(SingleErrorFactor { axis: *axis, sigma, factor });
@@ -268,9 +268,9 @@ fn of_robot(
         let spread = Spread::Normal { mean, sigma, correlation };
         let source = Source::of(&spread, 0, settings.seed).followed_by(&followed_by);
         let strata = Strata::decide(problem, &source, settings.cells, &fit_part)?;
-        let found = estimate::as_expected(problem, &source, &strata, motions.div_ceil(2), &fit_part)?;
-        followed += found.motions;
-        (fit.probability, fit.ci95) = (Some(found.probability), Some(found.ci95));
+        let result = estimate::as_expected(problem, &source, &strata, motions.div_ceil(2), &fit_part)?;
+        followed += result.motions;
+        (fit.probability, fit.ci95) = (Some(result.probability), Some(result.ci95));
     }
     let rows = match &robot.errors {
         Spread::Measured { poses, .. } => Some(poses.len()),
@@ -279,14 +279,14 @@ fn of_robot(
     let docking = RobotDocking {
         robot: robot.name.clone(),
         errors: ExpectedErrors { kind: robot.errors.kind(), rows, moments },
-        probability: found.probability,
-        ci95: found.ci95,
-        motions: found.motions,
-        undecided: found.undecided,
-        plain_motions: found.plain,
+        probability: result.probability,
+        ci95: result.ci95,
+        motions: result.motions,
+        undecided: result.undecided,
+        plain_motions: result.plain,
         grid: GridCost { cells: strata.cells(), motions: strata.motions() },
-        outside_box: outside(problem, &source, &found, exec)?,
-        strata: found.strata,
+        outside_box: outside(problem, &source, &result, exec)?,
+        strata: result.strata,
         failures,
         improve,
         tolerable: Tolerable { required: settings.required, all: together, alone: each },
@@ -300,7 +300,7 @@ fn of_robot(
 fn outside(
     problem: &Problem,
     source: &Source<'_>,
-    found: &estimate::Sample,
+    result: &estimate::Sample,
     exec: &Exec,
 ) -> Result<f64, Cancelled> {
     let alignment = problem.alignment();
@@ -308,7 +308,7 @@ fn outside(
         let error = source.pose(&source.standard(number), &source::SAME).to_array();
         alignment.free.iter().any(|dof| error[dof.index()].abs() > alignment.half_range(dof))
     };
-    let drawn = found.drawn().max(1);
+    let drawn = result.drawn().max(1);
     exec.check()?;
     let count = (0..drawn as u64).filter(|number| is_outside(*number)).count();
     Ok(count as f64 / drawn as f64)

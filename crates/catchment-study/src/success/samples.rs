@@ -261,8 +261,8 @@ mod tests {
     #[test]
     fn as_many_plain_motions_have_as_wide_an_interval() {
         for (probability, count) in [(0.5, 1000.0), (0.99, 40_000.0), (1.0, 250.0)] {
-            let found = plain_motions(probability, wilson95(probability, count));
-            assert!((found / count - 1.0).abs() < 1e-6, "{found} for {count}");
+            let result = plain_motions(probability, wilson95(probability, count));
+            assert!((result / count - 1.0).abs() < 1e-6, "{result} for {count}");
         }
     }
 }

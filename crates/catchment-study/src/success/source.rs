@@ -242,14 +242,14 @@ mod tests {
         let spread = correlated();
         let source = Source::of(&spread, 0, 1);
         let poses: Vec<PoseError> = (0..COUNT).map(|k| source.pose(&source.standard(k), &SAME)).collect();
-        let found = Spread::Measured { source: String::new(), poses }.moments();
+        let result = Spread::Measured { source: String::new(), poses }.moments();
         let wanted = spread.moments();
         // Five standard errors: σ/√N of the mean, σ/√2N of σ, (1 − ρ²)/√N of the correlation.
         let root = (COUNT as f64).sqrt();
-        assert!((found.mean.x - wanted.mean.x).abs() < 5.0 * 0.1 / root);
-        assert!((found.sigma.yaw - wanted.sigma.yaw).abs() < 5.0 * 0.2 / (2f64.sqrt() * root));
-        assert!((found.correlation[0][4] - 0.6).abs() < 5.0 * 0.64 / root);
-        assert_eq!(found.sigma.y, 0.0);
+        assert!((result.mean.x - wanted.mean.x).abs() < 5.0 * 0.1 / root);
+        assert!((result.sigma.yaw - wanted.sigma.yaw).abs() < 5.0 * 0.2 / (2f64.sqrt() * root));
+        assert!((result.correlation[0][4] - 0.6).abs() < 5.0 * 0.64 / root);
+        assert_eq!(result.sigma.y, 0.0);
     }
 
     #[test]

@@ -87,9 +87,9 @@ impl Strata {
             (labels.acceptance(exec).outcomes, labels.inherited.motions + labels.inherited.tried)
         } else {
             let settings = descent::DescentSettings::default();
-            let (found, _) = descent::run(problem.pair(), Domain::Grid(grid.clone()), &settings, exec)?;
-            let motions = found.outcomes.len();
-            (found.outcomes, motions)
+            let (result, _) = descent::run(problem.pair(), Domain::Grid(grid.clone()), &settings, exec)?;
+            let motions = result.outcomes.len();
+            (result.outcomes, motions)
         };
         let docks = outcomes.into_iter().map(|outcome| outcome == Outcome::Aligned).collect();
         Ok(Self { grid: Some(grid), docks, motions })

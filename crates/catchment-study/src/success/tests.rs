@@ -73,8 +73,8 @@ fn strata(problem: &Problem, spread: &Spread) -> Strata {
 fn of_one_offset_everything_is_the_closed_form() {
     let problem = problem(Family::VFace, free(&[Dof::X]));
     let p = |sigma: f64| libm::erf(0.5 / (sigma * 2f64.sqrt()));
-    let found = run(&problem, &one(of(0.3, 0.0, &[], false)), &quick(), &Exec::new()).unwrap();
-    let robot = &found.robots[0];
+    let result = run(&problem, &one(of(0.3, 0.0, &[], false)), &quick(), &Exec::new()).unwrap();
+    let robot = &result.robots[0];
     let within = |[lo, hi]: [f64; 2], value: f64| lo <= value && value <= hi;
     assert!(within(robot.ci95, p(0.3)), "{:?}", robot.ci95);
     let improve = robot.improve[0];
@@ -100,8 +100,8 @@ fn of_uniform_offsets_too() {
     let problem = problem(Family::VFace, free(&[Dof::X]));
     let half_width = PoseError { x: 0.8, ..PoseError::default() };
     let spread = Spread::Uniform { mean: PoseError::default(), half_width };
-    let found = run(&problem, &one(spread), &quick(), &Exec::new()).unwrap();
-    let robot = &found.robots[0];
+    let result = run(&problem, &one(spread), &quick(), &Exec::new()).unwrap();
+    let robot = &result.robots[0];
     let within = |[lo, hi]: [f64; 2], value: f64| lo <= value && value <= hi;
     assert!(within(robot.ci95, 0.625));
     let slope = robot.improve[0].slope_ci95.unwrap();
@@ -121,11 +121,11 @@ fn correlated_and_measured_errors_agree_with_plain_motions() {
     let measured = table(&correlated, 4000, 5);
     let reference = plain(&problem, &correlated, 20_000, 9);
     for spread in [&correlated, &measured] {
-        let found = stratified(&problem, spread, &strata(&problem, spread), 1000, 1);
-        assert!(found.motions <= 1000);
-        let apart = (found.probability - reference.probability).abs();
+        let result = stratified(&problem, spread, &strata(&problem, spread), 1000, 1);
+        assert!(result.motions <= 1000);
+        let apart = (result.probability - reference.probability).abs();
         let half = |sample: &Sample| 0.5 * (sample.ci95[1] - sample.ci95[0]);
-        assert!(apart < half(&found).hypot(half(&reference)) * 1.5, "{} {}", found.probability, apart);
+        assert!(apart < half(&result).hypot(half(&reference)) * 1.5, "{} {}", result.probability, apart);
     }
     // Rows that are all followed are the rows' own share.
     let all = Source::of(&measured, 4000, 1);
@@ -136,7 +136,7 @@ fn correlated_and_measured_errors_agree_with_plain_motions() {
     assert!((every.probability - docked as f64 / 4000.0).abs() < 1e-12);
 }
 
-/// Slopes against finite differences with common random errors: (P(σ + 10 %) − P(σ − 10 %))/(0.2·σ), by 40 000 plain motions each.
+/// Slopes against finite differences with common random errors: (P(σ + 10 %) − P(σ − 10 %))/(0.2·σ), by 25 000 plain motions each.
 #[test]
 fn slopes_are_those_of_finite_differences() {
     let problem = v_face();
@@ -146,8 +146,8 @@ fn slopes_are_those_of_finite_differences() {
     for correlation in [IDENTITY, correlation] {
         let spread = Spread::Normal { mean: PoseError::default(), sigma, correlation };
         let source = Source::of(&spread, 0, 1);
-        let found = stratified(&problem, &spread, &strata(&problem, &spread), 4000, 1);
-        let slopes = found.slopes(&source, &Exec::new()).unwrap();
+        let result = stratified(&problem, &spread, &strata(&problem, &spread), 4000, 1);
+        let slopes = result.slopes(&source, &Exec::new()).unwrap();
         assert_eq!(slopes.len(), 2);
         // Errors that are not correlated are the simpler case: a single axis.
         let axes = if correlation == IDENTITY { 1 } else { 2 };
@@ -155,14 +155,14 @@ fn slopes_are_those_of_finite_differences() {
             let at = |factor: f64| {
                 let factors = estimate::alone(slope.axis, factor);
                 let none = Strata::default();
-                estimate::sample(&problem, &source, &factors, &none, 40_000, &Exec::new())
+                estimate::sample(&problem, &source, &factors, &none, 25_000, &Exec::new())
                     .unwrap()
                     .probability
             };
             let width = sigma.to_array()[slope.axis.index()];
             let difference = (at(1.1) - at(0.9)) / (0.2 * width);
             let half = 0.5 * (slope.ci95[1] - slope.ci95[0]);
-            // Poses that change sides number some hundreds of 40 000: a twentieth of the slope is three of their standard errors.
+            // Poses that change sides number some hundreds of 25 000: a twentieth of the slope is three of their standard errors.
             let apart = (slope.value - difference).abs();
             assert!(apart < 1.5 * half + 0.08 * difference.abs(), "{slope:?} for {difference}");
         }
@@ -177,8 +177,8 @@ fn errors_that_follow_from_each_other_have_no_slopes() {
     let mut correlation = IDENTITY;
     (correlation[0][3], correlation[3][0]) = (1.0, 1.0);
     let spread = Spread::Normal { mean: PoseError::default(), sigma, correlation };
-    let found = run(&problem, &one(spread), &quick(), &Exec::new()).unwrap();
-    let robot = &found.robots[0];
+    let result = run(&problem, &one(spread), &quick(), &Exec::new()).unwrap();
+    let robot = &result.robots[0];
     assert!(robot.improve.iter().all(|improve| improve.slope.is_none()));
     assert!(robot.probability > 0.0 && robot.ci95[0] < robot.ci95[1]);
 }
@@ -200,8 +200,8 @@ fn it_is_the_same_on_any_number_of_threads() {
 /// The pyramid has fourfold symmetry: the gains of x and y are equal, within the uncertainty of the sample.
 #[test]
 fn alike_errors_gain_alike() {
-    let found = run(&pyramid(), &one(of(0.3, 0.1, &[Dof::Yaw], true)), &quick(), &Exec::new()).unwrap();
-    let gain = |axis: Dof| found.robots[0].improve.iter().find(|improve| improve.axis == axis).unwrap();
+    let result = run(&pyramid(), &one(of(0.3, 0.1, &[Dof::Yaw], true)), &quick(), &Exec::new()).unwrap();
+    let gain = |axis: Dof| result.robots[0].improve.iter().find(|improve| improve.axis == axis).unwrap();
     let (x, y) = (gain(Dof::X), gain(Dof::Y));
     assert!(x.gain_ci95[0] < y.gain_ci95[1] && y.gain_ci95[0] < x.gain_ci95[1], "{x:?} {y:?}");
     assert!(gain(Dof::Yaw).gain < x.gain.min(y.gain));
@@ -233,8 +233,8 @@ fn a_mean_that_does_not_dock_is_said() {
     let mean = PoseError { x: 0.7, ..PoseError::default() };
     let sigma = PoseError { x: 0.05, ..PoseError::default() };
     let spread = Spread::Normal { mean, sigma, correlation: IDENTITY };
-    let found = run(&v_face(), &one(spread), &quick(), &Exec::new()).unwrap();
-    let robot = &found.robots[0];
+    let result = run(&v_face(), &one(spread), &quick(), &Exec::new()).unwrap();
+    let robot = &result.robots[0];
     assert!(robot.probability < 0.01 && robot.tolerable.all.is_less && robot.tolerable.all.factor == 0.0);
     assert_eq!(robot.failures.first.as_ref().unwrap().distance, 0.0);
 }
@@ -294,13 +294,13 @@ fn coverage(case: &Case, sigma: f64, repeats: u64, motions: usize, reference: us
     let strata = strata(&case.problem, &spread);
     let (mut held, mut held_piece, mut ratio) = (0, 0, 0.0);
     for seed in 0..repeats {
-        let found = stratified(&case.problem, &spread, &strata, motions, seed);
-        let holds = |p: f64| u64::from(found.ci95[0] <= p && p <= found.ci95[1]);
+        let result = stratified(&case.problem, &spread, &strata, motions, seed);
+        let holds = |p: f64| u64::from(result.ci95[0] <= p && p <= result.ci95[1]);
         held += holds(exact.probability);
         if let Some(piece) = pieces.get(seed as usize % pieces.len().max(1)) {
             held_piece += holds(*piece);
         }
-        ratio += found.plain / found.motions as f64 / repeats as f64;
+        ratio += result.plain / result.motions as f64 / repeats as f64;
     }
     (exact.probability, held, held_piece, ratio)
 }
@@ -310,7 +310,7 @@ fn coverage(case: &Case, sigma: f64, repeats: u64, motions: usize, reference: us
 #[test]
 fn intervals_hold_the_probability_of_plain_motions() {
     for case in &cases()[..2] {
-        let (probability, held, _, ratio) = coverage(case, case.sigmas[1], 20, 500, 100_000);
+        let (probability, held, _, ratio) = coverage(case, case.sigmas[1], 20, 500, 60_000);
         assert!(held >= 16, "{}: {held} of 20 hold {probability}", case.name);
         assert!(ratio > 2.0, "{}: {ratio} plain motions for each", case.name);
     }

@@ -105,8 +105,8 @@ impl FromStr for SweepAxis {
         let key = key_path(name).map_err(|defect| SweepAxisError::Key { defect })?;
         let mut values: Vec<String> = Vec::new();
         for part in parts(list) {
-            let found = if is_range(part) { range(part)? } else { vec![part.to_owned()] };
-            for value in found {
+            let result = if is_range(part) { range(part)? } else { vec![part.to_owned()] };
+            for value in result {
                 let wrong = |how| SweepAxisError::Value { key: key.clone(), value: short(&value), how };
                 if value.is_empty() {
                     return Err(wrong("with nothing in it"));
@@ -126,7 +126,7 @@ impl FromStr for SweepAxis {
 
 /// The parts between commas outside quotes and brackets.
 fn parts(list: &str) -> Vec<&str> {
-    let (mut depth, mut quote, mut start, mut found) = (0usize, None, 0, Vec::new());
+    let (mut depth, mut quote, mut start, mut result) = (0usize, None, 0, Vec::new());
     for (at, c) in list.char_indices() {
         match (c, quote) {
             ('"' | '\'', None) => quote = Some(c),
@@ -134,14 +134,14 @@ fn parts(list: &str) -> Vec<&str> {
             ('[' | '{', None) => depth += 1,
             (']' | '}', None) => depth = depth.saturating_sub(1),
             (',', None) if depth == 0 => {
-                found.push(list[start..at].trim());
+                result.push(list[start..at].trim());
                 start = at + 1;
             }
             _ => {}
         }
     }
-    found.push(list[start..].trim());
-    found
+    result.push(list[start..].trim());
+    result
 }
 
 /// Whether a value denotes a range: a number, two dots. Paths begin differently.

@@ -141,7 +141,7 @@ pub struct SweepDesign {
     pub values: Vec<String>,
     /// Result for the design.
     #[serde(flatten)]
-    pub found: DesignResult,
+    pub result: DesignResult,
 }
 
 /// Result of a sweep.
@@ -359,9 +359,9 @@ impl SweepPlan {
                 .map(|(k, _)| k)
         };
         let (largest, smallest) = (best(|a, b| a > b), best(|a, b| a < b));
-        let trial = |(number, found): (usize, DesignResult)| SweepDesign {
+        let trial = |(number, result): (usize, DesignResult)| SweepDesign {
             values: combination(&settings.axes, number).map(str::to_owned).collect(),
-            found,
+            result,
         };
         let designs = found.into_iter().enumerate().map(trial).collect();
         Ok(Sweep { settings, designs, largest, smallest })
@@ -428,7 +428,7 @@ const LAYOUT: u8 = 1;
 fn figures(answer: &Answer) -> Result<Figures, SweepError> {
     let merits = &answer.merits;
     let along = |t: &catchment_core::merit::tolerance::Tolerance| SingleAxisLimit {
-        axis: t.dof,
+        axis: t.axis,
         minus: t.minus,
         plus: t.plus,
     };
@@ -436,9 +436,12 @@ fn figures(answer: &Answer) -> Result<Figures, SweepError> {
         sum: answer.sum(),
         sum_ci95: answer.sum_ci95(),
         unit: answer.unit(),
-        fraction: answer.corrected.as_ref().map_or(merits.sum.fraction, |corrected| corrected.found.fraction),
+        fraction: answer
+            .corrected
+            .as_ref()
+            .map_or(merits.sum.fraction, |corrected| corrected.estimate.fraction),
         onaa_edge: merits.onaa.as_ref().map(|onaa| onaa.edge),
-        centered_edge: merits.centered.as_ref().map(|centered| centered.scale),
+        centered_edge: merits.centered.as_ref().map(|centered| centered.edge),
         tolerances: merits.tolerances.iter().map(along).collect(),
         success: answer.success.as_ref().map(|success| success.probability),
         warnings: answer.warnings().into_iter().map(|warning| warning.message).collect(),

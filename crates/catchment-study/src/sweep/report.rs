@@ -29,7 +29,7 @@ impl Subject for Sweep {
         document.section(None);
         for (what, number) in [("largest Sum ▲", self.largest), ("smallest Sum ▼", self.smallest)] {
             let trial = number.map(|number| &self.designs[number]);
-            if let Some((trial, figures)) = trial.and_then(|trial| Some((trial, trial.found.figures()?))) {
+            if let Some((trial, figures)) = trial.and_then(|trial| Some((trial, trial.result.figures()?))) {
                 let edge =
                     figures.onaa_edge.map_or_else(String::new, |edge| format!(", ONAA edge {edge:.4}"));
                 let value = format!(
@@ -50,7 +50,7 @@ impl Subject for Sweep {
 impl Sweep {
     /// The unit of every Sum.
     pub fn unit(&self) -> &str {
-        let figures = self.designs.iter().find_map(|trial| trial.found.figures());
+        let figures = self.designs.iter().find_map(|trial| trial.result.figures());
         figures.map_or("", |figures| &figures.unit)
     }
 
@@ -97,7 +97,7 @@ impl Sweep {
         for (j, row) in rows.iter().enumerate() {
             let cell = |k: usize| {
                 let number = j * columns.len() + k;
-                let figures = self.designs[number].found.figures();
+                let figures = self.designs[number].result.figures();
                 self.marked(&figures.map_or_else(|| "–".to_owned(), |f| significant(f.sum)), number)
             };
             table.push(std::iter::once(row.as_str().into()).chain((0..columns.len()).map(cell)));
@@ -112,7 +112,7 @@ impl Sweep {
         columns.push(Column::new("of the error box").format(ColumnFormat::Percent));
         let mut table = Table::new(columns);
         for (number, trial) in self.designs.iter().enumerate().take(LONGEST_LIST) {
-            let figures = trial.found.figures();
+            let figures = trial.result.figures();
             let value = figures.map_or_else(|| "–".to_owned(), sum);
             let share = figures.map(|figures| figures.fraction).into();
             let values = trial.values.iter().map(|value| value.as_str().into());
@@ -125,7 +125,7 @@ impl Sweep {
     fn describe_warnings(&self, document: &mut Document) {
         let mut reasons: BTreeMap<(bool, &str), Vec<&SweepDesign>> = BTreeMap::new();
         for trial in &self.designs {
-            match &trial.found {
+            match &trial.result {
                 DesignResult::Refused(reason) => reasons.entry((false, reason)).or_default().push(trial),
                 DesignResult::Figures(figures) => {
                     for warning in &figures.warnings {
@@ -157,7 +157,7 @@ impl Sweep {
 
     /// A row per design.
     fn data(&self) -> Table {
-        let first = self.designs.iter().find_map(|trial| trial.found.figures());
+        let first = self.designs.iter().find_map(|trial| trial.result.figures());
         let errors: Vec<_> =
             first.iter().flat_map(|figures| figures.tolerances.iter().map(|along| along.axis)).collect();
         let mut keys: Vec<String> = self.settings.axes.iter().map(|axis| axis.key.clone()).collect();
@@ -168,7 +168,7 @@ impl Sweep {
         let mut table = Table::new(keys.into_iter().map(Column::data));
         for trial in &self.designs {
             let mut row: Vec<Cell> = trial.values.iter().map(|value| value.as_str().into()).collect();
-            match &trial.found {
+            match &trial.result {
                 DesignResult::Figures(f) => {
                     let [lo, hi] = f.sum_ci95.map_or([None; 2], |ci95| ci95.map(Some));
                     let numbers = [Some(f.sum), lo, hi, Some(f.fraction), f.onaa_edge, f.centered_edge];

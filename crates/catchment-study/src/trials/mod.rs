@@ -204,7 +204,7 @@ pub fn run(problem: &Problem, settings: &TrialsSettings, exec: &Exec) -> Result<
     let zraa = zraa::run(problem.pair(), &zraa::ZraaSettings::default(), exec)?;
     let coarse = settings.resolutions.iter().map(|resolution| (*resolution, 0));
     let rounds: Vec<(usize, u32)> = coarse.chain((1..=settings.halvings).map(|k| (finest, k))).collect();
-    let (mut found, mut last) = (Vec::new(), None);
+    let (mut result, mut last) = (Vec::new(), None);
     for (k, &(resolution, halvings)) in rounds.iter().enumerate() {
         let ends = [k, k + 1].map(|k| k as f64 / rounds.len() as f64);
         let part = exec.part(ends, "trials");
@@ -215,7 +215,7 @@ pub fn run(problem: &Problem, settings: &TrialsSettings, exec: &Exec) -> Result<
         };
         let grid = Grid::over(alignment, |_| resolution);
         let trials = trials_of(problem, &zraa, &method, &grid, settings.seed, &part)?;
-        found.push(Round { timestep, ..counted(resolution, &grid, &trials) });
+        result.push(Round { timestep, ..counted(resolution, &grid, &trials) });
         last = Some((grid, trials));
     }
     let (grid, last) = last.unwrap_or_else(|| (Grid::over(alignment, |_| least), Vec::new()));
@@ -225,7 +225,7 @@ pub fn run(problem: &Problem, settings: &TrialsSettings, exec: &Exec) -> Result<
         seed: settings.seed,
         unit: if grid.axes.len() == 2 { "D²" } else { "D" },
         exact: measure(&zraa),
-        rounds: found,
+        rounds: result,
         trials: last,
         zraa,
         grid,
@@ -315,30 +315,31 @@ mod tests {
     /// Exact motions and the exact region give the same set: |x| + |y| < 1, and an interval of ±½.
     #[test]
     fn exact_motions_agree_with_the_exact_region_everywhere() {
-        let found = run(&problem(Family::XFace3d, XY), &settings("descent", &[7, 20]), &Exec::new()).unwrap();
-        assert!((found.exact - 2.0).abs() < 1e-9);
+        let result =
+            run(&problem(Family::XFace3d, XY), &settings("descent", &[7, 20]), &Exec::new()).unwrap();
+        assert!((result.exact - 2.0).abs() < 1e-9);
         assert_eq!(
-            found.rounds.iter().map(|r| (r.resolution, r.trials)).collect::<Vec<_>>(),
+            result.rounds.iter().map(|r| (r.resolution, r.trials)).collect::<Vec<_>>(),
             [(7, 49), (20, 400)]
         );
-        for round in &found.rounds {
+        for round in &result.rounds {
             assert_eq!((round.rejected_inside, round.accepted_outside, round.timestep), (0, 0, None));
             assert!(round.disagreeing_ci95[0] == 0.0 && round.disagreeing_ci95[1] < 0.1);
             // The border is 4√2 D long, with a trial for each cell that it crosses.
             assert!((round.accepted - 2.0).abs() < 4.0 / round.resolution as f64, "{round:?}");
         }
         let diamond = |trial: &RoundTrial| trial.inside == (trial.x.abs() + trial.y.abs() < 1.0);
-        assert!(found.trials.len() == 400 && found.trials.iter().all(diamond));
-        let cells = found.trials.iter().enumerate();
+        assert!(result.trials.len() == 400 && result.trials.iter().all(diamond));
+        let cells = result.trials.iter().enumerate();
         let in_cell = |(k, trial): (usize, &RoundTrial)| {
-            let center = found.grid.pose(k);
-            let half = 0.5 * found.grid.axes[0].step();
+            let center = result.grid.pose(k);
+            let half = 0.5 * result.grid.axes[0].step();
             (trial.x - center.x).abs() <= half && (trial.y - center.y).abs() <= half
         };
         assert!(cells.clone().all(in_cell));
         let line = problem(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(&line, &settings("descent", &[50]), &Exec::new()).unwrap();
-        assert!((found.exact - 1.0).abs() < 1e-9 && found.rounds[0].disagreeing == 0.0);
+        let result = run(&line, &settings("descent", &[50]), &Exec::new()).unwrap();
+        assert!((result.exact - 1.0).abs() < 1e-9 && result.rounds[0].disagreeing == 0.0);
     }
 
     #[test]
@@ -381,11 +382,11 @@ mod tests {
     #[test]
     fn drop_trials_agree_with_the_exact_region_but_at_its_border() {
         let settings = TrialsSettings { halvings: 1, ..settings("drop", &[6]) };
-        let found = run(&problem(Family::XFace3d, XY), &settings, &Exec::new()).unwrap();
-        let steps: Vec<_> = found.rounds.iter().map(|round| round.timestep.unwrap()).collect();
+        let result = run(&problem(Family::XFace3d, XY), &settings, &Exec::new()).unwrap();
+        let steps: Vec<_> = result.rounds.iter().map(|round| round.timestep.unwrap()).collect();
         assert_eq!(steps, [1e-3, 5e-4]);
-        assert_eq!((found.rounds[1].resolution, found.rounds[1].trials), (6, 36));
-        for trial in &found.trials {
+        assert_eq!((result.rounds[1].resolution, result.rounds[1].trials), (6, 36));
+        for trial in &result.trials {
             let margin = 1.0 - trial.x.abs() - trial.y.abs();
             let agrees = trial.inside == (trial.outcome == Outcome::Aligned);
             assert!(agrees || margin.abs() < 5e-3, "{trial:?}");

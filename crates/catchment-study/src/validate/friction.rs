@@ -148,15 +148,15 @@ fn beyond(
         if count >= enough {
             break;
         }
-        let found = for_each(some.len(), exec, judge, |judge, n| {
+        let result = for_each(some.len(), exec, judge, |judge, n| {
             let k = some[n];
             let error = &trials[k].0;
             let before = judge.followed();
             let near = search.nearest(judge, error, docks[k], None, random.branch(k as u64)).is_some();
             (!near, judge.followed() - before)
         })?;
-        count += found.iter().filter(|(beyond, _)| *beyond).count();
-        followed += found.iter().map(|(_, count)| count).sum::<usize>();
+        count += result.iter().filter(|(beyond, _)| *beyond).count();
+        followed += result.iter().map(|(_, count)| count).sum::<usize>();
     }
     Ok((count, followed))
 }

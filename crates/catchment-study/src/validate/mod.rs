@@ -316,9 +316,9 @@ pub fn run(
     let friction = if settings.estimate_friction {
         let made: Vec<(PoseError, bool)> =
             trials.iter().filter_map(|trial| Some((trial.point.error, trial.docked?))).collect();
-        let (found, more) = friction::estimate(problem, &made, settings, &exec.part([share, 1.0], STAGE))?;
+        let (result, more) = friction::estimate(problem, &made, settings, &exec.part([share, 1.0], STAGE))?;
         followed += more;
-        Some(found)
+        Some(result)
     } else {
         None
     };

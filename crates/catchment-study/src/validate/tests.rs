@@ -178,7 +178,7 @@ const MISSED: Option<ObservedOutcome> = Some(ObservedOutcome::Missed);
 #[test]
 fn counts_margins_and_lines_are_those_of_the_table() {
     // Margins in units of 0.02: 0.1 is 20 from the border, 0.45 is 2.5, 0.49 is 0.5, 0.55 is 2.5.
-    let found = judged(&[
+    let result = judged(&[
         (0.1, DOCKED),
         (0.2, DOCKED),
         (0.3, DOCKED),
@@ -188,36 +188,36 @@ fn counts_margins_and_lines_are_those_of_the_table() {
         (0.6, MISSED),
         (0.7, None),
     ]);
-    assert_eq!((found.verdict, found.blank, found.evidence.beyond), (PredictionVerdict::Consistent, 1, 0));
-    assert_eq!((found.evidence.inside, found.evidence.outside), (4, 2));
-    for (judged, margin) in found.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
+    assert_eq!((result.verdict, result.blank, result.evidence.beyond), (PredictionVerdict::Consistent, 1, 0));
+    assert_eq!((result.evidence.inside, result.evidence.outside), (4, 2));
+    for (judged, margin) in result.trials.iter().zip([20.0, 15.0, 10.0, 2.5, 0.5, 2.5, 5.0, 10.0]) {
         assert!((judged.prediction().margin() / margin - 1.0).abs() < 5e-3, "{judged:?}");
     }
     // The trial that may go either way is counted separately.
-    assert_eq!((found.agreement.agreed, found.agreement.trials), (6, 6));
-    let either: Vec<&Count> = found.counts.iter().filter(|count| count.either).collect();
+    assert_eq!((result.agreement.agreed, result.agreement.trials), (6, 6));
+    let either: Vec<&Count> = result.counts.iter().filter(|count| count.either).collect();
     assert_eq!((either.len(), either[0].trials, either[0].observed), (1, 1, ObservedOutcome::Missed));
-    assert_eq!(found.counts.iter().map(|count| count.trials).sum::<usize>(), 7);
-    let [line] = &found.lines[..] else { panic!("one line") };
+    assert_eq!(result.counts.iter().map(|count| count.trials).sum::<usize>(), 7);
+    let [line] = &result.lines[..] else { panic!("one line") };
     assert_eq!(
         (line.last_success.unwrap().x, line.first_failure.unwrap().x, line.in_order),
         (0.45, 0.49, true)
     );
     assert_eq!((line.predicted_success.unwrap().x, line.predicted_failure.unwrap().x), (0.49, 0.55));
     // 2Φ(−2.5): the others are next to nothing, and that which may go either way does not count.
-    assert!((found.early.expected - 0.012_419).abs() < 1e-3 && found.early.disagreeing == 0);
-    assert_eq!((found.early.trials, found.late.trials), (4, 2));
+    assert!((result.early.expected - 0.012_419).abs() < 1e-3 && result.early.disagreeing == 0);
+    assert_eq!((result.early.trials, result.late.trials), (4, 2));
 }
 
 /// Within one accuracy of the border, and on the border itself, no outcome contradicts the prediction.
 #[test]
 fn a_trial_within_one_accuracy_of_the_border_is_no_disagreement() {
     let rows = [(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)];
-    let found = judged(&rows);
-    let disagrees: Vec<bool> = found.trials.iter().map(|trial| trial.disagrees).collect();
+    let result = judged(&rows);
+    let disagrees: Vec<bool> = result.trials.iter().map(|trial| trial.disagrees).collect();
     assert_eq!(disagrees, [false, false, false, false, true]);
     // The search ends at a thousandth of an accuracy.
-    assert!(found.trials[2].prediction().margin() < 5e-3);
+    assert!(result.trials[2].prediction().margin() < 5e-3);
 }
 
 #[test]
@@ -280,10 +280,10 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     let settings = ValidationSettings { estimate_friction: true, ..ValidationSettings::new(accuracy) };
     let with =
         |threads| run(&problem, &made, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
-    let found = with(1);
-    let friction = found.friction.clone().unwrap();
+    let result = with(1);
+    let friction = result.friction.clone().unwrap();
     println!("{friction:?}");
-    assert_eq!((found.verdict, friction.fewest), (PredictionVerdict::Inconsistent, 0));
+    assert_eq!((result.verdict, friction.fewest), (PredictionVerdict::Inconsistent, 0));
     assert!(friction.low > 0.0 && friction.low <= 0.5 && friction.high >= 0.5, "{friction:?}");
     assert!(friction.tried[0].beyond > 0 && friction.high < 0.7, "{friction:?}");
     // With that friction the prediction holds; and threads change nothing.
@@ -293,7 +293,7 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
         (again.verdict, again.agreement.agreed),
         (PredictionVerdict::Consistent, again.agreement.trials)
     );
-    assert!(found == with(2) && found == with(4));
+    assert!(result == with(2) && result == with(4));
 }
 
 /// A pyramid that docks rotated by a quarter turn docks if its design declares this symmetry, and fails if
@@ -304,22 +304,25 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
     let accuracy = PoseError { x: 0.002, y: 0.002, ..PoseError::default() };
     let tried: Vec<RobotTrial> =
         (1..=6).map(|k| row(k, 0.02 * k as f64, Some(ObservedOutcome::AlignedElsewhere))).collect();
-    let found = run(&fourfold, &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
-    assert_eq!((found.verdict, found.turned), (PredictionVerdict::Consistent, 6));
+    let result = run(&fourfold, &tried, &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
+    assert_eq!((result.verdict, result.turned), (PredictionVerdict::Consistent, 6));
     let mut design = fourfold.design().clone();
     design.alignment.symmetry = 1;
-    let found =
+    let result =
         run(&fourfold.with(design).unwrap(), &tried, &ValidationSettings::new(accuracy), &Exec::new())
             .unwrap();
-    assert_eq!((found.verdict, found.evidence.beyond, found.turned), (PredictionVerdict::Inconsistent, 6, 0));
+    assert_eq!(
+        (result.verdict, result.evidence.beyond, result.turned),
+        (PredictionVerdict::Inconsistent, 6, 0)
+    );
     // Turned by nearly a quarter it does dock there, and that is predicted.
     let turned = RobotTrial {
         error: PoseError { yaw: 80f64.to_radians(), ..PoseError::default() },
         ..tried[0].clone()
     };
-    let found = run(&fourfold, &[turned], &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
+    let result = run(&fourfold, &[turned], &ValidationSettings::new(accuracy), &Exec::new()).unwrap();
     assert_eq!(
-        (found.trials[0].prediction().predicted, found.turned),
+        (result.trials[0].prediction().predicted, result.turned),
         (Some(ObservedOutcome::AlignedElsewhere), 0)
     );
 }
@@ -328,10 +331,10 @@ fn docked_elsewhere_is_docked_where_the_design_says_so() {
 /// or its column.
 #[test]
 fn disagreements_leave_out_trials_within_one_accuracy_of_the_border() {
-    let found = judged(&[(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)]);
-    let listed: Vec<u64> = found.disagreements.iter().map(|trial| trial.trial).collect();
+    let result = judged(&[(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)]);
+    let listed: Vec<u64> = result.disagreements.iter().map(|trial| trial.trial).collect();
     assert_eq!(listed, [5]);
-    let document = found.document(v_face().design());
+    let document = result.document(v_face().design());
     let records = document.records().unwrap().records();
     let column = |name: &str| records[0].iter().position(|head| head == name).unwrap();
     let both = [column("either"), column("disagrees")];

@@ -156,9 +156,9 @@ mod tests {
             (Family::SFace, Degree::High, "Ungendered", 2.0 / 3.0),
             (Family::VFace, Degree::High, "Gendered", 1.0),
         ] {
-            let found = of(family);
-            assert_eq!((found.degree, found.gendering()), (degree, gendering), "{family:?}");
-            assert!((found.extents.longest() - longest).abs() < 1e-9, "{family:?}: {:?}", found.extents);
+            let result = of(family);
+            assert_eq!((result.degree, result.gendering()), (degree, gendering), "{family:?}");
+            assert!((result.extents.longest() - longest).abs() < 1e-9, "{family:?}: {:?}", result.extents);
         }
     }
 

@@ -179,8 +179,10 @@ impl Catalog {
 
     /// The row of a name: that of either table, or a common name for it; case is ignored.
     pub fn find(&self, name: &str) -> Option<&System> {
-        let meant =
-            ASKED.iter().find(|(asked, _)| asked.eq_ignore_ascii_case(name)).map_or(name, |(_, of)| of);
+        let meant = ASKED
+            .iter()
+            .find(|(requested, _)| requested.eq_ignore_ascii_case(name))
+            .map_or(name, |(_, of)| of);
         self.systems.iter().find(|system| {
             let is = |known: &str| known.eq_ignore_ascii_case(meant);
             is(&system.name) || system.zraa_name().is_some_and(is)
@@ -231,7 +233,7 @@ struct Record {
 fn records(table: PublishedTable, text: &str, columns: usize) -> Result<Vec<Record>, DataError> {
     let refused = |line, reason| DataError { table: table.name(), line, reason };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for record in reader.records() {
         let record = record
             .map_err(|error| refused(error.position().map_or(1, csv::Position::line), error.to_string()))?;
@@ -239,9 +241,9 @@ fn records(table: PublishedTable, text: &str, columns: usize) -> Result<Vec<Reco
         if record.len() != columns {
             return Err(refused(line, format!("it has {} columns where {columns} are wanted", record.len())));
         }
-        found.push(Record { fields: record.iter().map(str::to_owned).collect(), line });
+        result.push(Record { fields: record.iter().map(str::to_owned).collect(), line });
     }
-    Ok(found)
+    Ok(result)
 }
 
 fn zraa_rows(text: &str) -> Result<Vec<(String, PublishedZraa)>, DataError> {
@@ -381,8 +383,8 @@ mod tests {
             (3, 19, 1)
         );
         assert_eq!(catalog.systems.len(), 31);
-        for (asked, name) in ASKED {
-            assert_eq!(catalog.find(&asked.to_uppercase()).unwrap().name, name);
+        for (requested, name) in ASKED {
+            assert_eq!(catalog.find(&requested.to_uppercase()).unwrap().name, name);
         }
         // Nothing is found by likeness.
         assert!(catalog.find("Polybo").is_none() && catalog.find("SMORE").is_none());

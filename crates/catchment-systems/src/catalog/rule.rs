@@ -108,10 +108,10 @@ fn through_zero(polygons: &[Vec<DVec2>], axis: DVec2) -> [f64; 2] {
 
 /// Intersection of a convex polygon with an axis.
 fn on_axis(polygon: &[DVec2], axis: DVec2) -> Option<[f64; 2]> {
-    let mut found: Option<[f64; 2]> = None;
+    let mut result: Option<[f64; 2]> = None;
     let mut meet = |t: f64| {
-        let [from, to] = found.unwrap_or([t; 2]);
-        found = Some([from.min(t), to.max(t)]);
+        let [from, to] = result.unwrap_or([t; 2]);
+        result = Some([from.min(t), to.max(t)]);
     };
     for (k, &a) in polygon.iter().enumerate() {
         let b = polygon[(k + 1) % polygon.len()];
@@ -123,7 +123,7 @@ fn on_axis(polygon: &[DVec2], axis: DVec2) -> Option<[f64; 2]> {
             meet(axis.dot(a.lerp(b, da / (da - db))));
         }
     }
-    found
+    result
 }
 
 #[cfg(test)]
@@ -145,8 +145,8 @@ mod tests {
         let parts =
             [[-0.1, -0.2, 0.1, 0.3], [0.0, -0.05, 0.05, 0.3], [0.3, -0.1, 0.2, 0.2], [-1.0, 0.5, 2.0, 0.1]];
         let extents = Extents::of(&region(&parts));
-        let near = |found: Option<[f64; 2]>, expected: [f64; 2]| {
-            found.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
+        let near = |result: Option<[f64; 2]>, expected: [f64; 2]| {
+            result.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
         };
         assert!(near(extents.x, [-0.1, 0.05]) && near(extents.y, [-0.2, 0.25]), "{extents:?}");
         assert_eq!(extents.degree(), Degree::High);

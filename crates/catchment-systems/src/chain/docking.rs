@@ -143,8 +143,8 @@ mod tests {
         for (reach, published) in rows {
             for (n, published) in [8, 12, 16, 20].into_iter().zip(published) {
                 let errors = Closing::straight(ModuleDimensions::default(), n).first_order(&joints(1.0));
-                let found = lateral_probability(&ModuleDimensions::default(), &errors, [-reach, reach]);
-                assert!((found - published).abs() < 0.6e-3, "{n}, {reach}: {found} for {published}");
+                let result = lateral_probability(&ModuleDimensions::default(), &errors, [-reach, reach]);
+                assert!((result - published).abs() < 0.6e-3, "{n}, {reach}: {result} for {published}");
             }
         }
         let [from, to] = offsets_without_rotation(&x_face(0.5), &Exec::new()).unwrap();
@@ -167,11 +167,11 @@ mod tests {
         for (degrees, published) in rows {
             for (n, published) in [4, 8, 12, 16, 20].into_iter().zip(published) {
                 let cloud = Closing::straight(body, n).cloud(&joints(degrees), 1, 4000, &exec).unwrap();
-                let found = Probability::of(&docks(&problem, &body, &cloud, &exec).unwrap());
-                println!("{degrees}° {n}: {:.3} {:?} for {published}", found.probability, found.ci95);
-                let own = 0.5 * (found.ci95[1] - found.ci95[0]);
-                let off = (found.probability - published).abs() - own;
-                assert!(off < 0.03, "{n}, {degrees}°: {found:?} for {published}");
+                let result = Probability::of(&docks(&problem, &body, &cloud, &exec).unwrap());
+                println!("{degrees}° {n}: {:.3} {:?} for {published}", result.probability, result.ci95);
+                let own = 0.5 * (result.ci95[1] - result.ci95[0]);
+                let off = (result.probability - published).abs() - own;
+                assert!(off < 0.03, "{n}, {degrees}°: {result:?} for {published}");
             }
         }
     }

@@ -96,13 +96,13 @@ pub fn nearest_quarter(angle: f64) -> f64 {
 /// Rotor of every module with the heading behind its joint, from the base on; link k is `links(k)` long, counted from 0.
 pub fn rotors_with(base: PlanarPose, angles: &[f64], links: impl Fn(usize) -> f64) -> Vec<PlanarPose> {
     let mut next = base;
-    let mut found = Vec::with_capacity(angles.len());
+    let mut result = Vec::with_capacity(angles.len());
     for (k, angle) in angles.iter().enumerate() {
         next.heading += angle;
-        found.push(next);
+        result.push(next);
         next = next.ahead(0.0, links(k));
     }
-    found
+    result
 }
 
 /// Rotor of every module of a chain that starts at the origin along x.
@@ -141,17 +141,17 @@ mod tests {
 
         #[test]
         fn a_wrapped_angle_is_the_same_direction(angle in -50.0..50.0f64) {
-            let found = wrapped(angle);
-            prop_assert!(found > -PI && found <= PI);
-            prop_assert!((direction(found) - direction(angle)).length() < 1e-12);
+            let result = wrapped(angle);
+            prop_assert!(result > -PI && result <= PI);
+            prop_assert!((direction(result) - direction(angle)).length() < 1e-12);
         }
     }
 
     #[test]
     fn a_straight_chain_lies_along_x() {
-        let found = rotors(&ModuleDimensions::default(), &[0.0; 4]);
-        assert_eq!(found.iter().map(|r| r.x).collect::<Vec<_>>(), [0.0, 95.0, 190.0, 285.0]);
-        assert_eq!(found[3].ahead(0.0, 47.5), PlanarPose { x: 332.5, y: 0.0, heading: 0.0 });
+        let result = rotors(&ModuleDimensions::default(), &[0.0; 4]);
+        assert_eq!(result.iter().map(|r| r.x).collect::<Vec<_>>(), [0.0, 95.0, 190.0, 285.0]);
+        assert_eq!(result[3].ahead(0.0, 47.5), PlanarPose { x: 332.5, y: 0.0, heading: 0.0 });
         assert!((ModuleDimensions::default().center_of_rotation() + 0.725_190_84).abs() < 1e-8);
     }
 }

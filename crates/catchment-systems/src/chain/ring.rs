@@ -54,7 +54,7 @@ pub fn forces(closing: &Closing, torque: f64, turned: &[usize]) -> (f64, f64) {
 pub fn choices(body: &ModuleDimensions, errors: &ChainErrors, torque: f64) -> Vec<Corners> {
     /// Mirror images differ by this share: rounding.
     const SAME: f64 = 1e-9;
-    let mut found: Vec<Corners> = FIRST_CORNERS
+    let mut result: Vec<Corners> = FIRST_CORNERS
         .filter_map(|first_corner| {
             let shape = ChainShape::O { first_corner };
             let angles = shape.angles();
@@ -76,14 +76,14 @@ pub fn choices(body: &ModuleDimensions, errors: &ChainErrors, torque: f64) -> Ve
             })
         })
         .collect();
-    let errors: Vec<f64> = found.iter().map(|c| c.lateral_sigma_mm).collect();
-    let pushes: Vec<f64> = found.iter().map(|c| c.push_n).collect();
-    for corners in &mut found {
+    let errors: Vec<f64> = result.iter().map(|c| c.lateral_sigma_mm).collect();
+    let pushes: Vec<f64> = result.iter().map(|c| c.push_n).collect();
+    for corners in &mut result {
         let (own, push) = (corners.lateral_sigma_mm, corners.push_n);
         corners.rank_by_error = 1 + errors.iter().filter(|e| **e < own * (1.0 - SAME)).count();
         corners.rank_by_force = 1 + pushes.iter().filter(|p| **p > push * (1.0 + SAME)).count();
     }
-    found
+    result
 }
 
 #[cfg(test)]
@@ -93,15 +93,16 @@ mod tests {
     #[test]
     fn corners_are_ranked_by_error_and_by_force() {
         let errors = ChainErrors { joint_sigma: 1f64.to_radians(), ..ChainErrors::default() };
-        let found = choices(&ModuleDimensions::default(), &errors, 10.9);
-        assert_eq!(found.iter().map(|c| c.rank_by_error).collect::<Vec<_>>(), [2, 1, 2]);
-        assert_eq!(found.iter().map(|c| c.rank_by_force).collect::<Vec<_>>(), [1, 3, 1]);
+        let result = choices(&ModuleDimensions::default(), &errors, 10.9);
+        assert_eq!(result.iter().map(|c| c.rank_by_error).collect::<Vec<_>>(), [2, 1, 2]);
+        assert_eq!(result.iter().map(|c| c.rank_by_force).collect::<Vec<_>>(), [1, 3, 1]);
         // Half a pitch, a pitch and a half; three pitches along the normal for all.
         assert!(
-            (found[0].push_n - 10.9 / 0.0475).abs() < 1e-6 && (found[1].push_n - 10.9 / 0.1425).abs() < 1e-6
+            (result[0].push_n - 10.9 / 0.0475).abs() < 1e-6
+                && (result[1].push_n - 10.9 / 0.1425).abs() < 1e-6
         );
-        assert!(found.iter().all(|c| (c.press_n - 10.9 / 0.285).abs() < 1e-6));
-        assert_eq!(found[1].corners, [2, 5, 8, 11]);
+        assert!(result.iter().all(|c| (c.press_n - 10.9 / 0.285).abs() < 1e-6));
+        assert_eq!(result[1].corners, [2, 5, 8, 11]);
     }
 
     /// The stall force at one pitch, 114.7 N: 12 times the latching force.

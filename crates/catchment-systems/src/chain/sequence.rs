@@ -116,16 +116,16 @@ impl CommandSequence {
     /// Commands to all joints of a chain at the end of every step; joint k is at k − 1.
     pub fn commanded(&self, modules: usize) -> Vec<Vec<Command>> {
         let mut now = vec![STRAIGHT; modules];
-        let mut found = Vec::with_capacity(self.steps.len());
+        let mut result = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
             for (joint, command) in &step.commands {
                 if let Some(commanded) = now.get_mut(joint - 1) {
                     *commanded = *command;
                 }
             }
-            found.push(now.clone());
+            result.push(now.clone());
         }
-        found
+        result
     }
 
     /// Angles for the commands of every step; a slack joint is assumed at the quarter turn nearest to its
@@ -133,7 +133,7 @@ impl CommandSequence {
     pub fn commanded_angles(&self, modules: usize) -> Vec<Vec<f64>> {
         let mut now = vec![0.0; modules];
         let commanded = self.commanded(modules);
-        let mut found = Vec::with_capacity(commanded.len());
+        let mut result = Vec::with_capacity(commanded.len());
         for commands in commanded {
             for (angle, command) in now.iter_mut().zip(commands) {
                 *angle = match command {
@@ -141,9 +141,9 @@ impl CommandSequence {
                     Command::Slack => nearest_quarter(*angle),
                 };
             }
-            found.push(now.clone());
+            result.push(now.clone());
         }
-        found
+        result
     }
 }
 
@@ -263,8 +263,8 @@ mod tests {
         })
     }
 
-    fn near(found: PlanarPose, x: f64, y: f64) {
-        assert!((found.x - x).abs() < 0.006 && (found.y - y).abs() < 0.006, "{found:?} for {x} {y}");
+    fn near(result: PlanarPose, x: f64, y: f64) {
+        assert!((result.x - x).abs() < 0.006 && (result.y - y).abs() < 0.006, "{result:?} for {x} {y}");
     }
 
     #[test]

@@ -206,7 +206,7 @@ pub fn cells(angles: &[f64]) -> Vec<[i64; 2]> {
 /// All pairs of a chain folded by quarter turns that latch: nearest along the chain first.
 pub fn latches(angles: &[f64]) -> Vec<LatchingPair> {
     let cells = cells(angles);
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for from in 1..=cells.len() {
         for to in from + 2..=cells.len() {
             let [a, b] = [cells[from - 1], cells[to - 1]];
@@ -216,12 +216,12 @@ pub fn latches(angles: &[f64]) -> Vec<LatchingPair> {
             let towards = |a: [i64; 2], b: [i64; 2]| ((b[1] - a[1]) as f64).atan2((b[0] - a[0]) as f64);
             let sides = (side(angles, from, towards(a, b)), side(angles, to, towards(b, a)));
             if let (Some(from_side), Some(to_side)) = sides {
-                found.push(LatchingPair { from, to, from_side, to_side });
+                result.push(LatchingPair { from, to, from_side, to_side });
             }
         }
     }
-    found.sort_by_key(|latch| latch.to - latch.from);
-    found
+    result.sort_by_key(|latch| latch.to - latch.from);
+    result
 }
 
 /// The face of a module that faces a direction, if it has one there.
@@ -295,9 +295,9 @@ mod tests {
     fn faces_that_a_module_lacks_do_not_latch() {
         // A ring of four: the front of the last module meets the back of the first, and no other faces meet.
         let ring = [0.0, -FRAC_PI_2, -FRAC_PI_2, -FRAC_PI_2];
-        let found = latches(&ring);
-        assert_eq!(found.len(), 1);
-        assert_eq!((found[0].from, found[0].to), (1, 4));
+        let result = latches(&ring);
+        assert_eq!(result.len(), 1);
+        assert_eq!((result[0].from, result[0].to), (1, 4));
         // The second cell of a turned module, against its new heading, has no face.
         assert_eq!(side(&[0.0, -FRAC_PI_2], 2, FRAC_PI_2), None);
         assert_eq!(latches(&[0.0; 5]), []);

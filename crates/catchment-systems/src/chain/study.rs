@@ -270,12 +270,12 @@ impl Work<'_> {
         let sigmas = or_own(settings.joint_sigmas.is_empty(), &settings.joint_sigmas);
         let modules =
             if settings.modules.is_empty() { vec![self.file.modules] } else { settings.modules.clone() };
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         let count = (sigmas.len() * modules.len()) as f64;
         for joint_sigma in sigmas {
             let errors = ChainErrors { joint_sigma, ..*own };
             for modules in &modules {
-                self.exec.report(found.len() as f64 / count, "chains");
+                self.exec.report(result.len() as f64 / count, "chains");
                 let closing = Closing::straight(self.file.body, *modules);
                 let first_order = closing.first_order(&errors);
                 let docked = match self.docking {
@@ -283,7 +283,7 @@ impl Work<'_> {
                     None => None,
                 };
                 let [lateral_sigma, _, heading_sigma_rad] = first_order.sigmas();
-                found.push(Length {
+                result.push(Length {
                     joint_sigma_rad: joint_sigma,
                     modules: *modules,
                     lateral_sigma_d: lateral_sigma / self.file.body.face,
@@ -293,6 +293,6 @@ impl Work<'_> {
                 });
             }
         }
-        Ok(found)
+        Ok(result)
     }
 }

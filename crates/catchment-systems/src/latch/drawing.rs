@@ -211,8 +211,8 @@ mod tests {
             let text = sheet.dxf(PART);
             assert!(!text.contains("$TDCREATE") && text.contains("$INSUNITS") && !text.contains('{'));
             assert!(text.lines().count() % 2 == 0 && text.ends_with("EOF\r\n"));
-            let found = entities(&text);
-            let [line, holes @ ..] = &found[..] else { panic!() };
+            let result = entities(&text);
+            let [line, holes @ ..] = &result[..] else { panic!() };
             let numbers = |entity: &[(u16, &str)], code: u16| -> Vec<f64> {
                 let of_code = entity.iter().filter(|(c, _)| *c == code);
                 of_code.map(|(_, value)| value.trim().parse().unwrap()).collect()
@@ -232,7 +232,7 @@ mod tests {
             }
             // Handles are unique, and the header contains the next free handle.
             let handles: Vec<usize> =
-                found.iter().map(|one| usize::from_str_radix(one[1].1, 16).unwrap()).collect();
+                result.iter().map(|one| usize::from_str_radix(one[1].1, 16).unwrap()).collect();
             assert_eq!(handles, [0x11, 0x12, 0x13]);
             assert!(text.contains("$HANDSEED\r\n  5\r\n14\r\n"));
         }

@@ -240,13 +240,13 @@ mod tests {
     fn the_spring_alone_is_too_weak() {
         let latch = LatchDesign { overhang: 5.1, ..LatchDesign::default() };
         let forces = Forces::new().unwrap();
-        let found = forces.latching(&latch, &Geometry::of(&latch).unwrap());
-        assert_eq!(format!("{:.1}", found.spring_n), "3.6");
-        assert_eq!(format!("{:.1}", 2.0 * found.spring_n), "7.2");
-        assert_eq!(format!("{:.1}", found.force_n), "13.4");
-        assert!((found.interval_n[1] / found.force_n - 1.208).abs() < 1e-3 && found.doubts.is_empty());
+        let result = forces.latching(&latch, &Geometry::of(&latch).unwrap());
+        assert_eq!(format!("{:.1}", result.spring_n), "3.6");
+        assert_eq!(format!("{:.1}", 2.0 * result.spring_n), "7.2");
+        assert_eq!(format!("{:.1}", result.force_n), "13.4");
+        assert!((result.interval_n[1] / result.force_n - 1.208).abs() < 1e-3 && result.doubts.is_empty());
         // The three-sided part is softer: 28 % less than the fit.
-        let less = 1.0 - super::super::measured::THREE_SIDED_LATCHING / found.force_n;
+        let less = 1.0 - super::super::measured::THREE_SIDED_LATCHING / result.force_n;
         assert_eq!(format!("{less:.2}"), "0.28");
     }
 

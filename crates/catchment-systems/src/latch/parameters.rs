@@ -260,12 +260,12 @@ mod tests {
     fn an_empty_table_is_the_dissertations_part() {
         assert_eq!(read("[latch]\n").unwrap(), LatchDesign::default());
         let text = include_str!("../../../../designs/systems/latch.toml");
-        let said = LatchDesign {
+        let stated = LatchDesign {
             name: "latching X-Face, overhang 5.1, neck 3.0".to_owned(),
             dowel: Some(4.0),
             ..LatchDesign::default()
         };
-        assert_eq!(read(text).unwrap(), said);
+        assert_eq!(read(text).unwrap(), stated);
         assert_eq!(read("[latch]\nsides = 3\n").unwrap().base, 47.5);
         let inches = read("[latch]\nsheet = '0.125 in'\nkerf = 0.2\n").unwrap();
         assert!((inches.sheet - 3.175).abs() < 1e-12 && inches.separator == inches.sheet);

@@ -354,8 +354,8 @@ mod tests {
     #[test]
     fn warnings_have_their_reasons() {
         let small = report(&LatchDesign { overhang: 1.27, ..LatchDesign::default() });
-        let said = small.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>().join("\n");
-        assert!(said.contains("less than 1 mm") && said.contains("upper bound"), "{said}");
+        let stated = small.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>().join("\n");
+        assert!(stated.contains("less than 1 mm") && stated.contains("upper bound"), "{stated}");
         assert!(small.table().contains("at most"));
         let three = report(&LatchDesign { sides: 3, base: 47.5, ..LatchDesign::default() });
         assert!(three.warnings.iter().any(|w| w.message.contains("9.61 N")));

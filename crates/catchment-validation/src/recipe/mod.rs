@@ -229,8 +229,8 @@ impl Recipe {
         let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
         let sample = correction::CorrectionSettings { seed: SEED, stop: Stop::Samples(DESCENTS) };
         let descents = descent::DescentSettings::default();
-        let found = correction::correct(&pair, &grid, &by, &sample, &descents, exec).map_err(failed)?;
-        Ok(ExactValue { value: found.sum, ci95: Some(found.ci95) })
+        let result = correction::correct(&pair, &grid, &by, &sample, &descents, exec).map_err(failed)?;
+        Ok(ExactValue { value: result.sum, ci95: Some(result.ci95) })
     }
 }
 

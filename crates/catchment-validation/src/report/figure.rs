@@ -12,12 +12,12 @@ use catchment::report::figure::{
 ///
 /// # Errors
 /// If a table has no entry.
-pub fn pictures(found: &Reproduction) -> Result<Vec<(String, Picture)>, FigureError> {
+pub fn pictures(result: &Reproduction) -> Result<Vec<(String, Picture)>, FigureError> {
     let mut drawn = Vec::new();
-    for table in &found.tables {
+    for table in &result.tables {
         drawn.push((format!("table-{}", table.table), published(table)?));
     }
-    drawn.extend(found.figure.as_ref().map(|found| (figure_name(), resolution(found))));
+    drawn.extend(result.figure.as_ref().map(|result| (figure_name(), resolution(result))));
     Ok(drawn)
 }
 
@@ -76,12 +76,12 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
 }
 
 /// Draws the Sums of every method over N with the exact one and its interval, and beside them the time that each took.
-pub fn resolution(found: &ResolutionFigure) -> Picture {
-    let [lo, hi] = found.exact_ci95;
+pub fn resolution(result: &ResolutionFigure) -> Picture {
+    let [lo, hi] = result.exact_ci95;
     let story = format!(
         "exact {:.4} D·rad, 95 % interval {lo:.4} … {hi:.4}  ·  the published figure is lost; its text: larger at first, slowly \
          decreasing",
-        found.exact
+        result.exact
     );
     let of = |y: fn(f64, f64) -> f64| -> Vec<Curve> {
         let curve = |curve: &resolution::MethodCurve| Curve {
@@ -93,11 +93,11 @@ pub fn resolution(found: &ResolutionFigure) -> Picture {
                 .collect(),
             is_reference: false,
         };
-        found.curves.iter().map(curve).collect()
+        result.curves.iter().map(curve).collect()
     };
     let mut sums = of(|sum, _| sum);
-    let ends = found.settings.resolutions.first().into_iter().chain(found.settings.resolutions.last());
-    let exact = |n: &usize| CurvePoint { x: *n as f64, y: found.exact, interval: Some(found.exact_ci95) };
+    let ends = result.settings.resolutions.first().into_iter().chain(result.settings.resolutions.last());
+    let exact = |n: &usize| CurvePoint { x: *n as f64, y: result.exact, interval: Some(result.exact_ci95) };
     sums.push(Curve { name: "exact".to_owned(), points: ends.map(exact).collect(), is_reference: true });
     let seconds = of(|_, seconds| seconds.max(1e-6).log10());
     let chart = |y_label, curves| CurveChart { x_label: "samples or cells per axis", y_label, curves };
@@ -130,9 +130,9 @@ mod tests {
                 .collect(),
         };
         let curves = vec![curve("dissertation's", 3.0), curve("transport", 1.0), curve("descent", -1.0)];
-        let found =
+        let result =
             ResolutionFigure { exact: 0.5, exact_ci95: [0.49, 0.51], rotation_length: 0.5, curves, settings };
-        let picture = resolution(&found);
+        let picture = resolution(&result);
         assert!(picture.png(1.0).unwrap().starts_with(b"\x89PNG"));
         assert_eq!(picture.svg().matches("<circle").count(), 2 * 9 + 2);
         assert!(!picture.svg().contains("NaN"));

@@ -27,14 +27,14 @@ pub fn check(path: &Path, exec: &Exec) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// Whatever the system refuses; nothing is left behind.
-pub fn save(found: &Reproduction, path: &Path, version: &str, exec: &Exec) -> Result<String, SaveError> {
-    let drawn = pictures(found)?;
+pub fn save(result: &Reproduction, path: &Path, version: &str, exec: &Exec) -> Result<String, SaveError> {
+    let drawn = pictures(result)?;
     let mut files = encode(&drawn, exec)?;
-    if let Some(figure) = &found.figure {
+    if let Some(figure) = &result.figure {
         files.push((format!("{}.csv", figure_name()), csv(&figure.records())?));
     }
-    files.push((CSV.to_owned(), csv(&found.records())?));
-    files.push((REPORT.to_owned(), format!("{:#}\n", found.json(version)).into_bytes()));
+    files.push((CSV.to_owned(), csv(&result.records())?));
+    files.push((REPORT.to_owned(), format!("{:#}\n", result.json(version)).into_bytes()));
     save_files(path, KIND, &files, exec)?;
     Ok(format!("wrote {}: {REPORT}, {CSV}, {} pictures as PNG and SVG", shown(path), drawn.len()))
 }

@@ -145,8 +145,8 @@ fn write_figure(page: &mut String, figure: &resolution::ResolutionFigure) -> fmt
     writeln!(page, "|---:|{}", "---:|".repeat(names.len()))?;
     for resolution in &figure.settings.resolutions {
         let point = |curve: &resolution::MethodCurve| {
-            let found = curve.points.iter().find(|point| point.resolution == *resolution);
-            found.map_or_else(|| "–".to_owned(), |p| format!("{} ({:.3} s)", significant(p.sum), p.seconds))
+            let result = curve.points.iter().find(|point| point.resolution == *resolution);
+            result.map_or_else(|| "–".to_owned(), |p| format!("{} ({:.3} s)", significant(p.sum), p.seconds))
         };
         let cells: Vec<String> = figure.curves.iter().map(point).collect();
         writeln!(page, "| {resolution} | {} |", cells.join(" | "))?;

@@ -219,22 +219,22 @@ pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
     let named = |name: &str| tables.iter().find(|table| table.table == name);
     ASKED
         .iter()
-        .filter_map(|asked| {
-            let used: Vec<_> = asked.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
+        .filter_map(|requested| {
+            let used: Vec<_> = requested.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
             let ask = |value: fn(&ReproducedEntry) -> Option<f64>| {
                 let rows = |table: &&TableComparison| {
                     table.entries.iter().map(|row| row.iter().map(value).collect()).collect::<Option<Rows>>()
                 };
-                used.iter().map(rows).collect::<Option<Vec<Rows>>>().map(|tables| (asked.ask)(&tables))
+                used.iter().map(rows).collect::<Option<Vec<Rows>>>().map(|tables| (requested.ask)(&tables))
             };
             let exact = || ask(|entry| entry.exact.map(|exact| exact.value));
             Some(Claim {
-                section: asked.section,
-                says: asked.says,
-                counted: asked.counted,
+                section: requested.section,
+                says: requested.says,
+                counted: requested.counted,
                 printed: ask(|entry| Some(entry.published))?,
                 ours: ask(|entry| entry.ours),
-                exact: asked.of_docking.then(exact).flatten(),
+                exact: requested.of_docking.then(exact).flatten(),
             })
         })
         .collect()

@@ -219,13 +219,13 @@ impl Trial<'_> {
                 exec,
             )
         };
-        let found = silent.each(repeats as usize, usize::MAX, STAGE, one);
-        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let result = silent.each(repeats as usize, usize::MAX, STAGE, one);
+        let result = result.into_iter().collect::<Result<Vec<_>, _>>()?;
         let exact = self.exact;
         let exact_error = Z95 * (exact * (1.0 - exact) / plain as f64).sqrt();
         let measure = self.grid.measure();
         let mean =
-            |f: &dyn Fn(&correction::UnbiasedSum) -> f64| found.iter().map(f).sum::<f64>() / repeats as f64;
+            |f: &dyn Fn(&correction::UnbiasedSum) -> f64| result.iter().map(f).sum::<f64>() / repeats as f64;
         let held = mean(&|c| {
             let [down, up] = [c.sum - c.ci95[0], c.ci95[1] - c.sum].map(|w| (w / measure).hypot(exact_error));
             f64::from(u8::from(c.fraction - down <= exact && exact <= c.fraction + up))
@@ -252,10 +252,10 @@ mod tests {
     #[test]
     fn a_short_study_has_a_row_for_every_partition() {
         let settings = CoverageSettings { repeats: 3, descents: 100, exact: 10_000 };
-        let found = coverage(&settings, &Exec::new()).unwrap();
-        assert_eq!(found.rows.len(), 9);
+        let result = coverage(&settings, &Exec::new()).unwrap();
+        assert_eq!(result.rows.len(), 9);
         // Intervals of a hundred descents are wide, and three of three may miss by chance once in 10⁴.
-        assert!(found.rows.iter().all(|r| r.held > 0.0 && r.half_width < 1.0), "{found}");
-        assert_eq!(found.to_string().lines().count(), 11);
+        assert!(result.rows.iter().all(|r| r.held > 0.0 && r.half_width < 1.0), "{result}");
+        assert_eq!(result.to_string().lines().count(), 11);
     }
 }

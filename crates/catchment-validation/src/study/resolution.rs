@@ -122,7 +122,7 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Resolution
         curves.push(curve);
     }
     let Some(finest) = finest else {
-        return Err(RecipeError::Exact { reason: "no resolution was asked for".to_owned() });
+        return Err(RecipeError::Exact { reason: "no resolution was given".to_owned() });
     };
     let sample =
         correction::CorrectionSettings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
@@ -159,10 +159,10 @@ mod tests {
             descents: 2000,
             ..ResolutionStudySettings::default()
         };
-        let found = run(&settings, &Exec::new()).unwrap();
-        let last = |name: &str| found.curves.iter().find(|c| c.name == name).unwrap().points[2].sum;
-        assert!((last("descent") / found.exact - 1.0).abs() < 0.03, "{found:?}");
-        assert!(found.curves[0].points.iter().all(|p| p.sum > 0.2 && p.sum < 1.0), "{found:?}");
-        assert_eq!(found.records().len(), 1 + 6 * 3);
+        let result = run(&settings, &Exec::new()).unwrap();
+        let last = |name: &str| result.curves.iter().find(|c| c.name == name).unwrap().points[2].sum;
+        assert!((last("descent") / result.exact - 1.0).abs() < 0.03, "{result:?}");
+        assert!(result.curves[0].points.iter().all(|p| p.sum > 0.2 && p.sum < 1.0), "{result:?}");
+        assert_eq!(result.records().len(), 1 + 6 * 3);
     }
 }

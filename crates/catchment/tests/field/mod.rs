@@ -93,8 +93,8 @@ fn the_industreal_peg_slides_until_its_play_is_used() {
     let problem = industreal_peg(D);
     let least = |play: f64| {
         let settings = hold::HoldSettings { play, ..hold::HoldSettings::default() };
-        let found = hold::run(&problem, &settings, &Exec::new()).unwrap();
-        found.weakest.smooth_free.and_then(|side| side.withstood.smooth).and_then(|force| force.free)
+        let result = hold::run(&problem, &settings, &Exec::new()).unwrap();
+        result.weakest.smooth_free.and_then(|side| side.withstood.smooth).and_then(|force| force.free)
     };
     assert!(least(hold::HoldSettings::default().play).unwrap() < 1e-6);
     let play = geometry("industreal-peg", "play") / D;
@@ -133,8 +133,8 @@ fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
     // The edge of the block must be over the mouth: (220 − 100)/2 and (180 − 100)/2, to a step.
     for dof in LATERAL {
         let expected = geometry("sigyn-funnel", dof.name());
-        let found = reach(&problem, dof, 85.0 / D, step) * D;
-        assert!((found - expected).abs() <= 0.5, "{}: {found} mm", dof.name());
+        let result = reach(&problem, dof, 85.0 / D, step) * D;
+        assert!((result - expected).abs() <= 0.5, "{}: {result} mm", dof.name());
     }
 }
 
@@ -157,8 +157,8 @@ fn four_cones_take_what_one_takes() {
     }
     legs.extend(body(&[rectangle([62.0, 62.0], -14.0), rectangle([62.0, 62.0], -10.0)]));
     let problem = problem(fixed, legs, D, &LATERAL, |a| a.half_ranges = [0.2, 0.2, 1.0, 1.0, 1.0]);
-    let found = reach(&problem, Dof::X, 0.2, 0.1 / D) * D;
-    assert!((found - geometry("landing-pad", "x")).abs() <= 0.15, "{found} mm");
+    let result = reach(&problem, Dof::X, 0.2, 0.1 / D) * D;
+    assert!((result - geometry("landing-pad", "x")).abs() <= 0.15, "{result} mm");
 }
 
 /// Three keys in three V grooves at 120° (Maxwell): one place of rest, and everything that meets its groove goes there.
@@ -186,8 +186,8 @@ fn three_grooves_leave_one_place_of_rest() {
         assert!(off.most < 1e-3, "{off:?}");
     }
     // The tip of a key must be over its groove: 4 mm to either side of it.
-    let found = reach(&problem, Dof::Y, 0.12, 0.1 / D) * D;
-    assert!((found - geometry("maxwell-coupling", "y")).abs() <= 0.2, "{found} mm");
+    let result = reach(&problem, Dof::Y, 0.12, 0.1 / D) * D;
+    assert!((result - geometry("maxwell-coupling", "y")).abs() <= 0.2, "{result} mm");
 }
 
 /// A Kelvin coupling on a plate of 60 mm: balls of 8 mm on a circle of 40, in a trihedral and a V of 90°, both 3.6 mm deep, and on a flat.
@@ -228,8 +228,8 @@ fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
         ([0.0, -1.0], slant),
     ] {
         let [x, y] = direction.map(|d| d / D);
-        let found = edge(&lateral, [x, y, 0.0, 0.0, 0.0], 6.0);
-        assert!((found - expected).abs() < 0.02, "{direction:?}: {found} mm");
+        let result = edge(&lateral, [x, y, 0.0, 0.0, 0.0], 6.0);
+        assert!((result - expected).abs() < 0.02, "{direction:?}: {result} mm");
     }
     let problem = problem(fixed, moving, D, &Dof::ALL, |a| a.half_ranges = [0.033, 0.033, 0.05, 0.05, 0.05]);
     let run = Run {
@@ -262,8 +262,8 @@ fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
     let [corner, side] = ["to a corner", "to a side"].map(|way| geometry("probe-and-drogue", way));
     for (angle, expected) in [(0.0, corner), (half, side), (0.25 * TAU, corner)] {
         let (sin, cos) = f64::sin_cos(angle);
-        let found = edge(&lateral, [cos / D, sin / D, 0.0, 0.0, 0.0], 420.0);
-        assert!((found - expected).abs() < 0.5, "{angle}: {found} mm");
+        let result = edge(&lateral, [cos / D, sin / D, 0.0, 0.0, 0.0], 420.0);
+        assert!((result - expected).abs() < 0.5, "{angle}: {result} mm");
     }
     let tilted = problem(fixed, moving, D, &[Dof::X, Dof::Y, Dof::Roll, Dof::Pitch], |a| {
         a.dont_care = [Dof::Yaw].into_iter().collect();
@@ -318,8 +318,8 @@ fn a_bayonet_enters_by_its_clearance_and_its_lead_in() {
         let problem =
             problem(fixed, moving, 60.0, &[Dof::Yaw], |a| a.half_ranges = [1.0, 1.0, 1.0, 1.0, 0.2]);
         for sign in [1.0, -1.0_f64] {
-            let found = edge(&problem, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 8.0);
-            assert!((found - expected).abs() < 0.02, "{lead}°: {found}°");
+            let result = edge(&problem, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 8.0);
+            assert!((result - expected).abs() < 0.02, "{lead}°: {result}°");
             // The widest lug has a slot of its own.
             let other = PoseError { yaw: sign * TAU / 3.0, ..PoseError::default() };
             assert_eq!(problem.follow(&other).outcome, Outcome::Jammed);
@@ -364,15 +364,15 @@ fn three_petals_take_the_gap_between_their_tips() {
     });
     // Tips of 36° on 60°: 24° of yaw to either side, about each of the three mated poses.
     for sign in [1.0, -1.0_f64] {
-        let found = edge(&flat, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 40.0);
-        assert!((found - geometry("three-petals", "yaw")).abs() < 0.05, "{found}°");
+        let result = edge(&flat, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 40.0);
+        assert!((result - geometry("three-petals", "yaw")).abs() < 0.05, "{result}°");
     }
     let third = PoseError { yaw: 143.0_f64.to_radians(), ..PoseError::default() };
     assert_eq!(flat.follow(&third).outcome, Outcome::Aligned);
     // Straight along the gap between two tips, whose inner corners are nearest: 2·411 mm·sin 12°.
     let expected = geometry("three-petals", "-y");
-    let found = edge(&flat, [0.0, -1.0 / D, 0.0, 0.0, 0.0], 200.0);
-    assert!((found - expected).abs() < 0.2, "{found} mm for {expected}");
+    let result = edge(&flat, [0.0, -1.0 / D, 0.0, 0.0, 0.0], 200.0);
+    assert!((result - expected).abs() < 0.2, "{result} mm for {expected}");
     // The initial contact of IDSS: 0.10 m, 4° of tilt, 4° about the axis, all at once.
     let free = problem(petals(), petals(), D, &Dof::ALL, |a| {
         a.half_ranges = [0.084, 0.084, 0.07, 0.07, 0.07];

@@ -152,8 +152,8 @@ fn limits_decide_where_the_seat_leaves_play() {
 fn refused(problem: Result<Problem, ProblemError>) -> String {
     match problem {
         Err(ProblemError::Diagnostics(found)) => {
-            let said = |f: &Diagnostic| format!("{} ({})", f.message, f.help().unwrap_or_default());
-            found.list.iter().map(said).collect::<Vec<_>>().join("\n")
+            let printout = |f: &Diagnostic| format!("{} ({})", f.message, f.help().unwrap_or_default());
+            found.list.iter().map(printout).collect::<Vec<_>>().join("\n")
         }
         other => panic!("{other:?}"),
     }
@@ -359,8 +359,11 @@ fn a_mated_pose_that_runs_off_is_said_to() {
     let tilt = (0.4 / (0.42 * 2f64.sqrt())).acos() - TAU / 8.0;
     let play = answer.seating.play.iter().find(|play| play.axis == Dof::Pitch).unwrap();
     assert!((play.most() - tilt.abs()).abs() < 1e-3, "{play:?} for {tilt}");
-    let said: Vec<String> = answer.warnings().iter().map(ToString::to_string).collect();
-    assert!(said.iter().any(|text| text.contains("does not hold: docked halves rest 0.0004")), "{said:?}");
+    let printout: Vec<String> = answer.warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        printout.iter().any(|text| text.contains("does not hold: docked halves rest 0.0004")),
+        "{printout:?}"
+    );
 }
 
 /// A plate around a hole is level: flooding drains it, and says over how many cells.

@@ -132,17 +132,17 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(message, Some(help)).ends(ExitStatus::NotComputed));
     }
     // Whoever chooses a resolution knows what it takes.
-    let said = match args.resolution {
-        None => said_before(&run, &plan, &problem, running.exec.threads()),
+    let stated = match args.resolution {
+        None => notes_before(&run, &plan, &problem, running.exec.threads()),
         Some(_) => Vec::new(),
     };
-    to_stderr(&said);
+    to_stderr(&stated);
     if targets.draw() {
         plan.ensure_fits(&running.exec)?;
         figure::ensure_run_fits(&plan, &running.exec)?;
     }
     let first = |upright: &Upright| {
-        if !said.is_empty() {
+        if !stated.is_empty() {
             to_stderr(&first_look(problem.design(), upright));
         }
     };
@@ -159,7 +159,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 pub(super) const LONG: f64 = 20.0;
 
 /// How long it will take, and what would be faster.
-fn said_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> Vec<String> {
+fn notes_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> Vec<String> {
     let wall = |plan: &RunPlan, problem: &Problem| plan.seconds(problem) / threads as f64;
     let seconds = wall(plan, problem);
     if seconds < LONG {
@@ -172,7 +172,7 @@ fn said_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> 
         Domain::Grid(grid) => format!("{} cells", grid.len()),
         Domain::Poses(poses) => format!("{} random poses, as a grid would be too coarse", poses.len()),
     };
-    let mut said = format!("{} on these halves: about {} ({how})", count(free), time(seconds));
+    let mut stated = format!("{} on these halves: about {} ({how})", count(free), time(seconds));
     let mut design = problem.design().clone();
     design.alignment.free =
         [Dof::X, Dof::Y, Dof::Yaw].into_iter().filter(|dof| free.contains(*dof)).collect();
@@ -184,11 +184,11 @@ fn said_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> 
         let names: Vec<&str> = fewer.alignment().free.iter().map(Dof::name).collect();
         let named = names.join(", ");
         let fewer = time(wall(&plan, &fewer));
-        said = format!("{said}; {named} alone: about {fewer} (--free {})", names.join(","));
+        stated = format!("{stated}; {named} alone: about {fewer} (--free {})", names.join(","));
     }
     let fewer = "--budget 30s takes fewer poses, --samples N that many".to_owned();
     // Whoever gave one of them knows them.
-    std::iter::once(said).chain((run.sample == Sample::ByMethod).then_some(fewer)).collect()
+    std::iter::once(stated).chain((run.sample == Sample::ByMethod).then_some(fewer)).collect()
 }
 
 /// Seconds as one says them.

@@ -72,9 +72,9 @@ pub(super) fn study<T: Subject>(
     let problem = args.design.problem()?;
     let running = args.exec.start()?;
     let exec = &running.exec;
-    let found = compute(&problem, exec)?;
+    let result = compute(&problem, exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
-    let report = ReportOf::new(problem.design(), found, Vec::new(), Some(timing));
+    let report = ReportOf::new(problem.design(), result, Vec::new(), Some(timing));
     let mut notes = lines(&problem.warnings());
     let pictures = || Ok(vec![(T::KIND, draw(&report))]);
     notes.extend(output.write(&report, pictures, |_| Ok(String::new()), exec)?);

@@ -206,8 +206,8 @@ mod tests {
         let whole = b"POST /t/run HTTP/1.1\r\nHost: 127.0.0.1:9\r\nContent-Length: 3\r\n\r\n7,8 and more";
         let end = whole.len() - " and more".len();
         for cut in 0..whole.len() {
-            let found = parse(&whole[..cut]).map_err(|refusal| refusal.status).unwrap();
-            assert_eq!(found.map(|request| request.body), (cut >= end).then(|| "7,8".to_owned()), "{cut}");
+            let result = parse(&whole[..cut]).map_err(|refusal| refusal.status).unwrap();
+            assert_eq!(result.map(|request| request.body), (cut >= end).then(|| "7,8".to_owned()), "{cut}");
         }
         let status = |bytes: &[u8]| parse(bytes).unwrap_err().status;
         assert_eq!(status(&[b'x'; HEAD_BYTES]), 413);

@@ -154,13 +154,13 @@ impl LivePage {
             let exec = Exec::new();
             state.running = Some(exec.cancel_flag());
             drop(state);
-            let found = self.compute(resolution, exec);
+            let result = self.compute(resolution, exec);
             let mut state = self.locked();
             // What was replaced meanwhile is no page, however it ended.
             if state.next.is_some() {
                 continue;
             }
-            match found {
+            match result {
                 Ok(page) => state.page = Some(page),
                 Err(why) => state.failed = Some(why),
             }

@@ -110,7 +110,7 @@ fn respond(request: &Request, desk: &Arc<LivePage>) -> Response {
             Ok(false) => Response::text(202, "started"),
             Err(why) => Response::text(400, &why),
         },
-        (_, "" | "progress" | "run") => Response::text(405, "this address is not asked that way"),
+        (_, "" | "progress" | "run") => Response::text(405, "this address does not take that method"),
         _ => Response::text(404, "there is nothing here"),
     }
 }

@@ -21,9 +21,9 @@ pub(super) fn problems(mesh: &Indexed, sides: &Sides) -> Vec<MeshProblem> {
     reported.extend(wrong_windings(mesh, sides));
     if reported.problems.is_empty() {
         reported.extend(inside_out(mesh, sides));
-        let (found, not_looked_at) = crossings(mesh, MAX_REPORTED);
+        let (result, not_looked_at) = crossings(mesh, MAX_REPORTED);
         let place = |k: usize| mesh.places[k];
-        reported.extend(found.into_iter().map(|crossing| MeshProblem::SelfIntersection {
+        reported.extend(result.into_iter().map(|crossing| MeshProblem::SelfIntersection {
             first: place(crossing.pair[0]),
             second: place(crossing.pair[1]),
             at: crossing.at.into(),

@@ -33,7 +33,7 @@ pub(super) fn crossings(mesh: &Indexed, most: usize) -> (Vec<Crossing>, usize) {
     for (at, k) in order.iter().enumerate() {
         position[*k as usize] = at as u32;
     }
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut near: Vec<u32> = Vec::new();
     for (at, &i) in order.iter().enumerate() {
         let i = i as usize;
@@ -58,13 +58,13 @@ pub(super) fn crossings(mesh: &Indexed, most: usize) -> (Vec<Crossing>, usize) {
                 continue;
             }
             let Some(point) = cross(mesh, first, second) else { continue };
-            if found.len() == most {
-                return (found, order.len() - at);
+            if result.len() == most {
+                return (result, order.len() - at);
             }
-            found.push(Crossing { pair: [i.min(j), i.max(j)], at: point });
+            result.push(Crossing { pair: [i.min(j), i.max(j)], at: point });
         }
     }
-    (found, 0)
+    (result, 0)
 }
 
 /// A triangle and the plane that it lies in.

@@ -141,18 +141,18 @@ pub(in crate::connector) fn triangles(
     let size = flat.iter().map(|p| p.distance(flat[0])).fold(0.0, f64::max);
     let on = COINCIDENT * size * size;
     let mut border = Border::of(flat, on);
-    let mut found = Vec::with_capacity(count.saturating_sub(2));
-    while count - found.len() > 3 {
+    let mut result = Vec::with_capacity(count.saturating_sub(2));
+    while count - result.len() > 3 {
         let Some(ear) = border.ears.pop() else { return Ok(None) };
         if ear.version != border.versions[ear.corner] {
             continue;
         }
         if let Some(other) = border.inside(ear.corner) {
-            steps.spend((count - found.len()) as u64)?;
+            steps.spend((count - result.len()) as u64)?;
             border.blocked[other].push(ear);
             continue;
         }
-        found.push(border.ear(ear.corner));
+        result.push(border.ear(ear.corner));
         border.take(ear.corner);
     }
     // The three that are left, the first of them first.
@@ -162,8 +162,8 @@ pub(in crate::connector) fn triangles(
     if fatness(last.map(|c| border.flat[c]), on).is_none() {
         return Ok(None);
     }
-    found.push(last);
-    Ok(Some(found))
+    result.push(last);
+    Ok(Some(result))
 }
 
 /// Twice the signed area of a triangle.
@@ -204,7 +204,7 @@ mod tests {
         let size = flat.iter().map(|p| p.distance(flat[0])).fold(0.0, f64::max);
         let on = COINCIDENT * size * size;
         let mut left: Vec<usize> = (0..count).collect();
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         while left.len() > 3 {
             let n = left.len();
             let ear = |k: usize| [left[(k + n - 1) % n], left[k], left[(k + 1) % n]];
@@ -218,13 +218,13 @@ mod tests {
                     .all(|c| ear.contains(c) || own.contains(&flat[*c]) || !is_inside(flat[*c], own, on))
             };
             let (_, k) = ears.into_iter().find(|(_, k)| is_free(*k))?;
-            found.push(ear(k));
+            result.push(ear(k));
             left.remove(k);
         }
         let last = [left[0], left[1], left[2]];
         fatness(last.map(|c| flat[c]), on)?;
-        found.push(last);
-        Some(found)
+        result.push(last);
+        Some(result)
     }
 
     /// Every triangle is wound as the face, together they have its area, and each side of the face belongs to one of them, in its sense.

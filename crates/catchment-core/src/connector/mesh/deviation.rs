@@ -125,7 +125,7 @@ mod tests {
             const N: usize = 20;
             let p = DVec3::from_array(p);
             let [a, b, c] = [0, 3, 6].map(|k| DVec3::from_slice(&t[k..k + 3]));
-            let found = p.distance(closest(p, [a, b, c]));
+            let result = p.distance(closest(p, [a, b, c]));
             let mut least = f64::INFINITY;
             for i in 0..=N {
                 for j in 0..=N - i {
@@ -133,9 +133,9 @@ mod tests {
                     least = least.min(p.distance(a + (b - a) * u + (c - a) * v));
                 }
             }
-            prop_assert!(found <= least + 1e-12, "{} {}", found, least);
+            prop_assert!(result <= least + 1e-12, "{} {}", result, least);
             // The lattice is no wider than this.
-            prop_assert!(found >= least - (a.distance(b) + a.distance(c)) / N as f64);
+            prop_assert!(result >= least - (a.distance(b) + a.distance(c)) / N as f64);
         }
     }
 }

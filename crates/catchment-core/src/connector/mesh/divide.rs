@@ -78,7 +78,7 @@ fn on_edge([a, b]: [u32; 2], ends: &[u32], mesh: &Indexed) -> Vec<u32> {
     let (from, to, tolerance) = (mesh.at(a), mesh.at(b), mesh.tolerance);
     let Some(along) = (to - from).try_normalize() else { return Vec::new() };
     let length = (to - from).dot(along);
-    let mut found: Vec<(f64, u32)> = ends
+    let mut result: Vec<(f64, u32)> = ends
         .iter()
         .filter_map(|&p| {
             let to_p = mesh.at(p) - from;
@@ -87,6 +87,6 @@ fn on_edge([a, b]: [u32; 2], ends: &[u32], mesh: &Indexed) -> Vec<u32> {
             (at > tolerance && at < length - tolerance && beside <= tolerance).then_some((at, p))
         })
         .collect();
-    found.sort_by(|x, y| x.0.total_cmp(&y.0));
-    found.into_iter().map(|(_, p)| p).collect()
+    result.sort_by(|x, y| x.0.total_cmp(&y.0));
+    result.into_iter().map(|(_, p)| p).collect()
 }

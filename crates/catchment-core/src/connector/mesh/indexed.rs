@@ -40,17 +40,17 @@ impl Indexed {
     }
 
     /// The result of a library: its corners are shared already.
-    pub(super) fn made(found: &MeshGL64, tolerance: f64) -> Self {
-        let width = found.num_prop as usize;
+    pub(super) fn made(result: &MeshGL64, tolerance: f64) -> Self {
+        let width = result.num_prop as usize;
         let vertices: Vec<DVec3> =
-            found.vert_properties.chunks_exact(width).map(|v| DVec3::new(v[0], v[1], v[2])).collect();
+            result.vert_properties.chunks_exact(width).map(|v| DVec3::new(v[0], v[1], v[2])).collect();
         // The library repeats corners, for example where vertex properties differ.
         let mut same: Vec<u32> = (0..vertices.len() as u32).collect();
-        for (from, to) in found.merge_from_vert.iter().zip(&found.merge_to_vert) {
+        for (from, to) in result.merge_from_vert.iter().zip(&result.merge_to_vert) {
             same[*from as usize] = *to as u32;
         }
         let corners = |t: &[u64]| [t[0], t[1], t[2]].map(|k| same[k as usize]);
-        let triangles: Vec<[u32; 3]> = found.tri_verts.chunks_exact(3).map(corners).collect();
+        let triangles: Vec<[u32; 3]> = result.tri_verts.chunks_exact(3).map(corners).collect();
         let places = (0..triangles.len())
             .map(|triangle| TriangleLocation { triangle, start: FileOffset::Made })
             .collect();

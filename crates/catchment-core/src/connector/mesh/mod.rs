@@ -205,7 +205,7 @@ pub(super) fn part(
                 ready.triangles += solid.triangles;
                 ready.repairs.add(&solid.repairs);
             }
-            Err(found) => problems.extend(found),
+            Err(result) => problems.extend(result),
         }
         if problems.len() > MAX_REPORTED * MAX_REPORTED {
             break;

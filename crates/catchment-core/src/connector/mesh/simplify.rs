@@ -85,7 +85,7 @@ fn manifold(mesh: &Indexed) -> Option<Manifold> {
 }
 
 /// Ours of the library's, if there is anything left.
-fn indexed(found: &Manifold, tolerance: f64) -> Option<Indexed> {
-    let is_solid = found.status() == Error::NoError && !found.is_empty();
-    is_solid.then(|| Indexed::made(&found.get_mesh_gl64(-1), tolerance))
+fn indexed(results: &Manifold, tolerance: f64) -> Option<Indexed> {
+    let is_solid = results.status() == Error::NoError && !results.is_empty();
+    is_solid.then(|| Indexed::made(&results.get_mesh_gl64(-1), tolerance))
 }

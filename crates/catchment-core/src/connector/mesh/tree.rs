@@ -105,9 +105,9 @@ impl Tree {
             if node.count > 0 {
                 let first = node.link as usize;
                 for k in &self.order[first..first + node.count as usize] {
-                    let found = distance(*k as usize);
-                    if found < best.1 {
-                        best = (Some(*k as usize), found);
+                    let result = distance(*k as usize);
+                    if result < best.1 {
+                        best = (Some(*k as usize), result);
                     }
                 }
                 continue;
@@ -156,8 +156,8 @@ mod tests {
             let tree = Tree::over(&boxes);
             let point = DVec3::from_array(point);
             let least = boxes.iter().map(|b| away(point, *b)).fold(f64::INFINITY, f64::min);
-            let found = tree.nearest(point, f64::INFINITY, |k| away(point, boxes[k]));
-            prop_assert_eq!(found.map_or(f64::INFINITY, |f| f.1), least);
+            let result = tree.nearest(point, f64::INFINITY, |k| away(point, boxes[k]));
+            prop_assert_eq!(result.map_or(f64::INFINITY, |f| f.1), least);
             for mine in &boxes {
                 let mut met = Vec::new();
                 tree.visit(|b| overlap(b, *mine), |k| met.push(k));

@@ -83,8 +83,8 @@ pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), O
         );
         match read {
             Ok(strokes) => loops.extend(strokes),
-            Err(found) => {
-                problem = Some(found);
+            Err(result) => {
+                problem = Some(result);
                 return ControlFlow::Break(());
             }
         }
@@ -273,7 +273,7 @@ fn path(data: &str, tolerance: f64) -> Result<BezPath, String> {
 
 /// The closed lines of a path, curves replaced by chords.
 fn flattened(path: &BezPath, within: Within, line: usize) -> Result<Vec<Stroke>, OutlineProblem> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut corners: Vec<DVec2> = Vec::new();
     let mut at = Point::ZERO;
     let dvec = |p: Point| DVec2::new(p.x, p.y);
@@ -287,7 +287,7 @@ fn flattened(path: &BezPath, within: Within, line: usize) -> Result<Vec<Stroke>,
         if !is_closed && first.distance(last) > near {
             return Err(OutlineProblem::Open { line, at: first });
         }
-        found.push(Stroke { corners, line });
+        result.push(Stroke { corners, line });
         Ok(())
     };
     for element in path.elements() {
@@ -328,5 +328,5 @@ fn flattened(path: &BezPath, within: Within, line: usize) -> Result<Vec<Stroke>,
         };
     }
     ended(&mut corners, false)?;
-    Ok(found)
+    Ok(result)
 }

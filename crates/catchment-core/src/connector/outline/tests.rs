@@ -19,13 +19,13 @@ fn areas(name: &str, text: &str) -> Vec<f64> {
 
 #[test]
 fn loops_nest() {
-    let found =
+    let result =
         regions(vec![square(1.0, 2.0), square(0.0, 9.0), square(1.2, 1.8), square(3.0, 4.0)]).unwrap();
-    let shapes: Vec<(f64, usize)> = found.iter().map(|r| (super::area(&r.outer), r.holes.len())).collect();
+    let shapes: Vec<(f64, usize)> = result.iter().map(|r| (super::area(&r.outer), r.holes.len())).collect();
     assert_eq!(shapes.len(), 2);
     assert!(shapes.iter().any(|(area, holes)| (area - 81.0).abs() < 1e-12 && *holes == 2));
     assert!(shapes.iter().any(|(area, holes)| (area - 0.36).abs() < 1e-12 && *holes == 0));
-    assert!(found.iter().flat_map(|r| &r.holes).all(|hole| super::area(hole) < 0.0));
+    assert!(result.iter().flat_map(|r| &r.holes).all(|hole| super::area(hole) < 0.0));
 }
 
 #[test]
@@ -77,9 +77,9 @@ fn a_plate_with_a_hole_in_both_kinds_of_drawings() {
         ("e.dxf", &bulges),
         ("f.dxf", &old),
     ] {
-        let found = areas(name, text);
-        assert_eq!(found.len(), 1, "{name}");
-        let beyond = found[0] - (60.0 - round);
+        let result = areas(name, text);
+        assert_eq!(result.len(), 1, "{name}");
+        let beyond = result[0] - (60.0 - round);
         assert!(beyond > 0.0 && beyond < most, "{name}: {beyond}");
     }
 }
@@ -181,7 +181,7 @@ fn what_is_hidden_is_no_solid() {
 
 #[test]
 fn what_changes_a_picture_and_is_not_read_is_refused_with_its_line() {
-    let said = |post: &str| {
+    let error_of = |post: &str| {
         drawing("a.svg", &format!("<svg>\n<rect width='9' height='9'/>\n{post}</svg>"))
             .unwrap_err()
             .to_string()
@@ -219,9 +219,9 @@ fn what_changes_a_picture_and_is_not_read_is_refused_with_its_line() {
         ("<path d='M0 0h5v5z'/><path d='M0 0h5v5z".to_owned(), "this is no SVG picture"),
         ("</svg><svg>".to_owned(), "something follows the end"),
     ] {
-        let found = said(&post);
-        assert!(found.contains(what), "{post}: {found}");
-        assert!(found.starts_with("line 3: "), "{post}: {found}");
+        let result = error_of(&post);
+        assert!(result.contains(what), "{post}: {result}");
+        assert!(result.starts_with("line 3: "), "{post}: {result}");
     }
     // Elements that draw nothing may use any feature.
     let fine = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:svg='http://www.w3.org/2000/svg'>                <svg:g clip-path='none'><svg:rect width='9' height='9'/></svg:g><linearGradient/><title>a</title></svg>";
@@ -251,9 +251,9 @@ fn a_transform_has_its_origin() {
 fn a_crowd_is_counted_where_it_stands() {
     let crowd = |count: usize| (0..count).map(|k| format!("a{k}='' ")).collect::<Vec<_>>().concat();
     for text in ["", "='", "=\"", "<!-- ' -->=\"", "<![CDATA[ <g a=\"]]>"] {
-        let found =
+        let result =
             drawing("a.svg", &format!("<svg>{text}\n<g {}/></svg>", crowd(201))).unwrap_err().to_string();
-        assert_eq!(found, "line 2: more than 200 attributes of an element: save it as plain SVG", "{text}");
+        assert_eq!(result, "line 2: more than 200 attributes of an element: save it as plain SVG", "{text}");
     }
     let many = drawing("a.svg", &format!("<svg>{}</svg>", "<g/>".repeat(100_000))).unwrap_err().to_string();
     assert!(many.starts_with("line 1: more than 100000 elements"), "{many}");
@@ -307,7 +307,7 @@ fn entities_that_are_not_shown_are_no_solid() {
 
 #[test]
 fn a_broken_dxf_drawing_is_refused_with_its_line() {
-    let said = |entities: &str| drawing("a.dxf", &dxf("", entities)).unwrap_err().to_string();
+    let error_of = |entities: &str| drawing("a.dxf", &dxf("", entities)).unwrap_err().to_string();
     for (entities, what) in [
         (
             "0\nLWPOLYLINE\n70\n1\n10\n0\n20\n0\n10\n1\n10\n1\n20\n1\n",
@@ -324,7 +324,7 @@ fn a_broken_dxf_drawing_is_refused_with_its_line() {
         ("0\nPOLYLINE\n70\n16\n0\nSEQEND\n", "line 5: a mesh of polylines is not read"),
         ("0\nLINE\n10\n0\n60\nx\n", "line 10: expected a number"),
     ] {
-        assert!(said(entities).starts_with(what), "{entities:?}: {}", said(entities));
+        assert!(error_of(entities).starts_with(what), "{entities:?}: {}", error_of(entities));
     }
     let cut = "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\n0\n20\n0\n40\n2\n";
     assert!(drawing("a.dxf", cut).unwrap_err().to_string().starts_with("line 11: the DXF file was cut off"));

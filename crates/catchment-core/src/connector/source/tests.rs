@@ -85,8 +85,8 @@ fn mesh_design(path: &str, file: &[u8]) -> Design {
         alignment: Alignment::new(DofSet::ALL, Mount::X),
     };
     assert_eq!(design.digest(), None);
-    let read = |asked: &Path, _| {
-        assert_eq!(asked, Path::new(path));
+    let read = |requested: &Path, _| {
+        assert_eq!(requested, Path::new(path));
         Ok(FileBytes::whole(file.to_vec()))
     };
     let connector = Connector::build_with(&design, &read).unwrap();

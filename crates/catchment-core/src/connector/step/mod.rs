@@ -162,21 +162,21 @@ pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Fil
         return Err(vec![UnitProblem::NotMm { stated }.into()]);
     }
     let scale = scale(spec, Some(LengthUnit::Mm.metres())).map_err(|problem| vec![problem.into()])?;
-    let asked = MeshingRequest {
+    let requested = MeshingRequest {
         sha256: hex(&Sha256::digest(&file.bytes)),
         // 0 leaves it to the size of the part.
         deflection: spec.treatment.deflection.map_or(0.0, |d| d / scale),
         most_triangles: most_read(spec.treatment),
     };
     let kept = || MESHED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, held)) = kept().iter().find(|(known, _)| *known == asked) {
+    if let Some((_, held)) = kept().iter().find(|(known, _)| *known == requested) {
         return Ok(held.clone());
     }
-    let held = meshed(&file.bytes, &asked, spec, exec)?;
+    let held = meshed(&file.bytes, &requested, spec, exec)?;
     let count: usize = held.bodies.iter().map(Vec::len).sum();
     if count <= super::mesh::MAX_TRIANGLES {
         let mut kept = kept();
-        kept.push_back((asked, held.clone()));
+        kept.push_back((requested, held.clone()));
         if kept.len() > MOST_KEPT {
             kept.pop_front();
         }
@@ -186,7 +186,7 @@ pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Fil
 
 fn meshed(
     bytes: &[u8],
-    asked: &MeshingRequest,
+    requested: &MeshingRequest,
     spec: &FileSpec,
     exec: &Exec,
 ) -> Result<FileContent, Vec<MeshProblem>> {
@@ -197,12 +197,12 @@ fn meshed(
         "-I".to_owned(),
         "-c".to_owned(),
         SCRIPT.to_owned(),
-        asked.deflection.to_string(),
-        asked.most_triangles.to_string(),
+        requested.deflection.to_string(),
+        requested.most_triangles.to_string(),
         most_bytes.to_string(),
         MOST_TIME.as_secs().to_string(),
     ];
-    let most_reply = reply::most_bytes(asked.most_triangles);
+    let most_reply = reply::most_bytes(requested.most_triangles);
     let job =
         child::Job { program: child::interpreter(), arguments: &arguments, most_reply, most_time: MOST_TIME };
     let program = job.program.to_string_lossy().into_owned();

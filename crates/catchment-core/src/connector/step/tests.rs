@@ -38,22 +38,24 @@ fn an_answer_is_taken_whole_or_not_at_all() {
 
 #[test]
 fn what_it_refuses_is_said_with_advice() {
-    let said = |kind: &str, message: &str| {
+    let error_of = |kind: &str, message: &str| {
         let head = serde_json::json!({ "error": kind, "message": message }).to_string();
         read_answer(&answer(&head, &[], &[])).unwrap_err()[0].to_string()
     };
-    assert!(said("package", "No module named 'OCP'").contains("`python3 -m pip install cadquery-ocp-novtk`"));
-    assert_eq!(said("unreadable", "a\u{1b}[2Jb"), "cannot be read as STEP: a[2Jb");
     assert!(
-        said("empty", "of 3 faces, none of which bounds a solid")
+        error_of("package", "No module named 'OCP'").contains("`python3 -m pip install cadquery-ocp-novtk`")
+    );
+    assert_eq!(error_of("unreadable", "a\u{1b}[2Jb"), "cannot be read as STEP: a[2Jb");
+    assert!(
+        error_of("empty", "of 3 faces, none of which bounds a solid")
             .starts_with("the file holds no solid (of 3")
     );
     assert!(
-        said("many", "250000")
+        error_of("many", "250000")
             .contains("make 250000 triangles or more, and a half may have 200000: let `deflection`")
     );
-    assert!(said("memory", "").contains("more memory than there is"));
-    assert!(said("unmeshed", "one of its faces").contains("repair the part"));
+    assert!(error_of("memory", "").contains("more memory than there is"));
+    assert!(error_of("unmeshed", "one of its faces").contains("repair the part"));
 }
 
 #[test]

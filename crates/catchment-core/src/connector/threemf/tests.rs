@@ -49,12 +49,12 @@ fn items_and_components_are_bodies_where_they_are_moved() {
                <component objectid=\"1\" transform=\"2 0 0 0 1 0 0 0 1 5 0 0\"/></components></object>";
     let support = format!("<object id=\"3\" type=\"support\">{MESH}</object>");
     let items = "<item objectid=\"2\"/><item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/><item objectid=\"3\"/>";
-    let found = of_model(&model("unit=\"inch\"", &format!("{one}{two}{support}"), items)).unwrap();
-    assert_eq!(found.metres, Some(0.0254));
+    let result = of_model(&model("unit=\"inch\"", &format!("{one}{two}{support}"), items)).unwrap();
+    assert_eq!(result.metres, Some(0.0254));
     // Moved, stretched and mirrored bodies; none of them is turned inside out.
-    assert_eq!(volumes(&found), [1.0, 2.0, 1.0]);
-    assert_eq!(found.bodies[1][1].corners[1], DVec3::new(7.0, 0.0, 0.0));
-    assert_eq!(found.bodies[2][0].place.triangle, 8);
+    assert_eq!(volumes(&result), [1.0, 2.0, 1.0]);
+    assert_eq!(result.bodies[1][1].corners[1], DVec3::new(7.0, 0.0, 0.0));
+    assert_eq!(result.bodies[2][0].place.triangle, 8);
     assert_eq!(of_model(&model("", &one, "<item objectid=\"1\"/>")).unwrap().metres, Some(1e-3));
 }
 
@@ -69,8 +69,8 @@ fn models_may_be_split() {
     let root = model(production, object, "<item objectid=\"9\"/>");
     let part = model("", &format!("<object id=\"1\">{MESH}</object>"), "");
     let parts = [("_rels/.rels", relations), ("3d/root.model", &root), ("3D/Objects/a.model", &part)];
-    let found = held(package(&parts)).unwrap();
-    assert_eq!((volumes(&found), found.metres), (vec![1.0], Some(1.0)));
+    let result = held(package(&parts)).unwrap();
+    assert_eq!((volumes(&result), result.metres), (vec![1.0], Some(1.0)));
 }
 
 #[test]
@@ -160,8 +160,8 @@ fn bodies_that_fall_together_are_one() {
     let twenty = "<component objectid=\"1\"/>".repeat(20);
     let group = format!("<object id=\"2\"><components>{twenty}</components></object>");
     let items = "<item objectid=\"2\"/>".repeat(20);
-    let found = of_model(&model("", &format!("{one}{group}"), &items)).unwrap();
-    assert_eq!(volumes(&found), [1.0]);
+    let result = of_model(&model("", &format!("{one}{group}"), &items)).unwrap();
+    assert_eq!(volumes(&result), [1.0]);
     // A mirrored or moved copy counts as another body.
     let moved = "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0.5\"/><item objectid=\"1\"/>";
     assert_eq!(of_model(&model("", &one, moved)).unwrap().bodies.len(), 2);

@@ -24,14 +24,14 @@ pub(crate) struct Symmetries(pub(crate) Vec<DMat3>);
 
 impl Symmetries {
     pub(super) fn of(half: &Half) -> Self {
-        let mut found = vec![DMat3::IDENTITY];
+        let mut result = vec![DMat3::IDENTITY];
         let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>();
         if facets <= MOST_FACETS {
             let creases = Creases::of(half);
             let keeps = |map: &DMat3| creases.list.iter().all(|crease| creases.image(crease, map).is_some());
-            found.extend(candidates().into_iter().filter(keeps));
+            result.extend(candidates().into_iter().filter(keeps));
         }
-        Self(found)
+        Self(result)
     }
 }
 

@@ -246,10 +246,10 @@ impl Anatomy {
             Touching::Edge([a, b]) => {
                 let both = |v: u32| lookup.around[v as usize].iter();
                 let shared = both(a).filter(|facet| both(b).any(|other| other == *facet));
-                let found = shared.clone().find(|facet| flush(facet)).map(|f| lookup.faces[*f as usize]);
+                let result = shared.clone().find(|facet| flush(facet)).map(|f| lookup.faces[*f as usize]);
                 let edge = lookup.edges.get(&(a.min(b), a.max(b))).map(|(feature, _)| *feature);
                 let seam = || shared.clone().next().map(|facet| lookup.faces[*facet as usize]);
-                found.or(edge).or_else(seam).unwrap_or_default()
+                result.or(edge).or_else(seam).unwrap_or_default()
             }
             Touching::Vertex(v) => {
                 let around = &lookup.around[v as usize];

@@ -17,25 +17,25 @@ fn count(features: &Features, side: HalfRole, kind: FeatureKind) -> usize {
 
 #[test]
 fn a_pyramid_has_five_faces_eight_edges_five_corners() {
-    let found = features(Family::Pyramid);
+    let result = features(Family::Pyramid);
     let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
-        .map(|kind| count(&found, HalfRole::Moving, kind));
+        .map(|kind| count(&result, HalfRole::Moving, kind));
     assert_eq!(counts, [5, 8, 5]);
     // By its symmetries: base and flank; base edge and flank edge; apex and base corner.
-    let classes: BTreeSet<u32> = found.halves[1].classes.iter().copied().collect();
+    let classes: BTreeSet<u32> = result.halves[1].classes.iter().copied().collect();
     assert_eq!(classes.len(), 6);
-    assert_eq!(found.turns(HalfRole::Moving).0.len(), 8);
+    assert_eq!(result.turns(HalfRole::Moving).0.len(), 8);
 }
 
 #[test]
 fn a_cone_is_round_and_pointed() {
     let alignment = Alignment::new(DofSet::ALL, Mount::X);
     let connector = Connector::of_family(&FamilySpec::new(Family::Cone), Mount::X).unwrap();
-    let found = Features::of(&Pair::new(&connector, &alignment));
+    let result = Features::of(&Pair::new(&connector, &alignment));
     let counts = [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Corner]
-        .map(|kind| count(&found, HalfRole::Moving, kind));
-    assert_eq!(counts, [2, 1, 1], "{:?}", found.halves[1].features);
-    let names: Vec<String> = found.halves[1].features.iter().map(Feature::name).collect();
+        .map(|kind| count(&result, HalfRole::Moving, kind));
+    assert_eq!(counts, [2, 1, 1], "{:?}", result.halves[1].features);
+    let names: Vec<String> = result.halves[1].features.iter().map(Feature::name).collect();
     assert!(names.iter().any(|name| name.starts_with("edge between ")), "{names:?}");
 }
 

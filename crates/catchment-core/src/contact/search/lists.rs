@@ -397,17 +397,17 @@ impl Lists<Passing> {
     /// Whether an edge of one half passes through a facet of the other; `None` if lists cannot decide.
     pub(super) fn pass(&mut self, turned: &Turned<'_>, reach: f64) -> Option<bool> {
         let frames = Frames::new(&turned.rotation, turned.position);
-        let mut found = false;
+        let mut result = false;
         let is_complete = self.within(turned, reach, |(is_facet, two)| {
             let (fixed, moving) = turned.shapes(two.shapes);
-            found = if *is_facet {
+            result = if *is_facet {
                 frames.moving_enters(moving, two.moving, fixed, two.fixed)
             } else {
                 frames.fixed_enters(fixed, two.fixed, moving, two.moving)
             };
-            found
+            result
         });
-        is_complete.then_some(found)
+        is_complete.then_some(result)
     }
 }
 

@@ -311,7 +311,7 @@ impl<'a> Turned<'a> {
 struct Lowered<'a> {
     turned: &'a Turned<'a>,
     lateral: DVec2,
-    asked: HeightQuery,
+    query: HeightQuery,
     found: Carried,
     /// Heights below this cannot be the greatest.
     floor: f64,
@@ -320,7 +320,7 @@ struct Lowered<'a> {
 impl Lowered<'_> {
     /// Whether anything between these heights may still count, which are right to some rounding.
     fn may_count(&self, [least, most]: [f64; 2], sure: f64) -> bool {
-        let HeightQuery { ceiling, enough, .. } = self.asked;
+        let HeightQuery { ceiling, enough, .. } = self.query;
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY);
         if best > enough {
             return false;
@@ -338,14 +338,14 @@ impl Lowered<'_> {
         let bounds = self.turned.heights(fixed, moving, self.lateral.extend(0.0));
         let Some(bounds) = bounds.filter(|bounds| self.may_count(*bounds, SURE)) else { return };
         let [_, most] = bounds;
-        let Self { turned, lateral, asked, found, floor, .. } = self;
+        let Self { turned, lateral, query, found, floor, .. } = self;
         let any = Counts { slack: f64::INFINITY, lowest: VERTICAL };
         // Above their bounds it may be beside them.
         let height = |element: &Element| {
             let z = element.height(*lateral);
             (z <= most + STEEPEST).then(|| z.min(most + SURE))
         };
-        if asked.ceiling == f64::INFINITY && number.0 != Meets::EdgeEdge {
+        if query.ceiling == f64::INFINITY && number.0 != Meets::EdgeEdge {
             let Some(element) = turned.element_within(&number, any) else { return };
             let on = |z: &f64| *z >= *floor && turned.is_on(&element, lateral.extend(*z));
             let Some(z) = height(&element).filter(on) else { return };
@@ -353,7 +353,7 @@ impl Lowered<'_> {
         }
         let element = turned.element(&number).and_then(|element| Some((element, height(&element)?)));
         if let Some((element, z)) = element {
-            found.meet(turned, lateral.extend(z), asked.ceiling, number, element);
+            found.meet(turned, lateral.extend(z), query.ceiling, number, element);
         }
     }
 
@@ -367,7 +367,7 @@ impl Lowered<'_> {
         let rounding = turned.rounding;
         // Without a ceiling, parts lower than the best height so far do not count.
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY).max(self.floor);
-        let low = if self.asked.ceiling == f64::INFINITY { best as f32 } else { f32::NEG_INFINITY };
+        let low = if self.query.ceiling == f64::INFINITY { best as f32 } else { f32::NEG_INFINITY };
         let test = |f: &BoundsOfFour, m: &BoundsOfFour| {
             let (most, beside) = f.most(m, MARGIN as f32, rounding);
             let counts = beside & most.simd_ge(f32x4::splat(low - 2.0 * rounding));
@@ -426,17 +426,17 @@ impl Trees {
         rotation: &DMat3,
         lateral: DVec2,
         counts: Counts,
-        asked: HeightQuery,
+        query: HeightQuery,
         seed: Option<Number>,
     ) -> Carried {
         let turned = Turned::new(pair, self, rotation, lateral.extend(0.0), counts);
-        let mut found = Carried { by: None, covered: asked.covered, took: 0 };
+        let mut found = Carried { by: None, covered: query.covered, took: 0 };
         let seed = seed.and_then(|number| Some((number, turned.element(&number)?)));
         if let Some((number, element)) = seed.filter(|(_, element)| element.normal.z > GENTLE) {
             let z = element.height(lateral);
-            found.meet(&turned, lateral.extend(z), asked.ceiling, number, element);
+            found.meet(&turned, lateral.extend(z), query.ceiling, number, element);
         }
-        let mut search = Lowered { turned: &turned, lateral, asked, found, floor: asked.floor };
+        let mut search = Lowered { turned: &turned, lateral, query, found, floor: query.floor };
         if let Some(([fixed, moving], [f, m])) = &turned.roots() {
             let [fixed, moving] =
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });

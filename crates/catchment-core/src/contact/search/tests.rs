@@ -182,11 +182,11 @@ fn walk(pair: &Pair, start: &CorPose, seed: f64) {
         kept.turn_trees(&turn, pair.trees.as_ref().unwrap(), counts);
         for (below, reach) in [(0.0, 1e-5), (0.3 * size, size), (size, 0.1)] {
             let position = pose.lateral.extend(z - below);
-            let found = contacts(&mut listed, position, reach);
-            assert_eq!(contacts(&mut kept, position, reach), found, "step {k}");
+            let result = contacts(&mut listed, position, reach);
+            assert_eq!(contacts(&mut kept, position, reach), result, "step {k}");
             let overlap = pair.overlaps_by_plan(&turn, position);
             assert_eq!(kept.overlaps(&turn, position), overlap, "step {k}");
-            seen = [seen[0] + found.len(), seen[1] + usize::from(overlap)];
+            seen = [seen[0] + result.len(), seen[1] + usize::from(overlap)];
         }
         // A step that is tried is taken back now and then.
         if k % 3 == 0 {

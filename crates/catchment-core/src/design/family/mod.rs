@@ -291,13 +291,13 @@ mod tests {
     fn the_table_of_keys_says_which_family_has_what() {
         for family in Family::ALL {
             let has: Vec<_> = FamilySpec::new(family).parameters().iter().map(|(key, _)| key.name).collect();
-            let said: Vec<_> = DesignTable::Connector
+            let message: Vec<_> = DesignTable::Connector
                 .keys()
                 .filter(|key| matches!(key.applies, Applies::AnyFamily | Applies::Families(_)))
                 .filter(|key| key.applies.to(Some(family)))
                 .map(|key| key.name)
                 .collect();
-            assert_eq!(has, said, "{}", family.name());
+            assert_eq!(has, message, "{}", family.name());
             assert!(NAMES.contains(&format!(" {}", family.name())));
         }
     }

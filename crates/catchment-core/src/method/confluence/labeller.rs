@@ -69,7 +69,7 @@ impl Labeller<'_> {
                 break;
             }
             exec.report((number * size) as f64 / order.len() as f64, STAGE);
-            let found = self.each(batch, exec, |follower, cell| {
+            let result = self.each(batch, exec, |follower, cell| {
                 if self.is_late() {
                     (Label::UNKNOWN, false)
                 } else if joins {
@@ -78,7 +78,7 @@ impl Labeller<'_> {
                     (self.follow(cell, follower), true)
                 }
             })?;
-            for (cell, (label, is_followed)) in batch.iter().zip(found) {
+            for (cell, (label, is_followed)) in batch.iter().zip(result) {
                 labels[*cell as usize] = label;
                 counts.motions += usize::from(is_followed);
             }
@@ -181,11 +181,11 @@ impl Labeller<'_> {
             around.extend(further.filter(is_open).collect::<Vec<u32>>());
             around.sort_unstable();
             around.dedup();
-            let found = self.each(&around, exec, |follower, cell| {
+            let result = self.each(&around, exec, |follower, cell| {
                 if self.is_late() { label(&cell) } else { self.follow(cell, follower) }
             })?;
             motions += around.len();
-            for (cell, label) in around.iter().zip(found) {
+            for (cell, label) in around.iter().zip(result) {
                 labels[*cell as usize] = label;
             }
             jammed = around;

@@ -99,7 +99,7 @@ impl<'a> Neighbours<'a> {
             return None;
         }
         let mut spare = (centres - (self.share * f64::from(centres)).ceil() as u32).max(asking);
-        let mut found: Option<Label> = None;
+        let mut result: Option<Label> = None;
         // Bit k of a corner is set if the corner is the upper corner along axis k.
         let number = |axis: usize, corner: usize| {
             let number = base[axis] + i32::from(corner >> axis & 1 == 1);
@@ -115,15 +115,15 @@ impl<'a> Neighbours<'a> {
                 let [x, y] = self.places.map(|place| place.map_or(Some(0), |axis| number(axis, shift)));
                 let (Some(x), Some(y)) = (x, y) else { continue };
                 let label = labels[self.fold.kept(rotation, x, y)];
-                match found {
+                match result {
                     _ if !label.is_known() => spare = spare.checked_sub(1)?,
-                    None => found = Some(label),
+                    None => result = Some(label),
                     Some(first) if label.outcome() != first.outcome() => return None,
                     Some(_) => {}
                 }
             }
         }
-        Some(Label::inherited(found?.outcome(), centres < 1 << self.axes.len()))
+        Some(Label::inherited(result?.outcome(), centres < 1 << self.axes.len()))
     }
 }
 

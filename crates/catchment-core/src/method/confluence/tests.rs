@@ -46,9 +46,9 @@ fn labels_are_those_of_each_cells_own_motion() {
     ] {
         let labels = labels(&pair, cells);
         let exact = judge(&labels, &pair);
-        let found = labels.acceptance(&Exec::new()).outcomes;
-        let wrong = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
-        assert!(wrong as f64 * 1e3 <= per_thousand * found.len() as f64, "{wrong} of {}", found.len());
+        let result = labels.acceptance(&Exec::new()).outcomes;
+        let wrong = exact.iter().zip(&result).filter(|(a, b)| a != b).count();
+        assert!(wrong as f64 * 1e3 <= per_thousand * result.len() as f64, "{wrong} of {}", result.len());
         let InheritedLabels { inherited, cells, motions, .. } = labels.inherited;
         assert!(2 * inherited > cells && motions > 0, "{:?}", labels.inherited);
     }

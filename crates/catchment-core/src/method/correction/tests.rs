@@ -76,9 +76,9 @@ fn cases() -> Vec<Case> {
 fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
     // Repeats do not share a pool: a thread that waits in one repeat would start another, nested ever deeper.
     let one = |seed: usize, exec: &Exec| case.estimate(stop, seed as u64, exec);
-    let found: Vec<UnbiasedSum> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
+    let result: Vec<UnbiasedSum> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
     let n = repeats as f64;
-    let mean = |f: &dyn Fn(&UnbiasedSum) -> f64| found.iter().map(f).sum::<f64>() / n;
+    let mean = |f: &dyn Fn(&UnbiasedSum) -> f64| result.iter().map(f).sum::<f64>() / n;
     let measure = case.grid.measure();
     let held = mean(&|c| {
         let [lo, hi] = c.ci95.map(|v| v / measure);
@@ -126,9 +126,9 @@ fn a_tolerance_is_met_and_its_interval_still_holds() {
 #[test]
 fn nothing_accepted_ends_too_and_leaves_room_for_what_was_not_seen() {
     let case = Case::new("nothing", &[9, 9], 0.0, |_, _| false);
-    let found = case.estimate(Stop::Tolerance(0.5), 1, &Exec::new());
-    assert!(found.sum == 0.0 && found.ci95[0] == 0.0 && found.ci95[1] > 0.0, "{found:?}");
-    assert!(found.ci95[1] <= 2.0 * 0.5 * FAINT * case.grid.measure());
+    let result = case.estimate(Stop::Tolerance(0.5), 1, &Exec::new());
+    assert!(result.sum == 0.0 && result.ci95[0] == 0.0 && result.ci95[1] > 0.0, "{result:?}");
+    assert!(result.ci95[1] <= 2.0 * 0.5 * FAINT * case.grid.measure());
 }
 
 #[test]

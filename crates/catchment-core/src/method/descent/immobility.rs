@@ -262,9 +262,9 @@ impl<'a> At<'a> {
         let mut best: Option<(f64, Vec<f64>, Vector)> = None;
         for parts in tried {
             let Some(way) = combined(&parts).filter(|way| self.is_open(way)) else { continue };
-            let found = self.curvature(&way);
-            if best.as_ref().is_none_or(|(least, ..)| found < *least) {
-                best = Some((found, parts, way));
+            let result = self.curvature(&way);
+            if best.as_ref().is_none_or(|(least, ..)| result < *least) {
+                best = Some((result, parts, way));
             }
         }
         if count > 1 {
@@ -275,9 +275,9 @@ impl<'a> At<'a> {
                 let moves = random(stream, TRIES * count as u64 + k, count);
                 let parts: Vec<f64> = at.iter().zip(moves).map(|(a, b)| a + share * b).collect();
                 let Some(way) = combined(&parts).filter(|way| self.is_open(way)) else { continue };
-                let found = self.curvature(&way);
-                if found < least {
-                    best = Some((found, parts, way));
+                let result = self.curvature(&way);
+                if result < least {
+                    best = Some((result, parts, way));
                 }
             }
         }

@@ -308,9 +308,9 @@ pub fn rests_of_rows(
             |motion, (pose, end, height, code)| {
                 exec.check()?;
                 let pose = PoseError::from_array(*pose);
-                let found = motion.follow(&pose, Until::AtRest, &mut NoObserver);
-                (*end, *code) = (found.error.to_array(), found.outcome as u8);
-                *height = found.height.unwrap_or(f64::NAN);
+                let result = motion.follow(&pose, Until::AtRest, &mut NoObserver);
+                (*end, *code) = (result.error.to_array(), result.outcome as u8);
+                *height = result.height.unwrap_or(f64::NAN);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(between) {
                     exec.report(done as f64 / count as f64, "descents");

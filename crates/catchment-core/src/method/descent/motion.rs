@@ -164,7 +164,7 @@ impl<'a> Motion<'a> {
         let mut mark = (0, travelled, self.energy(&state));
         // A seated half stays seated, so the outcome "docked" is known before it comes to rest, unless some
         // rests do not count.
-        let (mut seated, mut asked, mut docked) = (false, false, false);
+        let (mut seated, mut requested, mut docked) = (false, false, false);
         let all_count =
             !self.seat.is_limited() && (self.trusting || fall(self.pair).is_none() && !self.seat.leaks());
         let near = if all_count && !self.trusting && self.ends_at_home() { home(self.pair) } else { 0.0 };
@@ -194,8 +194,8 @@ impl<'a> Motion<'a> {
             let deep = !self.homing && energy <= self.seat.level();
             // Below the floor of the seat the half has left it, and does not climb back.
             let above = energy >= self.seat.floor();
-            seated = above && (seated || deep && !asked && self.is_seated(&state));
-            asked |= deep;
+            seated = above && (seated || deep && !requested && self.is_seated(&state));
+            requested |= deep;
             docked |= all_count
                 && above
                 && (seated || self.homing && homing::is_near(self.pair, &state.rotation, state.cor));

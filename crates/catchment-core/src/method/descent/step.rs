@@ -218,14 +218,14 @@ impl Motion<'_> {
         };
         // As far as the last push would have had to reach for a whole step.
         *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, *most);
-        let mut found = solve(*reach);
-        while found.1 < 0.5 * step && *reach < *most {
-            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(*most);
-            found = solve(*reach);
+        let mut result = solve(*reach);
+        while result.1 < 0.5 * step && *reach < *most {
+            *reach = (*reach * (step / result.1).clamp(2.0, 16.0)).min(*most);
+            result = solve(*reach);
         }
-        while found.1 > 2.0 * step && *reach > 1.0 {
-            *reach = (*reach * (step / found.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
-            found = solve(*reach);
+        while result.1 > 2.0 * step && *reach > 1.0 {
+            *reach = (*reach * (step / result.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
+            result = solve(*reach);
         }
         if *reach > HARD && settings.friction == 0.0 {
             // A half that settles onto level ground rotates while its gaps close; the slope of its further
@@ -236,12 +236,12 @@ impl Motion<'_> {
                 let settled = (SETTLED * rotation_length / closed).clamp(1.0, *most);
                 if settled < *reach {
                     *reach = settled;
-                    found = if settled > 1.0 { solve(settled) } else { first };
+                    result = if settled > 1.0 { solve(settled) } else { first };
                 }
             }
         }
-        *share = found.1 / step;
-        let (mut u, mut length, _) = found;
+        *share = result.1 / step;
+        let (mut u, mut length, _) = result;
         // Nothing moved and 0 displacement are both allowed, hence everything in between.
         let longest = length.max(u[2].abs());
         if longest > step {

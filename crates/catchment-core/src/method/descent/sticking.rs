@@ -193,8 +193,8 @@ impl Touching {
         let mut known: Option<[f64; 2]> = None;
         let mut friction = FIRST * holds;
         loop {
-            let Some(found) = self.slip(friction, way) else { return Some(friction) };
-            let speed = found.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let Some(result) = self.slip(friction, way) else { return Some(friction) };
+            let speed = result.iter().map(|x| x * x).sum::<f64>().sqrt();
             let ends = match known {
                 None => SECOND * holds,
                 Some([before, faster]) if faster > speed => {
@@ -210,7 +210,7 @@ impl Touching {
             if ends > MOST {
                 return None;
             }
-            (known, way, friction) = (Some([friction, speed]), Some(found), ends);
+            (known, way, friction) = (Some([friction, speed]), Some(result), ends);
         }
     }
 }

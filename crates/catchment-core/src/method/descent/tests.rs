@@ -355,16 +355,16 @@ fn trees_change_no_motion() {
         let (x, y) = (0.4 * a.sin(), 0.4 * (1.7 * a).cos());
         let (roll, pitch) = (0.9 * (2.1 * a).sin(), 0.9 * (0.9 * a).cos());
         let error = PoseError { x, y, roll, pitch, yaw: 0.0 };
-        let (found, expected) = (by_trees.come_to_rest(&error), by_list.come_to_rest(&error));
+        let (result, expected) = (by_trees.come_to_rest(&error), by_list.come_to_rest(&error));
         // The step lengths differ, so the ends may differ by less than a step; if the half docks, by less
         // than the finest play that counts.
-        let moved = found.error.to_array().into_iter().zip(expected.error.to_array());
+        let moved = result.error.to_array().into_iter().zip(expected.error.to_array());
         let apart = moved.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-        let near = if found.outcome == Outcome::Aligned { 1e-4 } else { settings.step };
-        if found.outcome != expected.outcome || apart > near {
-            differ.push((error, found.outcome, expected.outcome, apart));
+        let near = if result.outcome == Outcome::Aligned { 1e-4 } else { settings.step };
+        if result.outcome != expected.outcome || apart > near {
+            differ.push((error, result.outcome, expected.outcome, apart));
         }
-        seen[usize::from(found.outcome == Outcome::Aligned)] += 1;
+        seen[usize::from(result.outcome == Outcome::Aligned)] += 1;
     }
     assert!(differ.is_empty(), "{differ:#?}");
     assert!(seen.iter().all(|count| *count > 2), "{seen:?}");

@@ -41,19 +41,19 @@ fn on_a_facet_both_thresholds_are_its_slope() {
         (Family::XFace3d, 0.3, &lateral[..], at(0.2, 0.1), 0.3),
     ];
     for (family, aspect_ratio, free, error, slope) in cases {
-        let found = sticking(&of(family, aspect_ratio, free), &error).unwrap();
+        let result = sticking(&of(family, aspect_ratio, free), &error).unwrap();
         // Accurate to 1e-9 if a slip of 1e-7 of the push counts as zero.
-        assert!((found.holds_from.unwrap() - slope).abs() < 1e-6, "{family:?} {found:?}");
-        assert!((found.slips_until.unwrap() - slope).abs() < 1e-6, "{family:?} {found:?}");
+        assert!((result.holds_from.unwrap() - slope).abs() < 1e-6, "{family:?} {result:?}");
+        assert!((result.slips_until.unwrap() - slope).abs() < 1e-6, "{family:?} {result:?}");
     }
 }
 
 /// The apex of a pyramid of AR ½ in the valley between two facets of its socket, which both carry.
 #[test]
 fn in_a_valley_slip_ends_later_than_sticking_begins() {
-    let found = sticking(&of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]), &at(0.2, 0.2)).unwrap();
-    assert!((found.holds_from.unwrap() - 3f64.sqrt().recip()).abs() < 2e-6, "{found:?}");
-    assert!((found.slips_until.unwrap() - valley_slips_until(0.5)).abs() < 1e-4, "{found:?}");
+    let result = sticking(&of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]), &at(0.2, 0.2)).unwrap();
+    assert!((result.holds_from.unwrap() - 3f64.sqrt().recip()).abs() < 2e-6, "{result:?}");
+    assert!((result.slips_until.unwrap() - valley_slips_until(0.5)).abs() < 1e-4, "{result:?}");
 }
 
 /// Up to which friction a pyramid slips that is turned by ψ in its socket: four ridges lie on the rim, each at φ = 45° − ψ from the middle of its side. The point of a ridge that
@@ -76,14 +76,14 @@ fn a_turned_pyramid_has_both_thresholds() {
     let pair = of(Family::Pyramid, 1.0, &[Dof::Yaw]);
     for degrees in [20.0f64, 25.0, 30.0, 35.0] {
         let yaw = degrees.to_radians();
-        let found = sticking(&pair, &PoseError { yaw, ..PoseError::default() }).unwrap();
+        let result = sticking(&pair, &PoseError { yaw, ..PoseError::default() }).unwrap();
         let holds_from = (FRAC_PI_4 - yaw).tan() * (2.0 / 3.0f64).sqrt();
         // Twelve forces for two directions: the planes of the cones nearly depend on each other, which costs some digits.
-        assert!((found.holds_from.unwrap() - holds_from).abs() < 5e-5, "{degrees}: {found:?} {holds_from}");
+        assert!((result.holds_from.unwrap() - holds_from).abs() < 5e-5, "{degrees}: {result:?} {holds_from}");
         let slips_until = turned_slips_until(1.0, yaw);
         assert!(
-            (found.slips_until.unwrap() / slips_until - 1.0).abs() < 1e-3,
-            "{degrees}: {found:?} {slips_until}"
+            (result.slips_until.unwrap() / slips_until - 1.0).abs() < 1e-3,
+            "{degrees}: {result:?} {slips_until}"
         );
     }
 }
@@ -115,8 +115,8 @@ fn motions_stick_from_the_exact_thresholds_on() {
             let share = (f64::from(k) - 0.5) * 1e-3;
             let settings = DescentSettings::with_friction(threshold * (1.0 + share)).unwrap();
             let expected = if share < 0.0 { Outcome::Aligned } else { Outcome::Jammed };
-            let found = outcome(&pair, &error, &settings).outcome;
-            assert_eq!(found, expected, "{family:?} {aspect_ratio} {free:?} {error:?}: {threshold} {share}");
+            let result = outcome(&pair, &error, &settings).outcome;
+            assert_eq!(result, expected, "{family:?} {aspect_ratio} {free:?} {error:?}: {threshold} {share}");
         }
     }
 }
@@ -153,14 +153,14 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
     for off in [0.0, 0.3, 0.75, 1.5] {
         for depth in [0.3, 0.6, 1.0] {
             let (pair, error) = peg(WIDTH, CLEARANCE, -off, depth);
-            let found = sticking(&pair, &error).unwrap();
+            let result = sticking(&pair, &error).unwrap();
             let expected = depth / f64::max(2.0 * off, WIDTH);
-            let holds_from = found.holds_from.unwrap();
+            let holds_from = result.holds_from.unwrap();
             // The peg leans by clearance/depth at most, and the cone of its side with it.
-            assert!((holds_from / expected - 1.0).abs() < 0.01, "{off} {depth}: {found:?}, {expected}");
+            assert!((holds_from / expected - 1.0).abs() < 0.01, "{off} {depth}: {result:?}, {expected}");
             // Wherever the push goes.
-            let wedges_from = found.wedges_from.unwrap();
-            assert!((wedges_from * WIDTH / depth - 1.0).abs() < 0.01, "{off} {depth}: {found:?}");
+            let wedges_from = result.wedges_from.unwrap();
+            assert!((wedges_from * WIDTH / depth - 1.0).abs() < 0.01, "{off} {depth}: {result:?}");
         }
     }
 }
@@ -171,7 +171,7 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
 #[test]
 fn a_peg_jams_by_the_lines_of_whitneys_diagram() {
     let stream = Stream::new(1982);
-    let mut asked = 0;
+    let mut requested = 0;
     for (k, (depth, friction)) in (0u64..).zip([
         (0.3, 0.1),
         (0.3, 0.2),
@@ -206,10 +206,10 @@ fn a_peg_jams_by_the_lines_of_whitneys_diagram() {
                 wedges || off < 0.0,
                 "{depth} {friction}: {aside} {line} {off}"
             );
-            asked += 1;
+            requested += 1;
         }
     }
-    assert!(asked > 700);
+    assert!(requested > 700);
 }
 
 /// From the collar of a peg, which rests on the rim, to its tip.
@@ -266,8 +266,8 @@ fn between_the_thresholds_a_motion_is_in_doubt() {
 #[test]
 fn facing_facets_wedge_from_their_angle_on() {
     let valley = of(Family::VFace, 0.5, &[Dof::X]);
-    let found = sticking(&valley, &PoseError::default()).unwrap();
-    assert!((found.wedges_from.unwrap() - 1.0).abs() < 1e-3, "{found:?}");
+    let result = sticking(&valley, &PoseError::default()).unwrap();
+    assert!((result.wedges_from.unwrap() - 1.0).abs() < 1e-3, "{result:?}");
     assert_eq!(sticking(&valley, &at(0.2, 0.0)).unwrap().wedges_from, None);
 }
 
@@ -304,10 +304,10 @@ fn neither_steps_nor_threads_change_outcomes() {
             let exec = Exec::new().with_threads(threads).unwrap();
             run(&pair, random(300), settings, &exec).unwrap().0.outcomes
         };
-        let found = outcomes(&settings, 1);
-        assert_eq!(found, outcomes(&settings, 2));
+        let result = outcomes(&settings, 1);
+        assert_eq!(result, outcomes(&settings, 2));
         let halved = outcomes(&DescentSettings { step: 0.5 * settings.step, ..settings }, 2);
-        let differ = found.iter().zip(&halved).filter(|(a, b)| a != b).count();
+        let differ = result.iter().zip(&halved).filter(|(a, b)| a != b).count();
         assert!(differ <= 3, "{name}: {differ} of 300");
     }
 }

@@ -43,12 +43,12 @@ fn the_spatial_x_face_takes_its_aspect_ratio() {
     let mut held = mated(&pair);
     let mut most = |load: &Load| held.most(load, Guide::Along, 0.0).unwrap();
     for (degrees, expected) in [(0.0, ratio), (90.0, ratio), (180.0, ratio), (45.0, ratio / SQRT_2)] {
-        let found = most(&sideways(degrees));
-        assert!((found - expected).abs() < EXACT, "{degrees}: {found} {expected}");
+        let result = most(&sideways(degrees));
+        assert!((result - expected).abs() < EXACT, "{degrees}: {result} {expected}");
     }
     for side in [1.0, -1.0] {
-        let found = most(&about(DVec3::Z * side));
-        assert!((found - ratio / 2.0).abs() < EXACT, "{found}");
+        let result = most(&about(DVec3::Z * side));
+        assert!((result - ratio / 2.0).abs() < EXACT, "{result}");
     }
 }
 
@@ -57,8 +57,8 @@ fn the_spatial_x_face_takes_its_aspect_ratio() {
 fn a_lip_takes_the_cotangent_of_its_draft() {
     for draft in [0.1f64, 0.3] {
         let pair = pair(&format!("family = \"x-face-3d-locking\"\ndraft_angle = {draft}"), ALL);
-        let found = mated(&pair).most(&sideways(0.0), Guide::Along, 0.0).unwrap();
-        assert!((found * draft.tan() - 1.0).abs() < 1e-5, "{draft}: {found}");
+        let result = mated(&pair).most(&sideways(0.0), Guide::Along, 0.0).unwrap();
+        assert!((result * draft.tan() - 1.0).abs() < 1e-5, "{draft}: {result}");
     }
     let upright = pair("family = \"x-face-3d-locking\"", ALL);
     // Its play ends within the clearance: before, it is a plain face.
@@ -76,8 +76,8 @@ fn a_flank_with_friction_takes_the_tangent_of_both_angles() {
     let slope = 1.2f64.atan();
     for friction in [0.0f64, 0.1, 0.3, 0.6] {
         let expected = (slope + friction.atan()).tan();
-        let found = mated(&pair).most(&sideways(0.0), Guide::Free, friction).unwrap();
-        assert!((found - expected).abs() < 1e-5 * expected, "{friction}: {found} {expected}");
+        let result = mated(&pair).most(&sideways(0.0), Guide::Free, friction).unwrap();
+        assert!((result - expected).abs() < 1e-5 * expected, "{friction}: {result} {expected}");
     }
     assert_eq!(mated(&pair).most(&sideways(180.0), Guide::Free, 0.9), Some(f64::INFINITY));
 }
@@ -92,16 +92,16 @@ fn a_plate_slides_at_its_friction_and_tips_over_its_edge() {
     let pair = Problem::of(design).unwrap().pair().with_free(crate::pose::DofSet::ALL);
     let mut held = mated(&pair);
     for friction in [0.0, 0.25] {
-        let found = held.most(&sideways(30.0), Guide::Along, friction).unwrap();
-        assert!((found - friction).abs() < EXACT, "{found}");
+        let result = held.most(&sideways(30.0), Guide::Along, friction).unwrap();
+        assert!((result - friction).abs() < EXACT, "{result}");
     }
     for axis in [DVec3::X, DVec3::NEG_Y] {
-        let found = held.most(&about(axis), Guide::Free, 0.0).unwrap();
-        assert!((found - 0.5).abs() < EXACT, "{axis}: {found}");
+        let result = held.most(&about(axis), Guide::Free, 0.0).unwrap();
+        assert!((result - 0.5).abs() < EXACT, "{axis}: {result}");
     }
     let across = DVec3::new(FRAC_PI_4.cos(), FRAC_PI_4.sin(), 0.0);
-    let found = held.most(&about(across), Guide::Free, 0.0).unwrap();
-    assert!((found - 0.5 * SQRT_2).abs() < EXACT, "{found}");
+    let result = held.most(&about(across), Guide::Free, 0.0).unwrap();
+    assert!((result - 0.5 * SQRT_2).abs() < EXACT, "{result}");
 }
 
 /// No motion that the contacts permit lifts by less per displacement along the load than the holding force,

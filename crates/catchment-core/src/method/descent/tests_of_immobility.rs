@@ -49,13 +49,13 @@ fn three_fingers_hold_a_plate_by_their_triangle() {
         finger(radius * cos, radius * sin)
     });
     let tilts = [Dof::Roll, Dof::Pitch];
-    let found = mated(&pair(fingers.to_vec(), vec![plate()], &tilts, 0.0));
-    assert_eq!(found.order, ImmobilityOrder::First);
-    assert!(found.slope.iter().all(|slope| (slope - 0.5 * radius / RHO).abs() < 1e-6), "{found:?}");
+    let result = mated(&pair(fingers.to_vec(), vec![plate()], &tilts, 0.0));
+    assert_eq!(result.order, ImmobilityOrder::First);
+    assert!(result.slope.iter().all(|slope| (slope - 0.5 * radius / RHO).abs() < 1e-6), "{result:?}");
     // Free to slide and spin it does so, to any order.
-    let found = mated(&pair(fingers.to_vec(), vec![plate()], &Dof::ALL, 0.0));
-    assert_eq!((found.order, found.free), (ImmobilityOrder::Neutral, 3), "{found:?}");
-    assert!(found.curvature.unwrap().abs() < 1e-6, "{found:?}");
+    let result = mated(&pair(fingers.to_vec(), vec![plate()], &Dof::ALL, 0.0));
+    assert_eq!((result.order, result.free), (ImmobilityOrder::Neutral, 3), "{result:?}");
+    assert!(result.curvature.unwrap().abs() < 1e-6, "{result:?}");
 }
 
 /// A plate on two fingers in a line, its centre of rotation held above or below them, c in front of its face: tilted by θ its height is −c/cos θ, so that κ = −c/ρ².
@@ -63,9 +63,9 @@ fn three_fingers_hold_a_plate_by_their_triangle() {
 fn a_plate_on_two_fingers_stands_with_its_weight_above() {
     for (cor, order) in [(-0.4f64, ImmobilityOrder::Second), (0.4, ImmobilityOrder::Unstable)] {
         let fingers = vec![finger(0.0, 0.3), finger(0.0, -0.3)];
-        let found = mated(&pair(fingers, vec![plate()], &[Dof::Pitch], cor));
-        assert_eq!((found.order, found.free), (order, 1), "{found:?}");
-        assert!((found.curvature.unwrap() + cor / RHO.powi(2)).abs() < 1e-5, "{found:?}");
+        let result = mated(&pair(fingers, vec![plate()], &[Dof::Pitch], cor));
+        assert_eq!((result.order, result.free), (order, 1), "{result:?}");
+        assert!((result.curvature.unwrap() + cor / RHO.powi(2)).abs() < 1e-5, "{result:?}");
     }
 }
 
@@ -87,9 +87,9 @@ fn a_wedge_between_two_fingers_stands_below_four_radii() {
         let weight = share * radius;
         let pair =
             pair(vec![spike(a), spike(-a)], vec![wedge.clone()], &[Dof::X, Dof::Pitch], below - weight);
-        let found = mated(&pair);
+        let result = mated(&pair);
         let expected = (4.0 * radius - weight) / ((2.0 * radius - weight).powi(2) + RHO * RHO);
-        assert_eq!((found.order, found.free), (order, 1), "{share}: {found:?} {expected}");
-        assert!((found.curvature.unwrap() - expected).abs() < 1e-5, "{share}: {found:?} {expected}");
+        assert_eq!((result.order, result.free), (order, 1), "{share}: {result:?} {expected}");
+        assert!((result.curvature.unwrap() - expected).abs() < 1e-5, "{share}: {result:?} {expected}");
     }
 }

@@ -320,7 +320,7 @@ impl<'a> Fall<'a> {
 
     /// The contacts, in the world, with unit normals towards the moving half; the ground counts as fixed.
     pub(super) fn contacts(&self) -> Vec<Touch> {
-        let mut found: Vec<Touch> = Vec::new();
+        let mut result: Vec<Touch> = Vec::new();
         for pair in self.world.narrow_phase.contact_pairs() {
             let Some(first) = self.world.colliders.get(pair.collider1) else { continue };
             let towards = if first.parent() == Some(self.half) { -1.0 } else { 1.0 };
@@ -335,13 +335,13 @@ impl<'a> Fall<'a> {
                     let is_known = |known: &Touch| {
                         known.point.distance(touch.point) < COINCIDENT && known.normal.dot(touch.normal) > 0.5
                     };
-                    if !found.iter().any(is_known) {
-                        found.push(touch);
+                    if !result.iter().any(is_known) {
+                        result.push(touch);
                     }
                 }
             }
         }
-        found
+        result
     }
 
     fn step(&mut self) {

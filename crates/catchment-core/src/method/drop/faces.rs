@@ -40,8 +40,8 @@ pub(super) fn joined(surface: &Surface) -> Surface {
     let polygons: Vec<Vec<u32>> =
         faces.into_iter().map(|face| face.into_iter().map(&mut number).collect()).collect();
     // If a corner is collinear in one face but not in the next, the surface stays unchanged.
-    let found = Surface::from_polygons(vertices, &polygons).ok();
-    found.filter(|found| found.convex).unwrap_or_else(|| surface.clone())
+    let result = Surface::from_polygons(vertices, &polygons).ok();
+    result.filter(|result| result.convex).unwrap_or_else(|| surface.clone())
 }
 
 /// Faces of coplanar neighbours joined as long as the result is convex; corners are numbers of `vertices`.

@@ -11,7 +11,7 @@ pub fn tree(shape: &[usize], heights: &[f32]) -> Vec<(usize, f64, f64)> {
     order.sort_by(|a, b| (heights[*a] + 0.0).total_cmp(&(heights[*b] + 0.0)));
     // The lowest cell of every cell's body of water, once it is under water.
     let mut body: Vec<Option<usize>> = vec![None; heights.len()];
-    let mut found: Vec<(usize, f64, f64)> = Vec::new();
+    let mut result: Vec<(usize, f64, f64)> = Vec::new();
     for (place, &cell) in order.iter().enumerate() {
         body[cell] = Some(cell);
         let outside = |other: &usize| heights[*other] == f32::NEG_INFINITY;
@@ -32,13 +32,13 @@ pub fn tree(shape: &[usize], heights: &[f32]) -> Vec<(usize, f64, f64)> {
             }
             let depth = f64::from(heights[cell]) - f64::from(heights[younger]);
             if depth > 0.0 {
-                found.push((younger, heights[younger].into(), depth));
+                result.push((younger, heights[younger].into(), depth));
             }
         }
     }
-    found.extend(order.first().map(|first| (*first, heights[*first].into(), f64::INFINITY)));
-    found.sort_by_key(|minimum| minimum.0);
-    found
+    result.extend(order.first().map(|first| (*first, heights[*first].into(), f64::INFINITY)));
+    result.sort_by_key(|minimum| minimum.0);
+    result
 }
 
 /// The minimum to which every cell drains, by its lowest neighbours. Cells without a lower neighbour lead to
@@ -62,14 +62,14 @@ pub fn basins(shape: &[usize], heights: &[f32]) -> Vec<usize> {
         let drained = |cell: usize, way: &[Option<usize>]| {
             near[cell].iter().copied().find(|n| heights[*n] == heights[cell] && way[*n].is_some())
         };
-        let found: Vec<(usize, usize)> = (0..heights.len())
+        let result: Vec<(usize, usize)> = (0..heights.len())
             .filter(|cell| way[*cell].is_none())
             .filter_map(|cell| Some((cell, drained(cell, &way)?)))
             .collect();
-        if found.is_empty() {
+        if result.is_empty() {
             break;
         }
-        for (cell, to) in found {
+        for (cell, to) in result {
             way[cell] = Some(to);
         }
     }

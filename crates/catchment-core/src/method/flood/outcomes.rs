@@ -30,7 +30,7 @@ pub(super) fn verdict(
     let target = target_basin(heights, targets, docks, labels, tree, &into, tolerance);
     let outside = tree.outside.map(|basin| into[basin as usize]);
     let mut border_cells = 0;
-    let mut found: Vec<Option<Basin>> = vec![None; into.len()];
+    let mut result: Vec<Option<Basin>> = vec![None; into.len()];
     let cells = cells(tree, &into);
     let escapes = escapes(tree, &into);
     for (number, minimum) in tree.minima.iter().enumerate() {
@@ -46,7 +46,7 @@ pub(super) fn verdict(
             border_cells += if on_border { cells[number] } else { 0 };
             outcome
         };
-        found[number] = Some(Basin {
+        result[number] = Some(Basin {
             minimum: minimum.cell,
             height: minimum.height,
             depth: minimum.depth,
@@ -55,7 +55,7 @@ pub(super) fn verdict(
             outcome,
         });
     }
-    let outcome = |number: &u32| found[*number as usize].map_or(Outcome::Undecided, |basin| basin.outcome);
+    let outcome = |number: &u32| result[*number as usize].map_or(Outcome::Undecided, |basin| basin.outcome);
     let of_basin: Vec<Outcome> = into.iter().map(outcome).collect();
     let mut outcomes = vec![Outcome::Undecided; labels.len()];
     exec.install(|| {
@@ -69,7 +69,7 @@ pub(super) fn verdict(
         })
     })?;
     let warnings = warnings(landscape, &outcomes, targets, border_cells, exec)?;
-    let mut basins: Vec<Basin> = found.into_iter().flatten().collect();
+    let mut basins: Vec<Basin> = result.into_iter().flatten().collect();
     basins.sort_by(|a, b| b.cells.cmp(&a.cells).then(a.minimum.cmp(&b.minimum)));
     Ok((Acceptance { method: "flood", domain: Domain::Grid(grid.clone()), outcomes, warnings }, basins))
 }

@@ -39,8 +39,8 @@ proptest! {
     #[test]
     fn the_tree_is_that_of_all_cells_by_height((shape, heights) in landscapes(), threads in 1..4usize) {
         let (labels, tree) = fast(&shape, &heights, threads);
-        let found: Vec<_> = tree.minima.iter().map(|m| (m.cell, m.height, m.depth)).collect();
-        prop_assert_eq!(found, brute::tree(&shape, &heights));
+        let result: Vec<_> = tree.minima.iter().map(|m| (m.cell, m.height, m.depth)).collect();
+        prop_assert_eq!(result, brute::tree(&shape, &heights));
         let basins: Vec<_> = labels.iter().map(|label| tree.minima[*label as usize].cell).collect();
         prop_assert_eq!(basins, brute::basins(&shape, &heights));
         prop_assert_eq!(tree.minima.iter().map(|m| m.cells).sum::<usize>(), heights.len());
@@ -313,9 +313,9 @@ fn meyers_flooding_has_the_bias_that_the_documentation_says() {
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let tenth =
             meyer::MeyerSettings::with_tolerance(meyer::MeyerSettings::DEPTH_PER_FACE_HEIGHT * aspect_ratio);
-        let found = meyer::accept(&landscape, &pair.alignment, &|_| true, &tenth, &Exec::new()).unwrap();
-        assert_eq!(found.acceptance.method, "meyer");
-        let bias = 100.0 * (found.acceptance.counts()[0] as f64 * grid.cell_measure() / exact - 1.0);
+        let result = meyer::accept(&landscape, &pair.alignment, &|_| true, &tenth, &Exec::new()).unwrap();
+        assert_eq!(result.acceptance.method, "meyer");
+        let bias = 100.0 * (result.acceptance.counts()[0] as f64 * grid.cell_measure() / exact - 1.0);
         assert!((bias - expected).abs() < 1.0, "{family:?} {aspect_ratio} {cor}: {bias:.2} %");
     }
 }

@@ -313,8 +313,8 @@ mod tests {
         let settings = KinematicSettings::of(&design).unwrap();
         assert_eq!((settings.face, settings.rotation_point), (PlanarFace::VFace, 2.0));
         let grid = Grid::over(&design.alignment, |_| 60);
-        let found = accept(&design, &grid, &Exec::new()).unwrap();
-        for (cell, outcome) in found.outcomes.iter().enumerate() {
+        let result = accept(&design, &grid, &Exec::new()).unwrap();
+        for (cell, outcome) in result.outcomes.iter().enumerate() {
             let e = grid.pose(cell);
             let tip = e.x - 0.25 * e.pitch.sin();
             let rotation_point = e.x + e.pitch.sin();

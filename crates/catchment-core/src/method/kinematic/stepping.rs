@@ -169,14 +169,14 @@ impl Faces {
             if [half, next].iter().any(|[moving, base]| (moving - base) * side <= 0.0) {
                 return contact.pair.when_parallel();
             }
-            let Some(found) = self.highest(x0, next) else { return Halt::Missed };
-            if found.pair != contact.pair && self.binds(contact.pair, &found, x0, next) {
+            let Some(result) = self.highest(x0, next) else { return Halt::Missed };
+            if result.pair != contact.pair && self.binds(contact.pair, &result, x0, next) {
                 return Halt::Bound;
             }
-            if found.height >= contact.height {
+            if result.height >= contact.height {
                 return Halt::AtRest;
             }
-            (contact, angles) = (found, next);
+            (contact, angles) = (result, next);
         }
         Halt::AtRest
     }
@@ -208,8 +208,8 @@ impl Faces {
                 for corner in 0..3 {
                     for edge in 0..3 {
                         let pair = Pair { layer, corner, edge, moving: is_moving };
-                        let found = touch(pair, &base, &moving, x0);
-                        best = match (best, found) {
+                        let result = touch(pair, &base, &moving, x0);
+                        best = match (best, result) {
                             (Some(a), Some(b)) => Some(if b.height > a.height { b } else { a }),
                             (a, b) => a.or(b),
                         };

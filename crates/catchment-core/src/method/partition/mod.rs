@@ -212,16 +212,16 @@ pub fn run(pair: &Pair, settings: &PartitionSettings, exec: &Exec) -> Result<Par
         |_| vec![Advice::FewerSlices, Advice::MoreMemory],
     )?;
     let compartments = Compartment::all(&slices);
-    let found = spaces(&pairs, &compartments, alignment, exec)?;
-    let within = found.iter().zip(0..).flat_map(|((_, tiles), k)| tiles.iter().map(move |_| k)).collect();
+    let result = spaces(&pairs, &compartments, alignment, exec)?;
+    let within = result.iter().zip(0..).flat_map(|((_, tiles), k)| tiles.iter().map(move |_| k)).collect();
     let limits: Vec<(usize, [f64; 2])> = free
         .iter()
         .enumerate()
         .filter(|(_, dof)| dof.is_rotation())
         .map(|(k, dof)| (k, [-alignment.half_range(dof), alignment.half_range(dof)]))
         .collect();
-    let mut cells = Cells::new(&found, free, alignment.rotation_length, limits);
-    drop(found);
+    let mut cells = Cells::new(&result, free, alignment.rotation_length, limits);
+    drop(result);
     let gates: Vec<Vec<cells::Gate>> = exec.install(|| {
         (0..cells.all.len())
             .into_par_iter()

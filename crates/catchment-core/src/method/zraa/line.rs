@@ -183,12 +183,12 @@ mod tests {
             for s in at {
                 let over = |from: f64, to: f64| from < s && s < to;
                 let brute = segments.iter().filter(|p| over(p.from, p.to)).map(|p| p.height(s)).reduce(f64::max);
-                let found = tops.iter().find(|top| over(top.from, top.to)).map(|top| top.segment.height(s));
+                let result = tops.iter().find(|top| over(top.from, top.to)).map(|top| top.segment.height(s));
                 // On an end itself, which random places do not hit, either may be missing.
-                match (brute, found) {
-                    (Some(brute), Some(found)) => prop_assert!((brute - found).abs() < 1e-9, "{brute} {found} at {s}"),
+                match (brute, result) {
+                    (Some(brute), Some(result)) => prop_assert!((brute - result).abs() < 1e-9, "{brute} {result} at {s}"),
                     // The envelope may be missing only at the end of a piece, where the next begins.
-                    (brute, found) => prop_assert_eq!(brute.is_some() && tops.iter().all(|t| t.from != s && t.to != s), found.is_some()),
+                    (brute, result) => prop_assert_eq!(brute.is_some() && tops.iter().all(|t| t.from != s && t.to != s), result.is_some()),
                 }
             }
         }

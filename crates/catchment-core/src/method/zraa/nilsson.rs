@@ -74,7 +74,7 @@ impl Nilsson {
     /// Of a profile.
     pub fn of(profile: &HeightProfile) -> Self {
         let behind = reach(&profile.mirrored())
-            .map(|found| Catch { minimum: -found.minimum, maximum: -found.maximum });
+            .map(|result| Catch { minimum: -result.minimum, maximum: -result.maximum });
         Self {
             ungendered: profile.is_point_symmetric(),
             width: profile.width(),
@@ -94,7 +94,7 @@ impl Nilsson {
 
     /// Corrected offsets, from the most negative to the most positive, in D.
     pub fn reaches(&self) -> [f64; 2] {
-        self.catches.map(|side| side.map_or(0.0, |found| found.reach()))
+        self.catches.map(|side| side.map_or(0.0, |result| result.reach()))
     }
 
     /// The offset that is corrected to both sides, in D.
@@ -231,24 +231,24 @@ mod tests {
         let turned: Vec<DVec2> = profile.corners().iter().rev().map(|p| -*p).collect();
         let own = OwnSpec::new(0.0, columns(profile.corners()), columns(&turned));
         let pair = pair_of(ConnectorSpec::Own(own), true);
-        let found = HeightProfile::of(&pair).unwrap();
+        let result = HeightProfile::of(&pair).unwrap();
         let same = |(a, b): (&DVec2, &DVec2)| a.distance(*b) < 1e-12;
-        assert_eq!(found.corners().len(), profile.corners().len());
-        assert!(found.corners().iter().zip(profile.corners()).all(same), "{found:?} {profile:?}");
+        assert_eq!(result.corners().len(), profile.corners().len());
+        assert!(result.corners().iter().zip(profile.corners()).all(same), "{result:?} {profile:?}");
         run(&pair, &ZraaSettings::default(), &Exec::new())
     }
 
     /// The reaches are those of the solids, which know nothing of extrema.
     fn agree(profile: &HeightProfile) {
-        let found = Nilsson::of(profile);
-        let [from, to] = found.reaches();
+        let result = Nilsson::of(profile);
+        let [from, to] = result.reaches();
         match exact(profile) {
             Ok(Zraa::Interval { from: exact_from, to: exact_to, .. }) => {
                 let off = (exact_from - from).abs().max((exact_to - to).abs());
                 assert!(off < 1e-9, "{from} … {to}, solids {exact_from} … {exact_to}: {profile:?}");
             }
             Err(ZraaError::NotHeld(MatedProblem::NotMinimum { .. })) => {
-                assert!(found.catches.contains(&None), "{found:?}: {profile:?}");
+                assert!(result.catches.contains(&None), "{result:?}: {profile:?}");
             }
             other => panic!("{other:?}: {profile:?}"),
         }
@@ -287,9 +287,9 @@ mod tests {
         fn a_monotone_profile_has_no_offset_to_both_sides(steps in prop::collection::vec(1i32..5, 2..8)) {
             let mut z = 0;
             let inner: Vec<_> = (1..).zip(&steps).map(|(k, step)| { z += step; (k, z) }).collect();
-            let found = Nilsson::of(&profile(&inner, [0, z + 1]));
-            prop_assert_eq!(found.both(), 0.0);
-            prop_assert_eq!(found.reaches(), [0.0, 1.0]);
+            let result = Nilsson::of(&profile(&inner, [0, z + 1]));
+            prop_assert_eq!(result.both(), 0.0);
+            prop_assert_eq!(result.reaches(), [0.0, 1.0]);
         }
 
         /// Seen from behind the sides change places; turned upside down, halves exchange their parts.
@@ -355,10 +355,10 @@ mod tests {
         for (family, ungendered, reach) in [(Family::VFace, false, 0.5), (Family::SFace, true, 1.0 / 3.0)] {
             for base in [None, Some(0.4)] {
                 let pair = pair(FamilySpec::new(family).with_base_thickness(base));
-                let found = Nilsson::of(&HeightProfile::of(&pair).unwrap());
-                assert_eq!(found.ungendered, ungendered);
-                assert!((found.bound() - reach).abs() < 1e-12 && (found.both() - reach).abs() < 1e-12);
-                let [_, to] = found.catches.map(Option::unwrap);
+                let result = Nilsson::of(&HeightProfile::of(&pair).unwrap());
+                assert_eq!(result.ungendered, ungendered);
+                assert!((result.bound() - reach).abs() < 1e-12 && (result.both() - reach).abs() < 1e-12);
+                let [_, to] = result.catches.map(Option::unwrap);
                 // V: the tip up to the rim. S: the climb of the left end to the maximum at −D/6, which comes
                 // before the right end's climb.
                 let minimum = if ungendered { [-0.5, 1.0 / 6.0] } else { [0.0; 2] };
@@ -400,13 +400,13 @@ mod tests {
     fn single_extrema_have_closed_forms() {
         for m in 1..COLUMNS {
             let at = f64::from(m) / f64::from(COLUMNS);
-            let found = Nilsson::of(&profile(&[(m, -8)], [3, 5]));
-            assert!((found.both() - at.min(1.0 - at)).abs() < 1e-12, "{m}: {found:?}");
+            let result = Nilsson::of(&profile(&[(m, -8)], [3, 5]));
+            assert!((result.both() - at.min(1.0 - at)).abs() < 1e-12, "{m}: {result:?}");
         }
         for m in 1..COLUMNS / 2 {
             let at = f64::from(m) / f64::from(COLUMNS);
-            let found = Nilsson::of(&symmetric(&[(m, 8)], 1));
-            assert!((found.both() - at.min(1.0 - 2.0 * at)).abs() < 1e-12, "{m}: {found:?}");
+            let result = Nilsson::of(&symmetric(&[(m, 8)], 1));
+            assert!((result.both() - at.min(1.0 - 2.0 * at)).abs() < 1e-12, "{m}: {result:?}");
         }
     }
 }

@@ -53,10 +53,10 @@ impl Oracle {
             .map(|(l, k)| place(l, k))
             .collect();
         let errors = places.iter().map(|at| PoseError { x: at.x, y: at.y, ..PoseError::default() }).collect();
-        let (found, _) =
+        let (result, _) =
             descent::run(&pair, Domain::Poses(errors), &descent::DescentSettings::default(), exec)?;
         let known =
-            places.into_iter().zip(found.outcomes).filter(|(_, outcome)| *outcome != Outcome::Undecided);
+            places.into_iter().zip(result.outcomes).filter(|(_, outcome)| *outcome != Outcome::Undecided);
         Ok(Self(known.map(|(at, outcome)| (at, outcome == Outcome::Aligned)).collect()))
     }
 

@@ -27,9 +27,9 @@ impl PolygonIndex {
 
     /// The same, ascending.
     pub(super) fn overlapping(&self, polygon: &[DVec2]) -> Vec<usize> {
-        let mut found: Vec<usize> = self.near(polygon).collect();
-        found.sort_unstable();
-        found
+        let mut result: Vec<usize> = self.near(polygon).collect();
+        result.sort_unstable();
+        result
     }
 }
 

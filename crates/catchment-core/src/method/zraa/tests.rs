@@ -85,8 +85,8 @@ fn layers_accept_their_gap() {
         let connector = ConnectorSpec::Family(face.into());
         let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
         let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
-        let found = run(&pair, &ZraaSettings::default(), &Exec::new());
-        let Ok(Zraa::Region { area, .. }) = found else { panic!("{thickness} {gap}: {found:?}") };
+        let result = run(&pair, &ZraaSettings::default(), &Exec::new());
+        let Ok(Zraa::Region { area, .. }) = result else { panic!("{thickness} {gap}: {result:?}") };
         // If the gap exceeds the thickness of the layers, they pass each other before they meet the wrong
         // layer.
         let reach = f64::min(gap, thickness);
@@ -334,7 +334,7 @@ fn too_many_ways_to_touch_are_refused_before_they_are_made() {
     let most = 100;
     assert!(sheets_of(&pair).len() > 2 * most);
     assert_eq!(
-        sheet::sheets(&pair.fixed, &pair.moving, most, &Exec::new()).map(|found| found.is_none()),
+        sheet::sheets(&pair.fixed, &pair.moving, most, &Exec::new()).map(|result| result.is_none()),
         Ok(true)
     );
 }

@@ -42,22 +42,22 @@ fn draw(text: &str, design: &Design) -> Result<(Circumstance, ScalarDistribution
 /// Everything that is wrong with the file, each in its place.
 pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
-    let mut found = DiagnosticCollector::default();
+    let mut diagnostics = DiagnosticCollector::default();
     let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
     for (error, span) in syntax.iter().zip(&broken) {
         let help = value_help(&source.text, span.start);
         let fault = Diagnostic::error(FAMILY, error.message().to_owned(), help);
-        found.push_at(fault, || Some(span.clone()));
+        diagnostics.push_at(fault, || Some(span.clone()));
     }
-    let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
+    let mut reader = Reader { diagnostics, broken, design, dynamics: Dynamics::default() };
     reader.file(document.get_ref());
-    let Reader { found, dynamics, .. } = reader;
-    found.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
+    let Reader { diagnostics, dynamics, .. } = reader;
+    diagnostics.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
     Ok(dynamics)
 }
 
 struct Reader<'a> {
-    found: DiagnosticCollector,
+    diagnostics: DiagnosticCollector,
     /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
     design: &'a Design,
@@ -68,7 +68,7 @@ impl Reader<'_> {
     fn note(&mut self, fault: Diagnostic) {
         let span = fault.span.clone().unwrap_or_default();
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push(fault.at(Some(span)));
+            self.diagnostics.push(fault.at(Some(span)));
         }
     }
 
@@ -194,8 +194,8 @@ fn written(value: &Value<'_>) -> Result<String, Diagnostic> {
 /// The circumstance of this name.
 fn named(name: &str) -> Result<Circumstance, Diagnostic> {
     let names = Circumstance::ALL.map(Circumstance::name);
-    let found = Circumstance::ALL.into_iter().find(|of| of.name() == name);
-    found.ok_or_else(|| {
+    let result = Circumstance::ALL.into_iter().find(|of| of.name() == name);
+    result.ok_or_else(|| {
         let help = nearest(name, names)
             .map_or_else(|| format!("one of {}", names.join(", ")), |meant| format!("did you mean {meant}?"));
         defect(format!("there is no circumstance `{}`", shortened(name)), help)

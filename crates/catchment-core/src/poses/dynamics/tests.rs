@@ -30,8 +30,8 @@ fn every_law_is_read_in_its_units() {
     let text = "[dynamics]\nspeed = { mean = \"50 mm/s\", sigma = 0.2 }\ndrift_x = \"0 ± 5 mm/s\"\nspin_yaw = \"-1..2 deg/s\"\n\
                 mass = { from = \"1_800 g\", to = 2.2 }\nfriction = \"0.2 */ 1.3\"\nrestitution = { measured = [0.05, 0.1, 0.3] }\n\
                 height = \"5 mm\"\n";
-    let found = read(&text.replace("1_800 g", "1800 g")).unwrap();
-    let law = |of| found.law(of).unwrap().clone();
+    let result = read(&text.replace("1_800 g", "1800 g")).unwrap();
+    let law = |of| result.law(of).unwrap().clone();
     assert_eq!(law(Circumstance::Speed), ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 });
     let ScalarDistribution::Normal { mean, sigma } = law(Circumstance::DriftX) else { panic!() };
     assert!(mean == 0.0 && near(sigma, 0.1));
@@ -44,19 +44,19 @@ fn every_law_is_read_in_its_units() {
         ScalarDistribution::Measured { measured: vec![0.05, 0.1, 0.3] }
     );
     let ScalarDistribution::Constant { value } = law(Circumstance::Height) else { panic!() };
-    assert!(near(value, 0.1) && found.varies());
+    assert!(near(value, 0.1) && result.varies());
     let (of, law) = parse_draw("speed = 40 mm/s +- 10 mm/s", &design()).unwrap();
     assert_eq!((of, law), (Circumstance::Speed, ScalarDistribution::Normal { mean: 0.8, sigma: 0.2 }));
-    let json = serde_json::to_string(&found).unwrap();
-    assert_eq!(serde_json::from_str::<Dynamics>(&json).unwrap(), found);
+    let json = serde_json::to_string(&result).unwrap();
+    assert_eq!(serde_json::from_str::<Dynamics>(&json).unwrap(), result);
 }
 
 #[test]
 fn all_problems_come_at_once_in_their_places() {
     let text = "[dynamics]\nspead = 1\nspeed = \"50 mm\"\nmass = -2\nfriction = { mean = 0.2 }\nrestitution = \"0.5 ± 100\"\nheight = \"2 deg\"\n\
                 spin_roll = { meen = 1, sigma = 2 }\ndrift_x = { from = 2, to = 1 }\ndrift_y = { mean = 0, sigma = -1 }\nspin_yaw = true\n[more]\n";
-    let found = wrong(text);
-    let places: Vec<&str> = found.iter().map(|(place, _)| place.as_str()).collect();
+    let result = wrong(text);
+    let places: Vec<&str> = result.iter().map(|(place, _)| place.as_str()).collect();
     let expected = [
         "spead",
         "\"50 mm\"",
@@ -70,9 +70,9 @@ fn all_problems_come_at_once_in_their_places() {
         "true",
         "more",
     ];
-    assert_eq!(places, expected, "{found:?}");
-    assert!(found[4].1.contains("100 % of this law is out of range"), "{:?}", found[4]);
-    for (text, said) in [
+    assert_eq!(places, expected, "{result:?}");
+    assert!(result[4].1.contains("100 % of this law is out of range"), "{:?}", result[4]);
+    for (text, printout) in [
         ("", "declares no dynamics"),
         ("dynamics = 3", "no table"),
         ("[dynamics]\n", "declares nothing"),
@@ -82,16 +82,16 @@ fn all_problems_come_at_once_in_their_places() {
         ("[dynamics]\nspeed = \"1e9\"\n", "out of range"),
         ("[dynamics]\nspeed = \"fast\"\n", "speed"),
     ] {
-        let found = wrong(text);
-        assert!(found[0].1.contains(said), "{text}: {found:?}");
+        let result = wrong(text);
+        assert!(result[0].1.contains(printout), "{text}: {result:?}");
     }
-    for (text, said) in [
+    for (text, printout) in [
         ("friction", "no circumstance and its law"),
         ("fricton=0.1", "no circumstance `fricton`"),
         ("mass=0", "out of range"),
     ] {
         let refusal = parse_draw(text, &design()).unwrap_err();
-        assert!(refusal.to_string().contains(said), "{refusal}");
+        assert!(refusal.to_string().contains(printout), "{refusal}");
     }
 }
 
@@ -131,8 +131,8 @@ fn values_have_the_moments_of_their_law() {
             .map(|k| law.draw(range, |index| uniform(ScalarDistribution::DRAWN * k + index)))
             .collect();
         assert!(values.iter().all(|value| (range[0]..=range[1]).contains(value)), "{law:?}");
-        let found = values.iter().sum::<f64>() / COUNT as f64;
-        assert!((found - mean).abs() < 5.0 * sigma / root, "{law:?}: {found} for {mean}");
+        let result = values.iter().sum::<f64>() / COUNT as f64;
+        assert!((result - mean).abs() < 5.0 * sigma / root, "{law:?}: {result} for {mean}");
     }
     assert!(
         (ScalarDistribution::Normal { mean: 0.0, sigma: 1.0 }.inside([-1.0, 1.0]) - 0.682_689_492).abs()

@@ -34,19 +34,24 @@ pub fn read_robots(
     table: &mut dyn FnMut(&str) -> Result<SourceText, String>,
 ) -> Result<Vec<Robot>, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(&source.text);
-    let mut reader =
-        Reader { found: DiagnosticCollector::default(), broken: Vec::new(), foreign: None, design, table };
+    let mut reader = Reader {
+        diagnostics: DiagnosticCollector::default(),
+        broken: Vec::new(),
+        foreign: None,
+        design,
+        table,
+    };
     for error in syntax {
         let span = error.span().unwrap_or(0..0);
         let help = value_help(&source.text, span.start);
         reader
-            .found
+            .diagnostics
             .push_at(Diagnostic::error(FAMILY, error.message().to_owned(), help), || Some(span.clone()));
         reader.broken.push(span);
     }
     let robots = reader.robots(document.get_ref());
-    let Reader { found, foreign, .. } = reader;
-    found.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
+    let Reader { diagnostics, foreign, .. } = reader;
+    diagnostics.refuse().map_err(|diagnostics| diagnostics.of(source.clone()))?;
     foreign.map_or(Ok(robots), Err)
 }
 
@@ -55,7 +60,7 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The result so far.
 pub(super) struct Reader<'a> {
-    found: DiagnosticCollector,
+    diagnostics: DiagnosticCollector,
     /// Ranges in which the text is not TOML: errors there are consequences.
     broken: Vec<Range<usize>>,
     /// The errors of a table.
@@ -67,7 +72,7 @@ pub(super) struct Reader<'a> {
 impl Reader<'_> {
     pub(super) fn note(&mut self, span: Range<usize>, fault: Diagnostic) {
         if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
-            self.found.push_at(fault, || Some(span).filter(|span| !span.is_empty()));
+            self.diagnostics.push_at(fault, || Some(span).filter(|span| !span.is_empty()));
         }
     }
 
@@ -291,17 +296,17 @@ impl Reader<'_> {
 pub(super) fn measured(source: SourceText, design: &Design) -> Result<Spread, Diagnostics> {
     let read = PoseTable::parse(&source.text, design, OffsetsAt::Face);
     let poses = read.map(|table| table.errors().to_vec()).and_then(|poses| {
-        let mut found = DiagnosticCollector::default();
+        let mut diagnostics = DiagnosticCollector::default();
         if poses.len() < FEWEST_ROWS {
             let fault = defect(
                 format!("{} row says nothing of how errors spread", poses.len()),
                 "measure more of them",
             );
-            found.push(fault);
+            diagnostics.push(fault);
         } else if poses.iter().all(|pose| *pose == PoseError::default()) {
-            found.push(defect("every error of the table is 0", "is it the right table?"));
+            diagnostics.push(defect("every error of the table is 0", "is it the right table?"));
         }
-        found.refuse()?;
+        diagnostics.refuse()?;
         Ok(poses)
     });
     match poses {

@@ -65,17 +65,18 @@ fn every_kind_is_read_in_its_units() {
 fn all_problems_come_at_once_in_their_places() {
     let text = "[[robot]]\nname = \"\"\nsigma = { x = \"-1 mm\", ptich = 1, yaw = \"2 mm\", roll = 1 }\n\
         [[robot]]\nsigma = { x = 1 }\nuniform = { x = 1 }\n[[robot]]\nnmae = \"x\"\n[[robot]]\nmeasured = \"no.csv\"\n";
-    let found = wrong(text);
-    let places: Vec<&str> = found.iter().map(|(place, _)| place.as_str()).collect();
-    assert_eq!(places[..5], ["\"\"", "\"-1 mm\"", "ptich", "\"2 mm\"", "1"], "{found:?}");
-    let said =
-        |piece: &str| assert!(found.iter().any(|(_, said)| said.contains(piece)), "{piece}: {found:?}");
-    said("did you mean pitch");
-    said("this design locks it");
-    said("spread in 2 ways: sigma, uniform");
-    said("unknown key `nmae`");
-    said("does not say how its errors spread");
-    said("cannot read no.csv");
+    let result = wrong(text);
+    let places: Vec<&str> = result.iter().map(|(place, _)| place.as_str()).collect();
+    assert_eq!(places[..5], ["\"\"", "\"-1 mm\"", "ptich", "\"2 mm\"", "1"], "{result:?}");
+    let expect = |piece: &str| {
+        assert!(result.iter().any(|(_, message)| message.contains(piece)), "{piece}: {result:?}");
+    };
+    expect("did you mean pitch");
+    expect("this design locks it");
+    expect("spread in 2 ways: sigma, uniform");
+    expect("unknown key `nmae`");
+    expect("does not say how its errors spread");
+    expect("cannot read no.csv");
 }
 
 #[test]

@@ -82,7 +82,7 @@ pub struct ToleranceWindow {
     pub window: HalfWidths,
     /// The settings of the search and all its other results.
     #[serde(flatten)]
-    pub found: WindowDetails,
+    pub details: WindowDetails,
 }
 
 /// Half-width of every free error, in D and radians.
@@ -204,7 +204,7 @@ pub enum WindowError {
         axis: Dof,
     },
     /// Nothing grows.
-    #[error("nothing is asked: every error is given, or has the proportion 0; leave one to be found")]
+    #[error("nothing to compute: every error is given, or has the proportion 0; leave one to be found")]
     Nothing,
     /// A pose within the given half-widths already fails.
     #[error("what is given is too much by itself: with {} it is {}", place(error), outcome.word())]
@@ -241,13 +241,9 @@ pub enum WindowError {
 impl ToleranceWindow {
     /// The same as a cube, of a window in the proportions of the error box.
     pub(super) fn cube(&self) -> CenteredBox {
-        CenteredBox {
-            scale: self.scale,
-            half_widths: self.sides.iter().map(|side| (side.axis, side.half_width)).collect(),
-            reaches_border: self.worst.is_none(),
-            sampled: Some(self.certificate.motions),
-            limited_by: self.limiting(),
-        }
+        let half_widths = self.sides.iter().map(|side| (side.axis, side.half_width));
+        let (is_open, sampled) = (self.worst.is_none(), Some(self.certificate.motions));
+        CenteredBox::of(self.scale, half_widths, is_open, sampled, self.limiting())
     }
 }
 
@@ -255,7 +251,7 @@ impl Deref for ToleranceWindow {
     type Target = WindowDetails;
 
     fn deref(&self) -> &WindowDetails {
-        &self.found
+        &self.details
     }
 }
 
@@ -271,15 +267,15 @@ impl<'de> Deserialize<'de> for HalfWidths {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<HalfWidths, A::Error> {
-                let mut found = BTreeMap::new();
+                let mut result = BTreeMap::new();
                 while let Some(name) = map.next_key::<String>()? {
                     if let Ok(axis) = name.parse::<Dof>() {
-                        found.insert(axis, map.next_value()?);
+                        result.insert(axis, map.next_value()?);
                     } else {
                         map.next_value::<IgnoredAny>()?;
                     }
                 }
-                Ok(HalfWidths(found))
+                Ok(HalfWidths(result))
             }
         }
         deserializer.deserialize_map(Named)
@@ -432,7 +428,7 @@ pub(super) fn by(
     let worst = search.worst().map(|error| Worst::of(problem, error, motions_by));
     Ok(ToleranceWindow {
         window: HalfWidths(sides.iter().map(|side| (side.axis, side.half_width)).collect()),
-        found: WindowDetails {
+        details: WindowDetails {
             settings: settings.clone(),
             sides,
             scale,

@@ -364,10 +364,10 @@ impl<'a> Search<'a> {
             }
             Ok((followed, None))
         };
-        let found: Vec<(usize, Option<Failing>)> = exec.install(|| {
+        let result: Vec<(usize, Option<Failing>)> = exec.install(|| {
             all.par_iter().map_init(|| Follower::new(pair, settings), look).collect::<Result<_, Cancelled>>()
         })?;
-        for (followed, failing) in found {
+        for (followed, failing) in result {
             self.followed += followed;
             self.keep(failing);
         }

@@ -27,12 +27,12 @@ impl Space {
         let (mut fixed, mut growing) = ([0.0; 5], [0.0; 5]);
         for axis in Dof::ALL {
             let (k, most) = (axis.index(), alignment.half_range(axis));
-            let said = settings.fixed[k].or(proportions.map(|p| p[k]));
-            if let Some(value) = said.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+            let message = settings.fixed[k].or(proportions.map(|p| p[k]));
+            if let Some(value) = message.filter(|value| !(value.is_finite() && *value >= 0.0)) {
                 return Err(WindowError::NoSize { axis, value });
             }
             if !alignment.free.contains(axis) {
-                match said {
+                match message {
                     Some(value) if value != 0.0 => return Err(WindowError::Locked { axis }),
                     _ => continue,
                 }

@@ -219,9 +219,9 @@ impl Fact {
 
 /// Every known number of a system's zero-rotation area, each with its provenance.
 pub fn numbers(system: &System) -> Vec<Number> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let mut add = |name, value, unit, provenance, basis: &str| {
-        found.push(Number { name, value, unit, provenance, basis: basis.to_owned() });
+        result.push(Number { name, value, unit, provenance, basis: basis.to_owned() });
     };
     if let Some(zraa) = &system.published {
         let place = if system.source == RowSource::Section412 { "section 4.1.2" } else { "table 2.1" };
@@ -233,7 +233,7 @@ pub fn numbers(system: &System) -> Vec<Number> {
     if let Some(area) = system.computed {
         add("area", area, "D²", Provenance::Recomputed, "of the design");
     }
-    let Some(fact) = Fact::of(system) else { return found };
+    let Some(fact) = Fact::of(system) else { return result };
     if let Some(onaa) = fact.onaa {
         add("ONAA", onaa, "D", Provenance::Stated, "section 4.1.2");
     }
@@ -272,7 +272,7 @@ pub fn numbers(system: &System) -> Vec<Number> {
         }
         _ => {}
     }
-    found
+    result
 }
 
 #[cfg(test)]

@@ -39,16 +39,16 @@ fn the_closed_form_is_the_first_order_of_a_straight_chain() {
     let body = ModuleDimensions { pitch: 80.0, face: 50.0, overhang: 31.0, length: 70.0 };
     for body in [body, ModuleDimensions::default()] {
         for n in 1..=20 {
-            let found = Closing::straight(body, n).first_order(&joints(1.0));
-            let [lateral, normal, angle] = found.sigmas();
+            let result = Closing::straight(body, n).first_order(&joints(1.0));
+            let [lateral, normal, angle] = result.sigmas();
             assert!((lateral / lateral_sigma(&body, n, DEGREE) - 1.0).abs() < 1e-12);
             assert!((angle / heading_sigma(n, DEGREE) - 1.0).abs() < 1e-12);
             assert!(normal < 1e-12, "a straight chain has no gap to first order");
         }
     }
     // √3/2 in the limit of many modules.
-    let found = Closing::straight(ModuleDimensions::default(), 200).first_order(&joints(1.0));
-    assert!((found.correlation() - 0.75f64.sqrt()).abs() < 1e-3);
+    let result = Closing::straight(ModuleDimensions::default(), 200).first_order(&joints(1.0));
+    assert!((result.correlation() - 0.75f64.sqrt()).abs() < 1e-3);
 }
 
 /// Random chains, exactly, within 1 % of the formula for 2 to 20 modules at 1°. The standard error of a
@@ -84,12 +84,12 @@ fn the_ring_closes_with_the_published_covariance() {
     for (first_corner, lateral, correlation) in [(1, 9.23, 0.62), (2, 7.23, 0.0), (3, 9.23, -0.62)] {
         let angles = ChainShape::O { first_corner }.angles();
         let latch = latches(&angles)[0];
-        let found =
+        let result =
             Closing::latch(ModuleDimensions::default(), &angles, &latch, &[]).first_order(&joints(1.0));
-        let sigmas = found.sigmas();
+        let sigmas = result.sigmas();
         assert!((sigmas[0] - lateral).abs() < 0.006, "{first_corner}: {sigmas:?}");
         assert!((sigmas[1] - 11.25).abs() < 0.006 && (sigmas[2] / DEGREE - 3.46).abs() < 0.006);
-        assert!((found.correlation() - correlation).abs() < 0.006, "{first_corner}: {found:?}");
+        assert!((result.correlation() - correlation).abs() < 0.006, "{first_corner}: {result:?}");
     }
     // 5.5 times less than a straight chain of as many modules.
     let straight = lateral_sigma(&ModuleDimensions::default(), 12, DEGREE);
@@ -119,22 +119,23 @@ fn every_optional_term_has_its_closed_form() {
     let of = |errors: ChainErrors, n| Closing::straight(body, n).first_order(&errors);
     let n = 8;
     // Links lengthen a straight chain, and nothing else.
-    let found = of(ChainErrors { link_sigma: 0.2, ..ChainErrors::default() }, n);
-    assert!((found.sigmas()[1] - 0.2 * 7f64.sqrt()).abs() < 1e-12 && found.sigmas()[0] < 1e-12);
+    let result = of(ChainErrors { link_sigma: 0.2, ..ChainErrors::default() }, n);
+    assert!((result.sigmas()[1] - 0.2 * 7f64.sqrt()).abs() < 1e-12 && result.sigmas()[0] < 1e-12);
     // A turned base is a joint at the first rotor.
-    let found = of(ChainErrors { base_sigma: DEGREE, ..ChainErrors::default() }, n);
-    assert!((found.sigmas()[0] - 7.5 * 95.0 * DEGREE).abs() < 1e-9 && found.sigmas()[2] == DEGREE);
-    let found = of(ChainErrors { base_offset_sigma: 3.0, ..ChainErrors::default() }, n);
+    let result = of(ChainErrors { base_sigma: DEGREE, ..ChainErrors::default() }, n);
+    assert!((result.sigmas()[0] - 7.5 * 95.0 * DEGREE).abs() < 1e-9 && result.sigmas()[2] == DEGREE);
+    let result = of(ChainErrors { base_offset_sigma: 3.0, ..ChainErrors::default() }, n);
     assert!(
-        (found.sigmas()[0] - 3.0).abs() + (found.sigmas()[1] - 3.0).abs() < 1e-12 && found.sigmas()[2] == 0.0
+        (result.sigmas()[0] - 3.0).abs() + (result.sigmas()[1] - 3.0).abs() < 1e-12
+            && result.sigmas()[2] == 0.0
     );
     // A uniform error of width s has the deviation s/√12.
-    let found = of(ChainErrors { encoder_step: 12f64.sqrt() * DEGREE, ..ChainErrors::default() }, n);
-    assert!((found.sigmas()[0] / lateral_sigma(&body, n, DEGREE) - 1.0).abs() < 1e-12);
+    let result = of(ChainErrors { encoder_step: 12f64.sqrt() * DEGREE, ..ChainErrors::default() }, n);
+    assert!((result.sigmas()[0] / lateral_sigma(&body, n, DEGREE) - 1.0).abs() < 1e-12);
     // A side force bends every joint by its lever: c F Σ l², with Σ l² = 575 a² for 12 modules.
-    let found = of(ChainErrors { compliance: 1e-3, side_force: 2.0, ..ChainErrors::default() }, 12);
-    assert!((found.mean[0] - 2e-3 * 575.0 * 95.0 * 95.0 / 1e3).abs() < 1e-9, "{:?}", found.mean);
-    assert!((found.mean[2] - 2e-3 * 72.0 * 0.095).abs() < 1e-12, "{:?}", found.mean);
+    let result = of(ChainErrors { compliance: 1e-3, side_force: 2.0, ..ChainErrors::default() }, 12);
+    assert!((result.mean[0] - 2e-3 * 575.0 * 95.0 * 95.0 / 1e3).abs() < 1e-9, "{:?}", result.mean);
+    assert!((result.mean[2] - 2e-3 * 72.0 * 0.095).abs() < 1e-12, "{:?}", result.mean);
 }
 
 proptest! {
@@ -149,11 +150,11 @@ proptest! {
         let errors = ChainErrors { link_sigma: link, encoder_step: step, compliance: 1e-4, side_force: 3.0, ..joints(0.3) };
         let closing = Closing::latch(ModuleDimensions::default(), &angles, &latches(&angles)[0], &[]);
         let expected = closing.first_order(&errors);
-        let found = Covariance::of(&closing.cloud(&errors, seed, 4000, &Exec::new()).unwrap());
-        for ((found, expected), k) in found.sigmas().into_iter().zip(expected.sigmas()).zip(0..) {
-            prop_assert!((found / expected - 1.0).abs() < 0.06, "{k}: {found} for {expected}");
+        let result = Covariance::of(&closing.cloud(&errors, seed, 4000, &Exec::new()).unwrap());
+        for ((result, expected), k) in result.sigmas().into_iter().zip(expected.sigmas()).zip(0..) {
+            prop_assert!((result / expected - 1.0).abs() < 0.06, "{k}: {result} for {expected}");
         }
-        for ((off, sigma), mean) in found.mean.into_iter().zip(expected.sigmas()).zip(expected.mean) {
+        for ((off, sigma), mean) in result.mean.into_iter().zip(expected.sigmas()).zip(expected.mean) {
             // Five standard errors of a mean, and second order: levers of 285 mm times the variances of twelve joints.
             let second = 12.0 * 285.0 * (0.3 * DEGREE + step).powi(2);
             prop_assert!((off - mean).abs() < 5.0 * sigma / 4000f64.sqrt() + second, "{off} for {mean}");

@@ -44,11 +44,11 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &Ar
     frame.draw(svg);
     let where_ =
         arrival.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
-    let said = match arrival.docking {
+    let message = match arrival.docking {
         Some(docking) => format!("{where_}: {} of {} dock", percent(docking.probability), report.chains),
         None => format!("{where_}: {} chains", report.chains),
     };
-    svg.text([rect.x, rect.y - 8.0], TICK, Anchor::Start, INK, &said);
+    svg.text([rect.x, rect.y - 8.0], TICK, Anchor::Start, INK, &message);
     let contours = "1σ, 2σ";
     svg.text([rect.x + rect.w, rect.y - 8.0], TICK, Anchor::End, SOFT, contours);
 }

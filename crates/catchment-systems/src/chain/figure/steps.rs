@@ -170,19 +170,19 @@ fn words(
     let was = |k: usize| before.map_or(Some(0.0), |b| b.modules[k].command_rad);
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
     for (_, m) in step.modules.iter().enumerate().filter(|(k, m)| was(*k) != m.command_rad) {
-        match groups.iter_mut().find(|(said, _)| *said == of(m)) {
+        match groups.iter_mut().find(|(message, _)| *message == of(m)) {
             Some((_, joints)) => joints.push(m.module),
             None => groups.push((of(m), vec![m.module])),
         }
     }
-    let said: Vec<String> = groups
+    let message: Vec<String> = groups
         .iter()
-        .map(|(said, joints)| {
+        .map(|(message, joints)| {
             let joints = joints.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            format!("{joints}: {said}")
+            format!("{joints}: {message}")
         })
         .collect();
-    let printout = if said.is_empty() { "straight".to_owned() } else { said.join(";  ") };
+    let printout = if message.is_empty() { "straight".to_owned() } else { message.join(";  ") };
     let time = format!("t = {} s", catchment::document::rounded(step.time_s));
     svg.bold([x, y], LABEL, Anchor::Start, &time);
     svg.text([x + width_of(&time, LABEL) + 14.0, y], TICK, Anchor::Start, INK, &printout);

@@ -281,11 +281,11 @@ const OWN: &str = "the chain file";
 /// `3-6, 1-6`, each of which must be two faces opposite each other on the lattice.
 fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[f64]) -> Vec<LatchingPair> {
     let possible = latches(lattice);
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for pair in text.split(',').map(str::trim) {
         let numbers: Vec<usize> = pair.split(['-', '–']).filter_map(|n| n.trim().parse().ok()).collect();
         if let Some(latch) = possible.iter().find(|latch| numbers == [latch.from, latch.to]) {
-            found.push(*latch);
+            result.push(*latch);
             continue;
         }
         let names: Vec<String> = possible.iter().map(|l| format!("{}-{}", l.from, l.to)).collect();
@@ -295,7 +295,7 @@ fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[
             format!("`{shown}` are no two modules whose faces meet on the lattice of the last step");
         form.refuse(span.clone(), message, Some(&format!("those that do: {there}")));
     }
-    found
+    result
 }
 
 fn steps(form: &mut Form<'_>, root: &FormTable<'_>, modules: usize) -> (Vec<CommandStep>, Vec<Range<usize>>) {

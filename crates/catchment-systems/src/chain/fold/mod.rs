@@ -207,7 +207,7 @@ pub fn fold(
     exec: &Exec,
 ) -> Result<Folded, FoldError> {
     let mut chain = Chain::new(*body, modules, &sequence.latches, settings);
-    let mut found =
+    let mut result =
         Folded { moments: Vec::new(), events: Vec::new(), track: Vec::new(), pressed: Vec::new() };
     let commanded = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
@@ -221,20 +221,20 @@ pub fn fold(
         let length = (until - step.time_s).min(RAMP_S);
         let from: Vec<f64> = before.iter().zip(&chain.angles).map(|(b, now)| ramp_start(*b, *now)).collect();
         // Between two ramps nothing moves.
-        found.track.push((step.time_s, chain.angles.clone()));
+        result.track.push((step.time_s, chain.angles.clone()));
         let mut share = 0.0;
         while share < 1.0 {
             exec.check()?;
             share = advance(&mut chain, commands, &from, share, settings.substeps);
             let time_s = step.time_s + share * length;
-            settle(&mut chain, time_s, &mut found.events);
+            settle(&mut chain, time_s, &mut result.events);
             let hit = collision::first(body, &chain.rotors(), &chain.angles, &sequence.latches);
             if let Some((a, b)) = hit {
                 return Err(FoldError::Collision { step: number, time_s: step.time_s, a, b });
             }
-            found.track.push((time_s, chain.angles.clone()));
+            result.track.push((time_s, chain.angles.clone()));
         }
-        found.moments.push(FoldMoment {
+        result.moments.push(FoldMoment {
             time_s: step.time_s,
             commands: commands.clone(),
             angles: chain.angles.clone(),
@@ -244,8 +244,8 @@ pub fn fold(
         });
         before.clone_from(commands);
     }
-    found.pressed = chain.pairs.iter().map(|pair| pair.most).collect();
-    Ok(found)
+    result.pressed = chain.pairs.iter().map(|pair| pair.most).collect();
+    Ok(result)
 }
 
 /// Ramps the commands by a sub-step, or by a part of it so small that no layer is pressed much harder than it needs; the share of
@@ -294,8 +294,8 @@ fn settle(chain: &mut Chain, time_s: f64, events: &mut Vec<Event>) {
 /// Deviation of the rotors of a chain from those for the wanted angles: the largest distance in mm, the
 /// largest rotation in radians.
 pub fn off_lattice(body: &ModuleDimensions, angles: &[f64], wanted: &[f64]) -> (f64, f64) {
-    let (found, wanted) = (rotors(body, angles), rotors(body, wanted));
-    found.iter().zip(&wanted).fold((0.0, 0.0), |(far, turn), (a, b)| {
+    let (result, wanted) = (rotors(body, angles), rotors(body, wanted));
+    result.iter().zip(&wanted).fold((0.0, 0.0), |(far, turn), (a, b)| {
         let turned = wrapped(a.heading - b.heading).abs();
         (f64::max(far, (a.place() - b.place()).length()), f64::max(turn, turned))
     })

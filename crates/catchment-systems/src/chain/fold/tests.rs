@@ -10,11 +10,11 @@ fn folded(shape: ChainShape, settings: &FoldSettings) -> Folded {
     fold(&ModuleDimensions::default(), shape.modules(), &sequence, settings, &Exec::new()).unwrap()
 }
 
-fn check(found: &Folded) {
-    for event in &found.events {
+fn check(result: &Folded) {
+    for event in &result.events {
         println!("{event:?}");
     }
-    for moment in &found.moments {
+    for moment in &result.moments {
         let degrees: Vec<_> =
             moment.angles.iter().map(|a| (a.to_degrees() * 100.0).round() / 100.0).collect();
         println!("{} {degrees:?} {:?} {:?}", moment.time_s, moment.states, moment.latched);
@@ -25,25 +25,25 @@ fn check(found: &Folded) {
 /// lattice: within 1 mm and 1°.
 #[test]
 fn table_6_2_latches_one_layer_after_the_other_and_ends_on_the_lattice() {
-    let found = folded(ChainShape::P, &FoldSettings::default());
-    check(&found);
-    let events: Vec<_> = found.events.iter().map(|e| (e.from, e.to, e.layers, e.time_s.floor())).collect();
+    let result = folded(ChainShape::P, &FoldSettings::default());
+    check(&result);
+    let events: Vec<_> = result.events.iter().map(|e| (e.from, e.to, e.layers, e.time_s.floor())).collect();
     assert_eq!(events, [(3, 6, 1, 3.0), (3, 6, 2, 5.0)]);
     // The first contact is off-centre, by the 9.41 mm of the commanded pose minus the deflection of the servo
     // of joint 4: 9.61 N · 95 mm / 200 N·m times a lever of 95 mm, 0.43 mm. It snaps at its force, to the
     // hundredth to which events are located.
-    let first = found.events[0];
+    let first = result.events[0];
     assert!((first.lateral_mm.abs() - 9.41 + 0.43).abs() < 0.15, "{first:?}");
     assert!((9.61..9.61 * 1.02).contains(&first.force_n), "{first:?}");
     let body = ModuleDimensions::default();
     // "At second 3, the module moves past the nominal −π/2."
-    assert!(found.moments[2].angles[3] + found.moments[2].angles[4] < -std::f64::consts::PI);
+    assert!(result.moments[2].angles[3] + result.moments[2].angles[4] < -std::f64::consts::PI);
     for at in [3, 5] {
-        let (off, turned) = off_lattice(&body, &found.moments[at].angles, &ChainShape::P.angles());
+        let (off, turned) = off_lattice(&body, &result.moments[at].angles, &ChainShape::P.angles());
         assert!(off < 1.0 && turned < 1f64.to_radians(), "moment {at}: {off} mm, {turned} rad");
     }
-    assert_eq!(found.moments[5].latched, [2]);
-    assert!(open_latches(&found, &CommandSequence::of(ChainShape::P).unwrap().latches).is_empty());
+    assert_eq!(result.moments[5].latched, [2]);
+    assert!(open_latches(&result, &CommandSequence::of(ChainShape::P).unwrap().latches).is_empty());
 }
 
 #[test]
@@ -53,12 +53,15 @@ fn every_shape_latches_and_ends_on_its_lattice() {
     let rings = FIRST_CORNERS.map(|first_corner| ChainShape::O { first_corner });
     for shape in blocks.into_iter().chain(rings) {
         println!("{shape:?}");
-        let found = folded(shape, &FoldSettings::default());
-        check(&found);
+        let result = folded(shape, &FoldSettings::default());
+        check(&result);
         let latches = CommandSequence::of(shape).unwrap().latches;
-        assert!(open_latches(&found, &latches).is_empty(), "{shape:?}");
-        let (off, turned) =
-            off_lattice(&ModuleDimensions::default(), &found.moments.last().unwrap().angles, &shape.angles());
+        assert!(open_latches(&result, &latches).is_empty(), "{shape:?}");
+        let (off, turned) = off_lattice(
+            &ModuleDimensions::default(),
+            &result.moments.last().unwrap().angles,
+            &shape.angles(),
+        );
         assert!(off < 1.0 && turned < 1f64.to_radians(), "{shape:?}: {off} mm, {turned} rad");
     }
 }
@@ -68,10 +71,10 @@ fn every_shape_latches_and_ends_on_its_lattice() {
 #[test]
 fn a_weak_servo_does_not_latch() {
     let servo = Servo { torque: 0.8, ..Servo::default() };
-    let found = folded(ChainShape::P, &FoldSettings { servo, ..FoldSettings::default() });
-    assert_eq!(found.events, []);
-    assert!((found.pressed[0] - 0.8e3 / 95.0).abs() < 0.6, "{:?}", found.pressed);
-    assert_eq!(open_latches(&found, &CommandSequence::of(ChainShape::P).unwrap().latches).len(), 1);
+    let result = folded(ChainShape::P, &FoldSettings { servo, ..FoldSettings::default() });
+    assert_eq!(result.events, []);
+    assert!((result.pressed[0] - 0.8e3 / 95.0).abs() < 0.6, "{:?}", result.pressed);
+    assert_eq!(open_latches(&result, &CommandSequence::of(ChainShape::P).unwrap().latches).len(), 1);
 }
 
 /// Faces that meet centred need both layers at once: twice the force, in a single event.
@@ -85,10 +88,10 @@ fn centred_faces_latch_both_layers_at_once() {
             commands: vec![(4, Command::Angle(a)), (5, Command::Angle(b))],
         })
         .to_vec();
-    let found =
+    let result =
         fold(&ModuleDimensions::default(), 6, &sequence, &FoldSettings::default(), &Exec::new()).unwrap();
-    assert_eq!(found.events.len(), 1, "{:?}", found.events);
-    assert!(found.events[0].layers == 2 && found.events[0].force_n >= 2.0 * 9.61);
+    assert_eq!(result.events.len(), 1, "{:?}", result.events);
+    assert!(result.events[0].layers == 2 && result.events[0].force_n >= 2.0 * 9.61);
 }
 
 #[test]

@@ -242,7 +242,7 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<ChainReach> {
     if wanted.is_empty() {
         wanted.extend(USUAL.parse::<Requirement>());
     }
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for rows in lengths.chunk_by(|a, b| a.joint_sigma_rad == b.joint_sigma_rad) {
         let mut rows: Vec<&Length> = rows.iter().filter(|row| row.docking.is_some()).collect();
         rows.sort_by_key(|row| row.modules);
@@ -253,7 +253,7 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<ChainReach> {
                 rows.iter().take_while(meets).last().map(|row| row.modules)
             };
             let met = |value: f64| requirement.is_met_by(value);
-            found.push(ChainReach {
+            result.push(ChainReach {
                 joint_sigma_rad: first.joint_sigma_rad,
                 requirement: requirement.clone(),
                 modules: up_to(&|docking| met(docking.probability)),
@@ -261,7 +261,7 @@ fn reach(lengths: &[Length], requirements: &[Requirement]) -> Vec<ChainReach> {
             });
         }
     }
-    found
+    result
 }
 
 /// The report of a study.
@@ -275,11 +275,11 @@ pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing
 fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
     let mut lines = Vec::new();
     if let Some(docking) = &study.docking {
-        let (found, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
-        if (found - own).abs() > 1e-9 {
+        let (result, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
+        if (result - own).abs() > 1e-9 {
             lines.push(format!(
                 "the centre of rotation is the last rotor, {} D behind the face; that of the design, {} D, does not count",
-                rounded(-found),
+                rounded(-result),
                 rounded(own)
             ));
         }

@@ -51,11 +51,11 @@ fn a_latch_that_does_not_hold_is_a_warning() {
         &ChainSettings { chains: 1, ..ChainSettings::default() },
     );
     assert_eq!(report.warnings.len(), 1);
-    let said = &report.warnings[0].message;
+    let printout = &report.warnings[0].message;
     assert!(
-        said.starts_with("3–6 holds with 0 of 2 layers: pressed with 8.")
-            && said.ends_with("a layer needs 9.61 N"),
-        "{said}"
+        printout.starts_with("3–6 holds with 0 of 2 layers: pressed with 8.")
+            && printout.ends_with("a layer needs 9.61 N"),
+        "{printout}"
     );
 }
 

@@ -36,8 +36,8 @@ fn the_defaults_give_the_recomputed_geometry() {
         geometry.slit_end,
     ];
     let digits = [1, 1, 2, 1, 2, 1, 1];
-    let said: Vec<String> = printed.iter().zip(digits).map(|(v, d)| format!("{v:.d$}")).collect();
-    assert_eq!(said, ["75.7", "36.5", "46.25", "-40.0", "10.95", "43.0", "-44.3"]);
+    let printout: Vec<String> = printed.iter().zip(digits).map(|(v, d)| format!("{v:.d$}")).collect();
+    assert_eq!(printout, ["75.7", "36.5", "46.25", "-40.0", "10.95", "43.0", "-44.3"]);
     assert!(geometry.tangent_miss() < 1e-9);
 }
 

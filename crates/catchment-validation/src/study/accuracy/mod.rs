@@ -190,9 +190,9 @@ fn row(case: &Case, exec: &Exec) -> Result<AccuracyRow, AccuracyError> {
     let mut exact = ExactSum { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
     if let Some(sampled) = finest {
         let settings = correction::CorrectionSettings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
-        let found = sampled.correct(&problem, &settings, exec).map_err(RefinementError::from)?;
+        let result = sampled.correct(&problem, &settings, exec).map_err(RefinementError::from)?;
         let unit = sampled.refinement(&problem, exec)?.unit;
-        exact = ExactSum { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
+        exact = ExactSum { sum: result.sum, unit, ci95: result.ci95, descents: result.descents };
     }
     for entry in &mut entries {
         entry.error = entry.sum / exact.sum - 1.0;
@@ -210,15 +210,15 @@ impl AccuracyEntry {
         problem: &Problem,
         exec: &Exec,
     ) -> Result<Self, RefinementError> {
-        let found = sampled.refinement(problem, exec)?;
+        let result = sampled.refinement(problem, exec)?;
         Ok(Self {
             way: SumSource::Grid(method.clone()),
-            resolution: found.resolution,
-            cells: found.cells,
-            sum: found.sum,
+            resolution: result.resolution,
+            cells: result.cells,
+            sum: result.sum,
             error: f64::NAN,
             doubt: None,
-            seconds: found.seconds,
+            seconds: result.seconds,
         })
     }
 
@@ -232,12 +232,12 @@ impl AccuracyEntry {
         let started = Instant::now();
         let descents = method.default_samples(problem.pair());
         let settings = correction::CorrectionSettings { seed: SEEDS[1], stop: Stop::Samples(descents) };
-        let found = sampled.correct(problem, &settings, exec)?;
+        let result = sampled.correct(problem, &settings, exec)?;
         let grid = Self::of(sampled, method, problem, exec)?;
         Ok(Self {
             way: SumSource::Corrected,
-            sum: found.sum,
-            doubt: Some(0.5 * (found.ci95[1] - found.ci95[0])),
+            sum: result.sum,
+            doubt: Some(0.5 * (result.ci95[1] - result.ci95[0])),
             seconds: grid.seconds + started.elapsed().as_secs_f64(),
             ..grid
         })

@@ -153,7 +153,7 @@ fn beside(
         let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
         (0..published.rows.len()).into_par_iter().map(row).collect::<Result<_, _>>()
     })?;
-    let found: Vec<recipe::RecipeEntry> = rows.into_iter().flatten().collect();
+    let result: Vec<recipe::RecipeEntry> = rows.into_iter().flatten().collect();
     let entry = |(k, &(ours, exact)): (usize, &recipe::RecipeEntry)| {
         let (row, column) = (k / columns, k % columns);
         let printed = published.values[row][column];
@@ -168,7 +168,7 @@ fn beside(
             exact_ratio: exact.map(|exact| exact.value / printed),
         }
     };
-    let flat: Vec<ReproducedEntry> = found.iter().enumerate().map(entry).collect();
+    let flat: Vec<ReproducedEntry> = result.iter().enumerate().map(entry).collect();
     let entries: Vec<Vec<ReproducedEntry>> = flat.chunks(columns).map(<[ReproducedEntry]>::to_vec).collect();
     let mut notes: Vec<String> = table.notes.iter().map(|note| (*note).to_owned()).collect();
     if table.name == "3.2" {

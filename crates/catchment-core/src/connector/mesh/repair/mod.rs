@@ -59,7 +59,7 @@ pub(super) fn mended(before: &Indexed) -> Mended {
         if !needs_union(&problems) || mesh.triangles.len() > MAX_TRIANGLES {
             break;
         }
-        let (found, not_looked_at) = crossings(&mesh, MOST_CROSSINGS);
+        let (result, not_looked_at) = crossings(&mesh, MOST_CROSSINGS);
         if not_looked_at > 0 {
             break;
         }
@@ -68,7 +68,7 @@ pub(super) fn mended(before: &Indexed) -> Mended {
         short::collapse(&mut united);
         // The clean-up after a union counts as part of the union.
         let left = tidied(&mut united, &mut Repairs::default());
-        repairs.united += found.len().max(1);
+        repairs.united += result.len().max(1);
         (mesh, problems) = (united, left);
     }
     if mesh.triangles.is_empty() {

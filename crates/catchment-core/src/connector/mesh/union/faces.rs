@@ -39,12 +39,12 @@ pub(super) fn triangles(model: &Model, face: &Face) -> Result<Vec<[u32; 3]>, Uni
         let around = outlines.iter().position(|outline| flat.has(outline, hole[0]));
         of_outline[around.ok_or_else(|| tangled(&hole))?].push(hole);
     }
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for (outline, holes) in outlines.into_iter().zip(of_outline) {
         let ring = flat.opened(outline.clone(), holes).ok_or_else(|| tangled(&outline))?;
-        found.extend(flat.clipped(ring).ok_or_else(|| tangled(&outline))?);
+        result.extend(flat.clipped(ring).ok_or_else(|| tangled(&outline))?);
     }
-    Ok(found)
+    Ok(result)
 }
 
 /// The points of a face in two coordinates, counter-clockwise as seen from outside.
@@ -207,7 +207,7 @@ impl Flat {
 
     /// Clips the ears of a ring.
     fn clipped(&self, mut ring: Vec<u32>) -> Option<Vec<[u32; 3]>> {
-        let mut found = Vec::with_capacity(ring.len());
+        let mut result = Vec::with_capacity(ring.len());
         while ring.len() > 3 {
             let n = ring.len();
             let ear = |k: usize| [ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]];
@@ -223,13 +223,13 @@ impl Flat {
             // A corner that the cut passes closely would be left with a triangle of no area.
             let clear = ears.iter().find(|(_, k)| is_free(*k, self.near));
             let (_, k) = *clear.or_else(|| ears.iter().find(|(_, k)| is_free(*k, 0.0)))?;
-            found.push(ear(k));
+            result.push(ear(k));
             ring.remove(k);
         }
         let last = [ring[0], ring[1], ring[2]];
         self.fatness(last)?;
-        found.push(last);
-        Some(found)
+        result.push(last);
+        Some(result)
     }
 
     /// Bits of twice the area of a triangle over the square of its longest side, in the order of the numbers; `None` without area.

@@ -122,8 +122,8 @@ pub fn accept(
     }
     let mut border_cells = 0;
     let mut of_basin = vec![Outcome::Undecided; count];
-    for (basin, found) in (0..).zip(&basins) {
-        let Some((lowest, cells)) = *found else { continue };
+    for (basin, result) in (0..).zip(&basins) {
+        let Some((lowest, cells)) = *result else { continue };
         of_basin[basin as usize] = if Division::is_outside(basin) {
             Outcome::Missed
         } else if Some(basin) == mated {

@@ -182,20 +182,20 @@ fn drain_dams(shape: &[usize], heights: &[f64], near: &[Vec<usize>], basin: &mut
             }
         }
         loop {
-            let mut found = BTreeMap::new();
+            let mut result = BTreeMap::new();
             for cell in (0..heights.len()).filter(|c| heights[*c] == level && basin[*c].is_none()) {
                 let lowest = near[cell]
                     .iter()
                     .filter(|n| basin[**n].is_some())
                     .min_by(|a, b| heights[**a].total_cmp(&heights[**b]));
                 if let Some(n) = lowest {
-                    found.insert(cell, basin[*n]);
+                    result.insert(cell, basin[*n]);
                 }
             }
-            if found.is_empty() {
+            if result.is_empty() {
                 break;
             }
-            for (cell, b) in found {
+            for (cell, b) in result {
                 basin[cell] = b;
             }
         }

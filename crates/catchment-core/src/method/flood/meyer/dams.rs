@@ -11,7 +11,7 @@ use super::neighbourhood::Neighbourhood;
 pub(super) fn assign<H: Height>(heights: &[H], around: &Neighbourhood, labels: &mut [u32]) {
     let mut open: Vec<usize> = (0..labels.len()).filter(|c| !is_basin(labels[*c])).collect();
     open.sort_by(|a, b| heights[*a].into().total_cmp(&heights[*b].into()));
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for level in open.chunk_by(|a, b| heights[*a] == heights[*b]) {
         let mut flat = Vec::new();
         for &cell in level {
@@ -23,18 +23,18 @@ pub(super) fn assign<H: Height>(heights: &[H], around: &Neighbourhood, labels: &
         // No plateau without a lower neighbour is left: those are minima and have their basin. So every round
         // finds a cell at the rim.
         while !flat.is_empty() {
-            found.clear();
+            result.clear();
             flat.retain(|&cell| match lowest_with_basin(heights, around, labels, cell) {
                 Some(near) => {
-                    found.push((cell, labels[near]));
+                    result.push((cell, labels[near]));
                     false
                 }
                 None => true,
             });
-            if found.is_empty() {
+            if result.is_empty() {
                 break;
             }
-            for &(cell, label) in &found {
+            for &(cell, label) in &result {
                 labels[cell] = label;
             }
         }

@@ -94,10 +94,10 @@ proptest! {
         let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
         let landscape = Landscape { grid: grid.clone(), heights: single };
         let settings = MeyerSettings { depth_tolerance: Some(tolerance), rules };
-        let found = accept(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap();
+        let result = accept(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap();
         let basins = brute::divide(&shape, &heights, &targets, tolerance, rules);
         let judged = brute::outcomes(&grid, &heights, &targets, &basins, tolerance);
-        prop_assert_eq!(found.acceptance.outcomes, judged);
+        prop_assert_eq!(result.acceptance.outcomes, judged);
     }
 
     #[test]

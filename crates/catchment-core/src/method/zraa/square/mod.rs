@@ -194,7 +194,7 @@ impl<'a> Search<'a> {
     /// Polygons whose boxes are within a seam of this polygon.
     fn around(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
         let boxed = AABB::from_corners((low - self.join).to_array(), (high + self.join).to_array());
-        self.index.locate_in_envelope_intersecting(boxed).map(|found| found.data)
+        self.index.locate_in_envelope_intersecting(boxed).map(|result| result.data)
     }
 
     /// Adds the portions of a polygon's sides without a neighbour.

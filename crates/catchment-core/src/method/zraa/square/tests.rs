@@ -112,11 +112,11 @@ fn closed_forms() {
         ),
         ("nothing", vec![], 0.0),
     ] {
-        let found = square(&region);
-        assert!((found.edge - edge).abs() < AcceptedSquare::TOLERANCE, "{name}: {found:?}");
+        let result = square(&region);
+        assert!((result.edge - edge).abs() < AcceptedSquare::TOLERANCE, "{name}: {result:?}");
         assert!(
-            found.edge == 0.0 || fits(&region, found.center, found.edge / 2.0 - 1e-9),
-            "{name}: {found:?}"
+            result.edge == 0.0 || fits(&region, result.center, result.edge / 2.0 - 1e-9),
+            "{name}: {result:?}"
         );
     }
 }
@@ -125,13 +125,13 @@ fn closed_forms() {
 fn the_square_around_zero_is_reported_beside_the_largest() {
     // Zero in the narrow part of an hourglass lying down.
     let wide = tile(0.1, -0.4, 0.9, 0.8);
-    let found = square(&[tile(-0.2, -0.05, 0.3, 0.1), wide]);
-    assert!((found.edge - 0.8).abs() < 1e-8 && (found.centered_edge - 0.1).abs() < 1e-8, "{found:?}");
+    let result = square(&[tile(-0.2, -0.05, 0.3, 0.1), wide]);
+    assert!((result.edge - 0.8).abs() < 1e-8 && (result.centered_edge - 0.1).abs() < 1e-8, "{result:?}");
     let off = square(&[tile(1.0, 1.0, 1.0, 1.0)]);
     assert!((off.edge - 1.0).abs() < 1e-8 && off.centered_edge == 0.0, "{off:?}");
     let zraa = Zraa::Interval { axis: crate::pose::Dof::X, from: -0.25, to: 0.75 };
-    let found = AcceptedSquare::of(&zraa, &Exec::new()).unwrap();
-    assert_eq!((found.edge, found.center.x, found.centered_edge), (1.0, 0.25, 0.5));
+    let result = AcceptedSquare::of(&zraa, &Exec::new()).unwrap();
+    assert_eq!((result.edge, result.center.x, result.centered_edge), (1.0, 0.25, 0.5));
 }
 
 #[test]
@@ -148,13 +148,13 @@ proptest! {
     #[test]
     fn stars_agree_with_trial(radii in proptest::collection::vec(0.15..1.0f64, 5..14), turn in 0.0..TAU) {
         let region = star(&radii, turn);
-        let found = square(&region);
-        prop_assert!(fits(&region, found.center, found.edge / 2.0 - 1e-8), "{found:?}");
+        let result = square(&region);
+        prop_assert!(fits(&region, result.center, result.edge / 2.0 - 1e-8), "{result:?}");
         let tried = by_trial(&region);
         // A corner that sticks out by d covers at least d²/4 if no side of the rim is steeper than 2, so that
         // 1e-10 · r hides less than 2e-5; steeper sides hide more, in proportion to the root.
-        prop_assert!(found.edge >= tried - 1e-4, "{found:?} {tried}");
-        prop_assert!(found.edge <= tried + 0.1, "{found:?} {tried}");
+        prop_assert!(result.edge >= tried - 1e-4, "{result:?} {tried}");
+        prop_assert!(result.edge <= tried + 0.1, "{result:?} {tried}");
     }
 
     /// Of unit cells the edge is whole, and counted by the longest runs.
@@ -172,7 +172,7 @@ proptest! {
         };
         let counted = places.flat_map(|(x, y)| (0..=7).map(move |n| (x, y, n))).filter(|&(x, y, n)| full(x, y, n));
         let counted = counted.map(|(_, _, n)| n).max().unwrap();
-        let found = square(&region);
-        prop_assert!((found.edge - counted as f64).abs() < AcceptedSquare::TOLERANCE, "{found:?} {counted}");
+        let result = square(&region);
+        prop_assert!((result.edge - counted as f64).abs() < AcceptedSquare::TOLERANCE, "{result:?} {counted}");
     }
 }
