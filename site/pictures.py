@@ -82,10 +82,10 @@ PICTURES = {
     "solids-x-face-3d": ["solids designs/x-face-3d.toml --free x,y -o PICTURE"],
     "success": ["success designs/v-face.toml --error-sigma 'x=0.15,pitch=15 deg' -o PICTURE"],
     "sweep": [
-        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --samples 400 -o out",
+        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --samples 100 -o out",
         "out/outlines",
     ],
-    "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21 --halvings 1 -o PICTURE"],
+    "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21 -o PICTURE"],
     "validate": [
         "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --repeatability 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],

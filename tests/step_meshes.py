@@ -95,7 +95,7 @@ with tempfile.TemporaryDirectory() as home:
     (home / "design.toml").write_text(DESIGN)
     # The pin, 20 long, stands in a hole 18 deep: the face centre is half way up to the mouth. It touches with its rounded end, 10 wide.
     said = " ".join(told(home, "check", "design.toml").split())
-    assert "face centre fixed half (0, 0, -9), moving half (0, 0, 11); they coincide when mated" in said, said
+    assert "face centre of the mating face: fixed half (0, 0, -9) mm, moving half (0, 0, 11) mm; they coincide when mated" in said, said
     assert "off by at most 0.05 mm (deflection, as written), by OCP " in said, said
     assert "mm, the larger lateral extent of the facets that can touch" in said, said
     # Its flat end, radius 3, slides off the mouth, radius 9.2, up to an offset of 6.2, but for what polygons cut off of both.
