@@ -177,10 +177,10 @@ most {100 * window["failing_at_most"]:.1f} % of the poses in there fail, 95 %.{e
 
 HEAD = """# Gallery
 
-Fifteen connectors that people recognise, each with its design file, its picture and its numbers. This page is written by `site/gallery.py` from what the program
+How much do connectors that you know forgive? Fifteen of them, each with its design file, its picture and its numbers. This page is written by `site/gallery.py` from what the program
 said: `run` with 24 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where it says so;
 none of them is a maker's drawing. Everything here is without friction and without play in the approach: what docks here may stick in the field
-([friction](friction.md)). A star says that the error reaches the border of what was tried; *alone* means that the other errors are zero. All of them are in `designs/gallery/`:
+([friction](friction.md)). A star says that the error reaches the border of what was tried; *alone* means that the other errors are zero. All of them are in `designs/gallery/`. Terms: [glossary](glossary.md):
 
 ```console
 $ catchment run designs/gallery/peg-in-hole.toml -o out

@@ -119,7 +119,7 @@ fn note(signal: i32, status: ExitStatus, cancel: &Arc<AtomicBool>) -> io::Result
 /// A limit on the size of files (`ulimit -f`) makes a write fail, as a full disk does, and does not end the process.
 #[cfg(unix)]
 pub(crate) fn outlive_file_limits() {
-    // Where it cannot be had, the process ends, and the next one removes what it left.
+    // If it is not available, the process ends, and the next one removes what it left.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
 }
 

@@ -59,7 +59,7 @@ impl SlicesResult {
             Column::data("unit"),
             Column::new("of the slice").key("fraction"),
             Column::new(""),
-            Column::new("one cell of doubt"),
+            Column::new("border ± a cell"),
             Column::data("doubt_from"),
             Column::data("doubt_to"),
             Column::new("ONAA edge").key("onaa_edge"),

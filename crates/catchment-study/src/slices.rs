@@ -123,7 +123,7 @@ pub enum SlicesError {
     /// The method gave up.
     #[error(transparent)]
     Decide(DecideError),
-    /// A figure of merit that is not to be had.
+    /// A figure of merit that is not available.
     #[error(transparent)]
     Merit(#[from] MeritError),
     /// It does not fit into memory.

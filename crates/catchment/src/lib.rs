@@ -81,12 +81,12 @@
 //!
 //! - [`design`]: the design file, typed; all its problems at once, each with line, column and advice.
 //! - [`xml`]: XML piece by piece within limits, and what an SVG picture hides.
-//! - [`poses`]: pose errors as people write them: one, tables of them, and how they are distributed.
+//! - [`poses`]: parsing of pose errors (inline, tables) and their distributions.
 //! - [`connector`]: the two halves as closed solids, from a family, convex pieces, mesh files or triangles in memory.
 //! - [`contact`]: the height of first contact, exactly, and what touches there.
 //! - [`problem`]: the alignment problem as one value: geometry, alignment, mated pose checked, digest.
 //! - [`landscape`]: the error grid over any of the five errors, and the heights over it.
-//! - [`acceptance`]: what becomes of every pose error; the one result that all methods share.
+//! - [`acceptance`]: the outcome of every pose error: the result that all methods share.
 //! - [`method`]: ways to decide, all with one interface: confluence of exact motions (the default), exact descent, transport, flooding in three forms, the
 //!   polyhedral partition, the planar kinematic one, drop tests; and translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.

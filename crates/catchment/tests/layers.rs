@@ -106,7 +106,7 @@ fn partners_meet_up_to_the_gap_and_its_angle() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// No loss while |y| is less than the gap: what becomes of a pose is what becomes of it in the plane.
+    /// No loss while |y| is less than the gap: the outcome of a pose is its outcome in the plane.
     #[test]
     fn flat_errors_within_the_gap_cost_nothing(
         x in -1.0f64..1.0, y in -0.999f64..0.999, pitch in -1.3f64..1.3,

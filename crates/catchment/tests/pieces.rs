@@ -33,7 +33,7 @@ fn outcome(pair: &Pair, [x, y, roll, pitch, yaw]: [f64; 5]) -> Outcome {
     descent::outcome(pair, &PoseError { x, y, roll, pitch, yaw }, &DescentSettings::default()).outcome
 }
 
-/// What becomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first came to rest on a seam of the
+/// Outcomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first came to rest on a seam of the
 /// guide with a slope of 0.6 downhill, and the others hung on seams of the key's slot.
 #[test]
 fn seams_hold_nothing() {

@@ -111,7 +111,7 @@ fn refused(error: WindowError) -> Failure {
             Some("catchment trace --pose shows the way of that pose; lower what --fix gives, or leave it out")
         }
         WindowError::Scattered { .. } => Some(
-            "catchment trace --pose shows what becomes of that pose; narrow the window by --fix or --proportions",
+            "catchment trace --pose shows the motion of that pose; narrow the window by --fix or --proportions",
         ),
         WindowError::Nothing => Some("leave an error out of --fix, or give it a proportion"),
         _ => None,

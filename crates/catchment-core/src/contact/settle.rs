@@ -108,7 +108,7 @@ mod tests {
     fn pyramid() -> Design {
         let alignment = Alignment { center_of_rotation: 0.3, ..Alignment::new(DofSet::ALL, Mount::X) };
         let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid));
-        Design { name: "drawn askew".into(), connector, width: 1.0, unit: None, alignment }
+        Design { name: "not at rest as drawn".into(), connector, width: 1.0, unit: None, alignment }
     }
 
     /// The moving half turned and shifted about its face centre.

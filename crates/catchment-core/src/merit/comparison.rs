@@ -148,7 +148,7 @@ pub enum ComparisonError {
         /// Number of cells of the second.
         second: usize,
     },
-    /// A figure of merit is not to be had.
+    /// A figure of merit is not available.
     #[error(transparent)]
     Merit(#[from] MeritError),
 }

@@ -50,7 +50,7 @@ impl Convergence {
             Column::new("cells"),
             Column::new("seconds").format(ColumnFormat::Fixed(2)),
             Column::new(format!("Sum [{}]", self.unit)).format(ColumnFormat::Significant),
-            Column::new("one cell of doubt").left(),
+            Column::new("border ± a cell").left(),
             Column::new("ONAA edge").format(ColumnFormat::Fixed(4)),
         ]);
         for trial in &sequence.trials {

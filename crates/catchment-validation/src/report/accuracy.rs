@@ -52,7 +52,7 @@ impl Accuracy {
     pub fn markdown(&self, how: &str) -> Result<String, fmt::Error> {
         let mut page = String::from(
             "# Accuracy\n\n\
-             How far the Sum of each method is off the exact one, on designs from planar to five errors. Written by\n\n    \
+             By how much does the Sum of each method differ from the exact one? On designs from planar to five errors (terms: [glossary](glossary.md)). Other designs may differ more. Written by\n\n    \
              catchment reproduce accuracy --markdown > docs/accuracy.md\n\n",
         );
         writeln!(page, "{how}\n")?;

@@ -10,8 +10,8 @@ use std::fmt::{self, Write};
 const HEAD: &str = "\
 # Reproduction
 
-Every published number of the dissertation (\"High-Dimensional Design Evaluations for Self-Aligning Connector Geometries\") that
-is held in `reference/dissertation/`, beside what this program computes. Written by
+Does the program reproduce the dissertation? Every published number of it (\"High-Dimensional Design Evaluations for Self-Aligning Connector Geometries\") that
+is held in `reference/dissertation/`, beside what this program computes (terms: [glossary](glossary.md)). Numbers whose settings the source does not state may differ. Written by
 
     catchment reproduce --markdown > docs/reproduction.md
 

@@ -17,7 +17,7 @@ use super::reproduce::{ReproducedEntry, TableComparison};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// A sentence, and what becomes of it.
+/// A sentence of the dissertation, and the share of its cases that hold.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Claim {
     /// Where it stands.

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! E. Rimon and J. Burdick (*Mobility of bodies in contact I and II*, IEEE Trans. Robotics and Automation 14,
-//! 1998) call a body that surrounding bodies hold without a load immobile to first order. If contacts leave
-//! it free to first order, it is immobile to second order if the relative curvature of the contacts holds it.
+//! 1998) call a body that surrounding bodies hold without a load first-order immobile. If contacts leave it free to
+//! first order, it is second-order immobile if the relative curvature of the contacts holds it.
 //! Here a force, the load, is given and counts as an additional finger that follows. For facets, edges and
 //! corners gapᵢ has a closed form at every pose, also beyond the borders of the features, so that κ is exact
 //! except for the finite differences (10⁻⁶ per D).
