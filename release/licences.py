@@ -1,15 +1,15 @@
-"""The licences of what others wrote and what is shipped: in the program, the Python wheel and the pages that the program writes.
+"""The licences of third-party code and fonts in the program, the Python wheel and the pages that the program writes.
 
     .venv/bin/python release/licences.py            writes LICENSE-THIRD-PARTY.txt
-    .venv/bin/python release/licences.py --check    says whether it is what would be written
+    .venv/bin/python release/licences.py --check    checks that the file is up to date
 
-    cargo tree ──▶ packages that are linked ──▶ their sources, as cargo unpacked them ──▶ one licence of each choice, its text, every NOTICE
+    cargo tree ──▶ linked packages ──▶ their sources, as cargo unpacked them ──▶ one licence of each choice, its text, every NOTICE
     three.js    as npm unpacked it, in viewer/node_modules
-    DejaVu      the licence that stands in the font files themselves
-    std         of the Rust that rust-toolchain.toml names
+    DejaVu      the licence in the font files themselves
+    std         of the Rust version in rust-toolchain.toml
 
-Macros that run at build time alone are left out. A package without a text of its licence gets the text of that licence, with its authors. An unknown licence,
-or a text that is nowhere, is an error.
+Macros that run only at build time are left out. A package without a licence text gets the standard text of its licence, with its authors. An unknown licence,
+or a licence without any available text, is an error.
 """
 
 import collections
@@ -24,9 +24,10 @@ from license_expression import get_spdx_licensing
 
 ROOT = Path(__file__).resolve().parent.parent
 WRITTEN = ROOT / "LICENSE-THIRD-PARTY.txt"
-#: What is linked into something that is shipped.
+#: Packages linked into shipped artefacts.
 SHIPPED = ["catchment-cli", "catchment-py", "catchment-wasm"]
-#: Licences that are taken, the first of a choice that is here, and how the file with the text of each is called.
+#: Accepted licences in order of preference (of a choice, the first one listed here), and the name of the file
+#: with the text of each.
 TAKEN = {
     "MIT": "mit",
     "Apache-2.0": "apache",
@@ -38,7 +39,7 @@ TAKEN = {
     "Unicode-3.0": "unicode",
     "Apache-2.0 WITH LLVM-exception": "llvm|apache",
 }
-#: Texts that do not name who grants them: those of this repository.
+#: Texts that do not name a licensor: this repository's copies are used.
 COMMON = {"MIT": "LICENSE-MIT", "Apache-2.0": "LICENSE-APACHE"}
 HEAD = """Software of others in catchment
 ===============================
@@ -53,7 +54,7 @@ def output(*words):
 
 
 def linked():
-    """The packages of others that are linked, from cargo's metadata, each with the folder of its source."""
+    """The linked third-party packages, from cargo's metadata, each with the folder of its source."""
     chosen = [word for name in SHIPPED for word in ("-p", name)]
     edges = "normal,no-proc-macro"
     tree = output("cargo", "tree", "--locked", *chosen, "--all-features", "--target=all", "-e", edges, "--prefix=none", "--no-dedupe", "--format={p}")
@@ -63,7 +64,7 @@ def linked():
 
 
 def taken(stated):
-    """The licences that are taken of what a package states: one of each choice, in the order of TAKEN."""
+    """The accepted licences of a package's licence expression: one of each choice, in the order of TAKEN."""
     spdx = get_spdx_licensing()
     choices = spdx.dnf(spdx.parse(stated.replace("/", " OR ")))
     ways = [way.args if isinstance(way, spdx.AND) else (way,) for way in (choices.args if isinstance(choices, spdx.OR) else (choices,))]
@@ -80,7 +81,7 @@ def files_of(folder, pattern):
 
 
 def text_of(package, licence):
-    """The text of a licence of a package, as it lies in its source; that of this repository with the package's authors where there is none."""
+    """The text of a package's licence from its source; this repository's text with the package's authors if the source has no text."""
     folder = Path(package["manifest_path"]).parent
     files = files_of(folder, "licen[cs]e|copying|unlicense")
     if package.get("license_file"):
@@ -98,7 +99,7 @@ def text_of(package, licence):
 
 
 def names_in(font):
-    """The names that stand in a TrueType font, by their numbers: 0 is the copyright, 13 the licence."""
+    """The name records of a TrueType font, by their numbers: 0 is the copyright, 13 the licence."""
     tables = struct.unpack(">H", font[4:6])[0]
     entries = (struct.unpack(">4sIII", font[12 + 16 * k : 28 + 16 * k]) for k in range(tables))
     start = next(offset for tag, _, offset, _ in entries if tag == b"name")
@@ -110,7 +111,7 @@ def names_in(font):
 
 
 def sections():
-    """What is shipped, and its text: pairs of a heading and a text."""
+    """The shipped components and their licence texts: pairs of a heading and a text."""
     packages = linked()
     for package in packages:
         heading = f"{package['name']} {package['version']}"
@@ -140,13 +141,13 @@ def sections():
 
 
 def tidy(text):
-    """A text without the breaks of lines of another system, blanks at their ends, and empty lines around it."""
+    """A text without foreign line breaks, trailing blanks and surrounding empty lines."""
     lines = [line.rstrip() for line in text.replace("\r\n", "\n").replace("\f", "").replace("\ufeff", "").split("\n")]
     return "\n".join(lines).strip("\n")
 
 
 def document():
-    """Equal texts once, under the names of all that they belong to."""
+    """Merges equal texts under the names of all their components."""
     together = collections.defaultdict(list)
     for heading, text in sections():
         together[tidy(text)].append(heading)

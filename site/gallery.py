@@ -3,12 +3,12 @@
     python3 site/gallery.py target/release/catchment            all of it, again (minutes)
     python3 site/gallery.py target/release/catchment peg-in-hole    one of them
     python3 site/gallery.py --page                              only docs/gallery.md, from the numbers that are stored
-    python3 site/gallery.py --check                             says what is out of date; the program is not run
+    python3 site/gallery.py --check                             lists outdated entries; does not run the program
     python3 site/gallery.py --check target/release/catchment [DRAWN]
-                                                                runs all of them, too: their numbers and warnings must be those that are stored;
+                                                                runs all of them, too: their numbers and warnings must equal the stored ones;
                                                                 their pictures go into the folder DRAWN/gallery
 
-The numbers lie in site/gallery.json beside the SHA-256 of the design they belong to, and of the files that it names.
+The numbers are stored in site/gallery.json beside the SHA-256 of their design, and of the files that it names.
 """
 
 import hashlib
@@ -40,7 +40,7 @@ def named(text: str) -> list[str]:
 
 
 def digest(design: Path) -> str:
-    """Of a design file and of the meshes and drawings it names."""
+    """The digest of a design file and of the meshes and drawings that it names."""
     text = design.read_text(encoding="utf-8")
     whole = hashlib.sha256(text.encode())
     for name in named(text):
@@ -58,13 +58,13 @@ def call(program: str, command: str, design: Path, *args: str) -> dict:
 
 
 def as_on_the_page(design: Path) -> list[str]:
-    """The options of `run` that the page's numbers are of."""
+    """The options of `run` for the numbers of the page."""
     free = re.search(r"^free = \[(.*)\]", design.read_text(encoding="utf-8"), re.M)[1]
     return ["--resolution", CELLS[free.count('"') // 2], *RUN]
 
 
 def ran(program: str, design: Path, pictures: Path) -> dict:
-    """The numbers of a run; its picture goes into a folder."""
+    """The numbers of a run; saves its picture in a folder."""
     with tempfile.TemporaryDirectory() as home:
         run = call(program, "run", design, *as_on_the_page(design), "-o", f"{home}/out")
         for kind in ("overview", "solids"):
@@ -76,7 +76,7 @@ def ran(program: str, design: Path, pictures: Path) -> dict:
 
 
 def measured(program: str, design: Path) -> dict:
-    """What the program says of a design; its picture goes into docs/gallery."""
+    """The program's results for a design; saves its picture in docs/gallery."""
     run, window = ran(program, design, PICTURES), call(program, "window", design, *WINDOW)
     return {"digest": digest(design), "run": run, "window": keep_window(window)}
 
@@ -198,7 +198,7 @@ def page(stored: dict) -> str:
 
 
 def stale(stored: dict) -> list[str]:
-    """What is out of date."""
+    """The outdated entries."""
     designs = {design.stem: design for design in DESIGNS.glob("*.toml")}
     wrong = [f"{stem}: there is no such design" for stem in stored if stem not in designs]
     for stem, design in designs.items():
@@ -214,7 +214,7 @@ def stale(stored: dict) -> list[str]:
 
 
 def others(stored: dict, program: str, pictures: Path) -> list[str]:
-    """Designs with other results now."""
+    """Designs whose results have changed."""
     pictures.mkdir(parents=True, exist_ok=True)
     wrong = []
     for stem in sorted(stored):
@@ -255,7 +255,7 @@ def main() -> None:
                 NUMBERS.write_text(text + "\n", encoding="utf-8")
                 print(design.stem, flush=True)
     if len(args) == 1:
-        # In the order in which the numbers are stored.
+        # In the order of the stored numbers.
         PAGE.write_text(page(json.loads(NUMBERS.read_text(encoding="utf-8"))), encoding="utf-8")
 
 

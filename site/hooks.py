@@ -1,7 +1,7 @@
-"""Additions of mkdocs to the pages: files to take, and the glossary.
+"""mkdocs hooks for the pages: extra files, and the glossary.
 
 Designs of the gallery with their meshes, and the JSON schemas, lie one folder up in the repository and below the root on the site. Every page links to the glossary, and
-shows the meaning of its terms as tooltips: of terms of several words and of abbreviations, since "rest" or "play" may be plain English.
+shows the definitions of its terms as tooltips. Only terms of several words and abbreviations get tooltips, since "rest" or "play" may be plain English.
 """
 
 import re
@@ -22,7 +22,7 @@ def on_files(files, config):
 
 
 def terms():
-    """The terms of the glossary with their meanings as plain text."""
+    """The terms of the glossary with their definitions as plain text."""
     for line in (ROOT / "docs/glossary.md").read_text(encoding="utf-8").splitlines():
         found = re.match(r"- \*\*(.+?)\*\*: (.+?)(?: \*Source:.*)?$", line)
         if not found:

@@ -1,13 +1,13 @@
-"""The pictures of docs/, each drawn by the command that stands here.
+"""The pictures of docs/, each drawn by the command listed here.
 
     python3 site/pictures.py target/release/catchment                  draws all of them again (minutes)
-    python3 site/pictures.py target/release/catchment plan validate    those whose names begin so
-    python3 site/pictures.py --check target/debug/catchment [DRAWN]    says which the program draws differently now; a PNG of its name in
+    python3 site/pictures.py target/release/catchment plan validate    only those whose names begin with these words
+    python3 site/pictures.py --check target/debug/catchment [DRAWN]    lists those that the program now draws differently; a PNG of its name in
                                                                        the folder DRAWN saves the drawing where it is the same
 
-site/pictures.json has digests of every picture: of its PNG in docs/, of the SVG that this is drawn from, and of the words in it. A picture is out of date if its
-words are others now, or more than a thousandth of its pixels: sines of another system's library may differ in their last bits. The pictures of the viewer
-come from a browser and are no part of this.
+site/pictures.json has digests of every picture: of its PNG in docs/, of the SVG that it is drawn from, and of the words in it. A picture is out of date if its
+words differ, or more than a thousandth of its pixels: sines of another system's library may differ in their last bits. The pictures of the viewer come from a
+browser; this script does not draw them.
 """
 
 import hashlib
@@ -27,10 +27,11 @@ from gallery import as_on_the_page
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 DIGESTS = ROOT / "site/pictures.json"
-#: Of its pixels.
+#: As a share of its pixels.
 CLOSE = 1e-3
 
-#: The commands of a picture, run in a folder that holds nothing but designs/. PICTURE is its file; else the last line is its place in a folder.
+#: The commands of a picture, run in a folder that contains only designs/. PICTURE is its file; without PICTURE the last line is its path in a
+#: folder.
 PICTURES = {
     "catalog": ["catalog -o PICTURE"],
     "chain": ["chain designs/systems/p-sequence.toml -o PICTURE"],
@@ -90,12 +91,12 @@ PICTURES = {
         "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --repeatability 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],
 }
-#: Those that a browser draws.
+#: Pictures that a browser draws.
 BROWSER = "viewer-"
 
 
 def commands() -> dict[str, list[str]]:
-    """Those of docs/ and of the gallery."""
+    """The pictures of docs/ and of the gallery."""
     known = dict(PICTURES)
     for design in sorted((ROOT / "designs/gallery").glob("*.toml")):
         options = " ".join(as_on_the_page(design))
@@ -114,7 +115,7 @@ def drawn(program: str, steps: list[str], kind: str) -> bytes:
                 file = folder / f"{step}.{kind}"
             else:
                 call(program, step.replace("PICTURE", file.name), folder)
-        # A design of one free error has no map, and so no overview.
+        # A design with one free error has no map, and so no overview.
         return (file if file.exists() else file.with_name(f"solids.{kind}")).read_bytes()
 
 
@@ -131,7 +132,7 @@ def digest(data: bytes) -> str:
 
 
 def words_of(svg: bytes) -> str:
-    """A digest of all that is written in a picture."""
+    """A digest of all text in a picture."""
     return digest(b"\n".join(re.findall(rb"<text [^>]*>([^<]*)</text>", svg)))
 
 
@@ -166,7 +167,7 @@ def pixels(png: bytes) -> tuple[int, int, list[bytes]]:
 
 
 def difference(old: bytes, new: bytes) -> float:
-    """The share of pixels that differ; 1 for other sizes."""
+    """The share of pixels that differ; 1 for different sizes."""
     if old == new:
         return 0.0
     (width, height, a), (other_width, other_height, b) = pixels(old), pixels(new)
@@ -182,7 +183,7 @@ def kept_digests() -> dict[str, dict[str, str]]:
 
 
 def doubt(program: str, name: str, steps: list[str], stored: dict[str, str], already: Path | None) -> str | None:
-    """What is out of date about a picture."""
+    """The reasons why a picture is out of date."""
     kept = (DOCS / f"{name}.png").read_bytes()
     if digest(kept) != stored.get("png"):
         return "is not the one that was drawn"

@@ -1,8 +1,8 @@
-"""Plain words: how often the prose of the project uses the words that make it hard to read, held to limits.
+"""Plain words: frequency of the words that make the project's prose hard to read, checked against limits.
 
-    python3 site/plain_words.py                 one line per page, then the whole
+    python3 site/plain_words.py                 one line per page, then the total
     python3 site/plain_words.py docs/window.md  one page, each use with its line
-    python3 site/plain_words.py --check         exits with 1 where a limit is exceeded or a phrase is left
+    python3 site/plain_words.py --check         exits with 1 if a limit is exceeded or a banned phrase remains
 
 Counted per 1 000 words of the README, docs/ (prose, tables and the program's output in them) and docs/reference/ (the program's help, design keys and report fields). Inline code, code blocks
 other than output, links and addresses do not count. `GUIDES` are pages that address the reader.
@@ -27,7 +27,7 @@ YOU = 8.0
 GUIDES = ["README", "first-dock", "parts", "window", "success", "jams", "rests", "friction", "hold", "plan", "validate", "sweep", "trials",
           "viewer", "python", "pictures", "methods", "other-tools", "budget-to-window", "compose", "latch", "chain", "invert", "chance"]
 
-# Phrases that have a plain form; docs/versions.md lists former names, and quotes them.
+# Phrases that have a plain form. docs/versions.md lists former names, and quotes them.
 PHRASES = [
     r"fares?\b", r"cells? of doubt", r"what is forgiven", r"the window one may ship", r"rotation length", r"how far one radian counts",
     r"(what )?becomes? of\b", r"comes to rest where", r"what is off", r"as sure as", r"at most so many", r"foretold", r"drawn askew", r"asks nobody",
@@ -43,7 +43,7 @@ def pages():
 
 
 def prose(text):
-    """The text line by line, without what does not count."""
+    """The text line by line, without the parts that do not count."""
     language = None
     for number, line in enumerate(text.splitlines(), 1):
         fence = re.match(r"\s*```(\w*)", line)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "crates/catchment-py/python/catchment"
 
-#: What the page shows, in the order of a person who starts; a test of completeness holds it to `__all__`.
+#: The names on the page, in reading order for a new user; a completeness test compares it with `__all__`.
 CHAPTERS = {
     "Problems": ["load", "Problem"],
     "Answers": ["Result", "Report", "Picture", "End", "Ends", "Touching", "OUTCOMES"],
@@ -28,7 +28,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class Module:
-    """A file of the package, with the comments `#:` that stand above its names."""
+    """A source file of the package, with the `#:` comments above its names."""
 
     def __init__(self, path: Path) -> None:
         text = path.read_text(encoding="utf-8")
@@ -44,7 +44,8 @@ class Module:
 
 
 def signature(name: str, function: Function, bound: bool, made: bool = False) -> str:
-    """As it stands in the file: on one line where that is short enough; of what makes an object without its None."""
+    """The signature as in the file: on one line if it is short enough; a constructor without its return type
+    None."""
     given = function.args
     plain = given.posonlyargs + given.args
     defaults = [None] * (len(plain) - len(given.defaults)) + list(given.defaults)
@@ -63,7 +64,7 @@ def signature(name: str, function: Function, bound: bool, made: bool = False) ->
 
 
 def markdown(text: str, names: set[str]) -> str:
-    """A docstring: what begins with the names of arguments becomes a list, what begins with >>> a block."""
+    """A docstring as Markdown: argument descriptions become a list, lines after >>> a code block."""
     out: list[str] = []
     for paragraph in re.split(r"\n\s*\n", text.strip()):
         lines = [line.strip() for line in paragraph.splitlines()]
@@ -101,7 +102,8 @@ def of_function(name: str, function: Function, level: str, bound: bool = False) 
 
 
 def attributes(module: Module, kind: ast.ClassDef) -> list[tuple[str, str, str]]:
-    """Name, type and meaning of all that is read of an object: fields, what `__init__` sets, properties."""
+    """Name, type and description of every readable attribute of an object: fields, assignments in `__init__`,
+    properties."""
     found = []
     for node in kind.body:
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
@@ -145,7 +147,7 @@ def page(made: str) -> str:
     for module in modules.values():
         for node in module.body:
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-                # Of overloads the last is the one that does it.
+                # Of overloads the last one is the implementation.
                 known[node.name] = (module, node)
             elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
                 known[node.target.id] = (module, node)

@@ -2,8 +2,8 @@
 
     site/python_types.py [--check]
 
-One TypedDict for every object of crates/catchment-report/reports.schema.json that a report of the package has, in
-crates/catchment-py/python/catchment/reports.py. With --check it compares and writes nothing.
+One TypedDict for every object of crates/catchment-report/reports.schema.json that a report of the package
+contains, in crates/catchment-py/python/catchment/reports.py. With --check it compares and writes nothing.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ else:
 
 
 def class_name(name: str) -> str:
-    """`kinematic-contact` as `KinematicContact`."""
+    """Converts `kinematic-contact` to `KinematicContact`."""
     return "".join(part[0].upper() + part[1:] for part in re.split(r"[-_]", name)) + ("Report" if name in KINDS else "")
 
 
@@ -46,7 +46,7 @@ class Types:
         self.text: dict[str, str] = {}
 
     def of(self, node: Any, name: str) -> str:
-        """The type of a place; `name` is that of an object without one of its own."""
+        """The type of a schema node; `name` is the name of an object without its own title."""
         if not isinstance(node, dict):
             return "Any"
         if "$ref" in node:
@@ -97,13 +97,13 @@ class Types:
             fields.append((field, of if field in required else f"NotRequired[{of}]", meaning(inner)))
         if any(keyword.iskeyword(field) or not field.isidentifier() for field, *_ in fields):
             body = "".join(f'        "{field}": {of},\n' for field, of, _ in fields)
-            # Evaluated where it stands: what it needs is above it.
+            # Evaluated at its definition: the types it uses must be defined above it.
             self.text[name] = f'{name} = TypedDict(\n    "{name}",\n    {{\n{body}    }},\n)\n'
         else:
             body = "".join(f"{comment(words)}    {field}: {of}\n" for field, of, words in fields)
             doc = meaning(node).replace("\\", "") or "An object of the report."
             self.text[name] = f'class {name}(TypedDict):\n    """{doc}"""\n\n{body}'
-        # In the order in which they are finished: what one needs comes before it.
+        # In the order of completion: each type comes after the types it uses.
         self.text[name] = self.text.pop(name)
         return name
 

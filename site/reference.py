@@ -1,10 +1,10 @@
-"""The pages of reference, from the program itself.
+"""Generates the reference pages from the program itself.
 
     python3 site/reference.py target/debug/catchment            writes docs/reference/*.md
-    python3 site/reference.py target/debug/catchment --check    says which of them the program would write otherwise
+    python3 site/reference.py target/debug/catchment --check    lists those that differ from the program's current output
 
-    cli.md           what every command says with --help
-    design-file.md   every key of a design file, from `catchment schema`, which the one table of keys makes
+    cli.md           the --help text of every command
+    design-file.md   every key of a design file, from `catchment schema`, which is generated from the one table of keys
     fields.md        every field of the JSON reports with its type (site/report_fields.py)
     python.md        every public name of the Python package, from its files (site/python_reference.py)
     measurements.md  rates that the benches stored (crates/catchment-core/benches/rates.json)
@@ -26,7 +26,7 @@ MADE = "<!-- Written by site/reference.py; ./check compares it. -->\n\n"
 
 
 def said(program: str, *args: str) -> str:
-    """What the program prints, the same on every terminal."""
+    """The program's output, independent of the terminal."""
     env = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
     done = subprocess.run([program, *args], capture_output=True, text=True, check=True, env=env)
     return "\n".join(line.rstrip() for line in done.stdout.splitlines()).strip() + "\n"
@@ -47,7 +47,7 @@ def cell(text: str) -> str:
 
 
 def value_of(key: dict) -> str:
-    """What a key may hold, in words."""
+    """The permitted values of a key, in words."""
     if "enum" in key:
         return ", ".join(f"`{value}`" for value in key["enum"])
     if "anyOf" in key:

@@ -1,7 +1,7 @@
 """The fields of the JSON reports, from their JSON schema: crates/catchment-report/reports.schema.json, which a test derives from the types that the
 program serialises.
 
-The design and the settings, which many reports have, are described once.
+The design and the settings, which many reports contain, are described once.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ SCHEMA = ROOT / "crates/catchment-report/reports.schema.json"
 Node = dict[str, Any]
 
 DEFINITIONS: dict[str, Node] = json.loads(SCHEMA.read_text(encoding="utf-8"))["$defs"]
-#: Described once, in sections of their own.
+#: Described once, in separate sections.
 SHARED = {"design": "Design"}
 NAMES = {"number": "number", "integer": "integer", "string": "text", "boolean": "bool", "object": "table", "null": "null"}
 
 
 def kinds() -> list[str]:
-    """The kinds of reports, each the name of its definition."""
+    """The kinds of reports, each by the name of its definition."""
     return sorted(name for name, node in DEFINITIONS.items() if {"schema", "catchment", "kind"} <= node.get("properties", {}).keys())
 
 
 def is_report(node: Any) -> bool:
-    """Whether a place holds a whole report, which has a section of its own."""
+    """Whether a schema node holds a whole report, which has its own section."""
     return any("kind" in one.get("properties", {}) and "timing" in one.get("properties", {}) for one in alternatives(node))
 
 
 def alternatives(node: Any, depth: int = 0) -> Iterator[Node]:
-    """What a place may hold, without references."""
+    """The permitted content of a schema node, with references resolved."""
     if not isinstance(node, dict) or depth > 32:
         return
     inner = [DEFINITIONS[node["$ref"].removeprefix("#/$defs/")]] if "$ref" in node else []
@@ -45,7 +45,7 @@ def alternatives(node: Any, depth: int = 0) -> Iterator[Node]:
 
 
 def types(node: Any) -> str:
-    """The types of a place: `list of number, null`."""
+    """The types of a schema node: `list of number, null`."""
     found: list[str] = []
     for one in alternatives(node):
         listed = one.get("type", "string" if "const" in one or "enum" in one else [])
@@ -58,7 +58,7 @@ def types(node: Any) -> str:
 
 
 def below(node: Any) -> Iterator[tuple[str, Any]]:
-    """The fields of a place with their names, those of a map under `*`."""
+    """The fields of a schema node with their names; those of a map under `*`."""
     seen: set[str] = set()
     for one in alternatives(node):
         for name, inner in one.get("properties", {}).items():
@@ -72,7 +72,7 @@ def below(node: Any) -> Iterator[tuple[str, Any]]:
 
 
 def walk(node: Any, path: str, depth: int = 0) -> Iterator[tuple[str, str]]:
-    """Path and types of everything below a place; of what is described once only that it is there."""
+    """Path and types of every field below a schema node; a shared object appears only by its path."""
     for name, inner in below(node):
         here = f"{path}.{name}"
         yield here, types(inner)
@@ -90,14 +90,14 @@ def within(node: Any, path: str, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def meaning(node: Any) -> str:
-    """The first paragraph of a description, without links of Rust."""
+    """The first paragraph of a description, without Rust links."""
     said = node.get("description", "") if isinstance(node, dict) else ""
     words = re.sub(r"\[`([^`\]]+)`\](?:\([^)]*\))?", r"`\1`", said.split("\n\n")[0].replace("\n", " "))
     return words.replace("|", "\\|")
 
 
 def table(node: Any, heading: str) -> str:
-    """A table of the top and a list of everything below."""
+    """A table of the top-level fields and a list of all fields below."""
     text = f"\n## {heading}\n\n| field | type | meaning |\n|---|---|---|\n"
     silent = []
     for name, inner in below(node):
@@ -114,6 +114,6 @@ def table(node: Any, heading: str) -> str:
 
 
 def sections() -> str:
-    """A section of every kind, and one of what they share."""
+    """A section for every kind of report, and one for their shared objects."""
     text = "".join(table(DEFINITIONS[kind], kind) for kind in kinds())
     return text + "".join(table(DEFINITIONS[name], key) for key, name in SHARED.items())

@@ -1,14 +1,14 @@
-"""The console blocks of the README and of docs/, from the program itself.
+"""Regenerates the console blocks of the README and of docs/ from the program itself.
 
     python3 site/transcripts.py target/release/catchment           writes all blocks again
     python3 site/transcripts.py target/debug/catchment --check [DRAWN]
-                                                                   lists those that differ from what the program prints; the PNG files
+                                                                   lists those that differ from the program's output; the PNG files
                                                                    that the commands write go into the folder DRAWN
 
-A block ```console whose first line begins with `$ catchment` holds commands and what they print, stderr among it. A command goes on in the next line after `\\`.
-The commands of a page run one after another in a folder of their own (budget-to-window goes on in that of first-dock): it holds two STL files of the repository, its design
-files in designs/, and every block ```toml whose first line is `# NAME.toml`, under that name. A line that is only … stands for lines that are left out: as many as it takes that the block keeps its lines
-above it and below. A command without any output in its block runs, and is not compared.
+A block ```console whose first line begins with `$ catchment` holds commands and their output, including stderr. A command continues on the next line after `\\`.
+The commands of a page run one after another in the page's own folder (budget-to-window continues in that of first-dock). The folder holds two STL files of the repository, its design files in designs/,
+and every block ```toml whose first line is `# NAME.toml`, under that name. A line with only … stands for omitted lines: as many as needed to keep the block's lines above and below it. A command without
+output in its block runs, but its output is not compared.
 """
 
 import difflib
@@ -23,7 +23,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-#: Pages in the order of their reading; each list shares a folder.
+#: Pages in reading order; each list shares a folder.
 DOCK = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
 PAGES = [DOCK, [ROOT / "README.md"], *([page] for page in sorted((ROOT / "docs").glob("*.md")) if page not in DOCK)]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
@@ -36,12 +36,12 @@ def printed(program: str, folder: Path, command: str) -> list[str]:
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder, env=env, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{command}: exit {done.returncode}\n{done.stdout}")
-    # How long a command takes is the machine's.
+    # The run time of a command depends on the machine.
     return [line.rstrip() for line in done.stdout.rstrip().splitlines() if not line.startswith("progress: ")]
 
 
 def cut(said: list[str], shown: list[str]) -> list[str]:
-    """What is printed, with as many lines left out as the page leaves out."""
+    """The output, with the lines omitted that the page omits."""
     gaps = [k for k, line in enumerate(shown) if line.strip() == "…"]
     if not gaps:
         return said
@@ -74,7 +74,7 @@ class Transcripts:
         self.wrong: list[str] = []
 
     def again(self, page: Path, block: re.Match) -> str:
-        """A block as the program prints it."""
+        """A block regenerated from the program's output."""
         if block[1] == "toml":
             named = re.match(r"# (\S+\.toml)\n", block[2])
             if named:

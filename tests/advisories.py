@@ -1,9 +1,9 @@
-"""What the RustSec database knows against the crates that are depended on.
+"""Checks the dependencies against the RustSec advisory database.
 
     .venv/bin/python tests/advisories.py FOLDER         a clone of https://github.com/rustsec/advisory-db
 
-Both lock files, that of the workspace and that of the fuzzer. What deny.toml ignores, with its reason, is left out; so are advisories that were withdrawn. The
-age of the database is printed: an old one knows nothing new.
+Reads both lock files, that of the workspace and that of the fuzzer. Leaves out advisories that deny.toml ignores with a reason, and withdrawn advisories.
+Prints the age of the database: an old one lacks recent advisories.
 """
 
 import re
@@ -17,7 +17,7 @@ LOCKS = ["Cargo.lock", "fuzz/Cargo.lock"]
 
 
 def version(text):
-    """A version as numbers that compare; one before a release comes before it."""
+    """A version as comparable numbers; a pre-release sorts before its release."""
     plain, _, before = text.split("+")[0].partition("-")
     numbers = [int(part) for part in plain.split(".")]
     words = [(0, int(word), "") if word.isdigit() else (1, 0, word) for word in before.split(".")] if before else [(2, 0, "")]
@@ -25,7 +25,7 @@ def version(text):
 
 
 def meets(requirement, found):
-    """Whether a version meets a requirement of cargo, such as `>= 1.2, < 2` or `^0.3.1`."""
+    """Whether a version satisfies a requirement of cargo, such as `>= 1.2, < 2` or `^0.3.1`."""
     return all(meets_one(part.strip(), version(found)) for part in requirement.split(","))
 
 
@@ -38,14 +38,15 @@ def meets_one(comparator, found):
         return {"<": found < least, "<=": found <= least, ">": found > least, ">=": found >= least}[sign]
     if sign == "=":
         return found[0][:parts] == least[0][:parts] and (parts < 3 or found == least)
-    # `^`, which nothing means too: up to the first number that is not 0. `~`: up to the one before the last.
+    # `^`, also the meaning of a bare version: up to the first number that is not 0. `~`: up to the one before
+    # the last.
     first = next((k for k, number in enumerate(least[0]) if number), parts - 1)
     kept = max(1, min(parts - 1, 2)) if sign == "~" else first + 1
     return found >= least and found[0][:kept] == least[0][:kept]
 
 
 def advisory(text):
-    """The head of an advisory: the block of TOML at the beginning of its page."""
+    """The head of an advisory: the TOML block at the beginning of its page."""
     return tomllib.loads(re.match(r"```toml\n(.*?)\n```", text, re.DOTALL)[1])
 
 

@@ -1,11 +1,12 @@
-"""What is depended on, held to deny.toml: licences, second versions, unwanted crates, sources; and compiled once.
+"""Checks the dependencies against deny.toml (licences, duplicate versions, unwanted crates, sources), and that
+each is compiled once.
 
     .venv/bin/python tests/dependencies.py
 
-What `cargo deny check licenses bans sources` says, where cargo-deny is not: from Cargo.lock as cargo reads it, and from the same deny.toml. Licences are those
-that crates state; that their texts are of these licences is for cargo-deny to say.
+Replaces `cargo deny check licenses bans sources` on machines without cargo-deny: reads Cargo.lock through cargo, and the same deny.toml. Licences are those
+that crates declare. It does not verify that the texts are of these licences; cargo-deny does.
 
-The wheel of ./check shares the dependencies that the tests have compiled only where each has the same features.
+The wheel of ./check shares the compiled dependencies of the tests only if each has the same features.
 """
 
 import collections
@@ -22,7 +23,7 @@ REGISTRY = "registry+https://github.com/rust-lang/crates.io-index"
 
 
 def is_allowed(expression, allowed):
-    """Whether all that a licence asks for is allowed, with one of each choice."""
+    """Whether the list allows all licences of an expression, with one of each choice."""
     if isinstance(expression, OR):
         return any(is_allowed(part, allowed) for part in expression.args)
     if isinstance(expression, AND):
@@ -33,14 +34,14 @@ def is_allowed(expression, allowed):
 def licences(packages, allowed):
     spdx = get_spdx_licensing()
     for package in packages:
-        # Before 2018 a choice was written with a stroke.
+        # Before 2018 a slash separated the choices.
         stated = (package["license"] or "").replace("/", " OR ")
         if not stated or not is_allowed(spdx.parse(stated), allowed):
             yield f"licence of {called(package)}: {stated or 'none is stated'}"
 
 
 def doubles(packages, skipped):
-    """Crates in more than one version of which none, or not all but one, are in the list; and what is in it for nothing."""
+    """Crates in several versions of which fewer than all but one are listed; and unused entries of the list."""
     versions = collections.defaultdict(set)
     for package in packages:
         versions[package["name"]].add(package["version"])
@@ -75,7 +76,7 @@ def cargo(*words):
 
 
 def compiled():
-    """The packages that something on some system compiles; cargo's metadata hold more: what a feature would ask for if another took it up."""
+    """The packages compiled on at least one system. cargo's metadata hold more: optional dependencies of features that no crate enables."""
     tree = cargo("tree", "--locked", "--workspace", "--all-features", "--target=all", "--prefix=none", "--no-dedupe", "--format={p}")
     found = {tuple(line.split()[:2]) for line in tree.splitlines() if line}
     packages = json.loads(cargo("metadata", "--locked", "--all-features", "--format-version=1"))["packages"]
@@ -83,14 +84,14 @@ def compiled():
 
 
 def features(*selection):
-    """Every dependency that is compiled, as `name version [features]`."""
+    """Every compiled dependency, as `name version [features]`."""
     tree = cargo("tree", "--locked", "--prefix=none", "--no-dedupe", "--format={p} [{f}]", *selection)
     lines = {line.replace(" (proc-macro)", "") for line in tree.splitlines() if line}
     return {line for line in lines if not line.startswith("catchment")}
 
 
 def compiled_again():
-    """Dependencies of the wheel that the tests have not compiled in the same way."""
+    """Dependencies of the wheel that the tests have not compiled with the same features."""
     of_tests = features("--workspace", "--all-features", "--edges=normal,build,dev")
     of_wheel = features("--package=catchment-py", "--features=extension-module,as-tests", "--edges=normal,build")
     for line in sorted(of_wheel - of_tests):

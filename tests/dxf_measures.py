@@ -3,7 +3,7 @@
     python tests/dxf_measures.py target/debug/catchment designs/systems/latch.toml
 
 Runs the program itself. The part must have the width, overhang, neck, slit depth, slit gap and dowel holes of its design within
-0.01 mm; so must what is left of a sheet after a beam as wide as the kerf has run along the cut line. Exits with a message if not.
+0.01 mm; so must the rest of a sheet after a beam as wide as the kerf has run along the cut line. Exits with a message if not.
 """
 
 import json
@@ -15,7 +15,7 @@ from pathlib import Path
 import ezdxf
 
 NEAR = 0.01
-# Edges that turn less than this from an axis are upright or level.
+# Edges within this angle of an axis are upright or level.
 STRAIGHT = 1e-6
 
 
@@ -36,7 +36,7 @@ def read(path: Path, layer: str) -> tuple[list[tuple[float, float]], list[float]
 
 
 def measure(corners: list[tuple[float, float]], holes: list[float], burnt: float) -> dict[str, float]:
-    """Lengths of a front layer once a beam has burnt `burnt` mm on either side of the curve away."""
+    """Lengths of a front layer after the beam has removed `burnt` mm on either side of the curve."""
     edges = list(zip(corners, corners[1:] + corners[:1]))
     upright = [(a, b) for a, b in edges if abs(a[0] - b[0]) < STRAIGHT and abs(a[1] - b[1]) > 0.5]
     level = [(a, b) for a, b in edges if abs(a[1] - b[1]) < STRAIGHT and abs(a[0] - b[0]) > 0.1]
@@ -57,7 +57,7 @@ def measure(corners: list[tuple[float, float]], holes: list[float], burnt: float
     neck = near - max(others)
     end = min(min(s[0][1], s[1][1]) for s in sides)
     top = max(max(s[0][1], s[1][1]) for s in sides[:1])
-    # Material lies left of the near side and right of the far side, so both move towards it as it burns.
+    # Material lies left of the near side and right of the far side, so both move towards it during the cut.
     return {
         "width": width - 2 * burnt,
         "overhang": abs(under[0][0] - under[1][0]),
@@ -71,11 +71,12 @@ def measure(corners: list[tuple[float, float]], holes: list[float], burnt: float
 
 
 def shift(corners: list[tuple[float, float]], at: tuple[float, float], burnt: float) -> float:
-    """What burning adds to the slit's depth: its end goes down by `burnt`, its upper corner along the mitre of face and side."""
+    """The cut's addition to the slit's depth: its end goes down by `burnt`, its upper corner along the mitre of face and
+    side."""
     if burnt == 0:
         return 0.0
     k = min(range(len(corners)), key=lambda k: abs(corners[k][0] - at[0]) + abs(corners[k][1] - at[1]))
-    # Of the two neighbours one is the slit's end, straight below; the other lies on the face.
+    # One of the two neighbours is the slit's end, straight below; the other lies on the face.
     face = next(p for p in (corners[k - 1], corners[(k + 1) % len(corners)]) if abs(p[0] - at[0]) > STRAIGHT)
     dx, dy = at[0] - face[0], at[1] - face[1]
     length = (dx * dx + dy * dy) ** 0.5

@@ -1,12 +1,12 @@
-"""Measures what every command takes of the memory, on every design, beside what the program itself expects.
+"""Measures the memory use of every command, on every design, against the program's own estimate.
 
     python3 tests/memory.py PROGRAM [DESIGN…]
 
 Designs are those of `designs`, of its gallery, and those of its systems that are connectors; the other systems have their own commands.
 
-The program gets 1 byte of memory, refuses, and says what it needs; it gets that, and so on until it runs, and the system says what it
-took at most. What the same design takes to be checked is taken off. Fails where a command takes more than BESIDE more than it expected:
-threads, tables of the report and the allocator's own are in no estimate. Unix, Python's own library alone.
+The program gets 1 byte of memory, refuses, and prints its requirement; it gets that amount, and so on until it runs, and the system
+reports its peak. The memory of checking the same design is subtracted. Fails if a command takes more than BESIDE above its estimate:
+the estimates do not include threads, tables of the report and the allocator's own memory. Unix, Python's own library alone.
 """
 
 import os
@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BESIDE = 48  # MiB
-LONGEST = 180  # s; what takes longer is told with what it took until then
+LONGEST = 180  # s; a command over this limit is reported with its peak so far
 UNITS = {"B": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30, "TiB": 1 << 40}
 COMMANDS = [
     "run --method transport",
@@ -60,7 +60,8 @@ COMMANDS = [
     "report --resolution 8 --leave-out window -o out.html",
     "sweep --over cor=0,1 --resolution 8 --samples 0 -o out",
 ]
-# What is above the connector, or reads two parts: the whole command line; {} is the folder of designs.
+# Commands on systems above the connector, or on two parts: the whole command line; {} is the folder of
+# designs.
 SYSTEMS = [
     "compose {}/systems/hook.toml {}/systems/loop.toml -o out.png",
     "compose {}/systems/boat.toml {}/systems/block.toml",
@@ -72,12 +73,12 @@ SYSTEMS = [
     "validate {}/trials/pyramid-arc.csv {}/bench-pyramid-arc.toml --accuracy x=0.5mm,y=0.5mm",
     "catalog --figure 4.2 -o out.png",
 ]
-# They have no budget, or take only part of it.
+# These commands have no budget, or use only part of it.
 WITHOUT = {"check", "classify", "validate", "latch"}
 
 
 def measured(program, args, folder):
-    """Exit code (none where it was ended), MiB at most, and what was said."""
+    """Exit code (None if it was killed), peak in MiB, and the output."""
     with tempfile.TemporaryFile() as said, open(os.devnull, "w") as null:
         child = subprocess.Popen([program, *args], cwd=folder, stdout=null, stderr=said)
         late = threading.Timer(LONGEST, child.kill)
@@ -91,7 +92,7 @@ def measured(program, args, folder):
 
 
 def weighed(program, args, folder):
-    """Exit code, MiB at most, and MiB that the program says it needs for its largest part; nothing where it asks for none."""
+    """Exit code, peak in MiB, and the MiB that the program states for its largest part; None if it requests no memory."""
     budget, needs = 1, None
     while True:
         code, most, said = measured(program, [*args, "--memory", f"{budget}B"], folder)
@@ -100,7 +101,7 @@ def weighed(program, args, folder):
             return code, most, needs
         part = float(refused[1]) * UNITS[refused[2]]
         needs = max(needs or 0.0, part / (1 << 20))
-        # What is said is rounded.
+        # The printed value is rounded.
         budget = max(2 * budget, int(1.1 * part))
 
 

@@ -4,7 +4,7 @@
     python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml --friction 0.2 --poses 200 --aspect-ratio 1
     python tests/mujoco_agrees.py target/debug/catchment designs/chamfered-peg.toml --friction 0.1 --poses 200 --half 0.2,0.2,0.2,0.2,0.05
 
-MuJoCo runs the world that `catchment export` wrote; catchment answers by exact quasi-static motion. Both describe the same
+MuJoCo runs the world that `catchment export` wrote; catchment computes exact quasi-static motion. Both describe the same
 heavily damped drop, so they must agree on at least 95 of 100 poses, 97 with friction. Exits with a message if they do not.
 """
 
@@ -21,13 +21,15 @@ import numpy as np
 
 AGREE = 0.95
 AGREE_WITH_FRICTION = 0.97
-# MuJoCo's contacts are springs of two time steps: they give way by force · (2 · timestep)² / mass = 2e-4 D. Damping makes the
+# MuJoCo's contacts are springs of two time steps: they yield under force · (2 · timestep)² / mass = 2e-4 D. Damping makes the
 # half stop within 0.02 D.
 SETTINGS = ["--push", "50", "--damping", "50", "--mass", "1", "--timestep", "0.001"]
-# Its friction is a damper: what sticks creeps, a thousandth as fast as with its default of 1 ("impratio").
+# Its friction is a damper: a sticking contact creeps, a thousandth as fast as with its default of 1
+# ("impratio").
 FRICTION_AS_STIFF = 1000.0
 TIMEOUT_S = 60.0
-# Seconds between two looks at a trial, and the way within them that counts as rest (a slope of 3e-4).
+# Seconds between two samples of a trial, and the largest displacement between them that counts as rest (a
+# slope of 3e-4).
 LOOK_S = 0.1
 REST = 3e-5
 ALIGNED = 0.02
@@ -50,7 +52,7 @@ def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: flo
     mujoco.mju_mat2Quat(quaternion, turned.flatten())
     mujoco.mj_resetData(model, data)
     face = cor * turned[:, 2]
-    # From above everything, as there is no height of first contact here.
+    # Starts above everything, as there is no height of first contact here.
     data.qpos[:] = [pose[0] - face[0], pose[1] - face[1], above, *quaternion]
     site = model.site("moving_face").id
     last = None
@@ -78,7 +80,7 @@ def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: flo
 
 
 def half_widths(text: str) -> list[float]:
-    """Half the box of the poses: D, D, rad, rad, rad."""
+    """Half ranges of the error box: D, D, rad, rad, rad."""
     half = [float(part) for part in text.split(",")]
     if len(half) != 5:
         raise argparse.ArgumentTypeError("five numbers: x, y, roll, pitch, yaw")

@@ -1,9 +1,10 @@
-"""Opens what `export`, `run` and `trace` write for other tools, in those tools, and compares it with the report.
+"""Opens the files that `export`, `run` and `trace` write for other tools, in those tools, and compares them with
+the report.
 
     python tests/other_tools.py target/debug/catchment
 
-vtk, trimesh, pandas and xarray (with netCDF4) are those of tests/requirements.txt. The glTF file is held to the rules of its specification beside
-being opened: chunks, alignment, bounds, times that grow, unit quaternions.
+The versions of vtk, trimesh, pandas and xarray (with netCDF4) are those of tests/requirements.txt. The glTF file is also checked against the
+rules of its specification: chunks, alignment, bounds, increasing times, unit quaternions.
 """
 
 import json
@@ -87,7 +88,7 @@ def check_set(program: Path, home: Path) -> None:
     assert len(table) == report["acceptance"]["cells"] and list(table.columns) == ["x", "y", "roll", "yaw", "outcome", "height"]
     assert isclose((table.outcome == "aligned").mean() * box, report["acceptance"]["sum_grid"], rel_tol=1e-12)
 
-    # The line of docs/other-tools.md.
+    # The line from docs/other-tools.md.
     line = (ROOT / "docs/other-tools.md").read_text(encoding="utf-8").split("import json, xarray\n", 1)[1].split("\n", 1)[0]
     line = line.replace('"out/', f'"{home}/out/').replace('"set.nc"', f'"{home}/set.nc"')
     exec(line, {"json": json, "xarray": xarray})

@@ -1,8 +1,9 @@
-"""Whether a release is built with what was looked at: actions by commit, containers by digest, one Rust.
+"""Checks that a release is built from pinned inputs: actions by commit, containers by digest, one Rust
+version.
 
     .venv/bin/python tests/pinned.py
 
-Workflow files must be YAML, too. What is not pinned stands at the head of .github/workflows/release.yml.
+Workflow files must also be valid YAML. The head of .github/workflows/release.yml lists the unpinned inputs.
 """
 
 import re

@@ -2,7 +2,8 @@
 
     .venv/bin/python tests/step_meshes.py target/debug/catchment
 
-Volumes and tightness of what is meshed, where the halves meet, what is captured, files of several bodies, in inches, without a solid, cut off.
+Volumes and tightness of the meshes, mated pose of the halves, captured offsets, and files: of several bodies, in inches, without a solid,
+truncated.
 """
 
 import json
@@ -22,7 +23,8 @@ environment = {**os.environ, "CATCHMENT_PYTHON": sys.executable, "NO_COLOR": "1"
 
 
 def meshed(path, deflection):
-    """Of every body the volume in mm^3, the area in mm^2, and how many edges have not one triangle on each side."""
+    """For every body the volume in mm^3, the area in mm^2, and the number of edges without exactly one triangle on
+    each side."""
     arguments = [sys.executable, "-c", script, str(deflection), "200000", str(8 << 30), "600"]
     answer = subprocess.run(arguments, stdin=path.open("rb"), capture_output=True, check=True).stdout
     head, _, numbers = answer.partition(b"\n")
@@ -52,7 +54,8 @@ def meshed(path, deflection):
 
 
 def close(path, deflection, *volumes):
-    """Every facet is off by at most the deflection: so is the volume, by as much times the area."""
+    """Every facet deviates by at most the deflection: so the volume deviates by at most that times the
+    area."""
     bodies = meshed(path, deflection)
     assert len(bodies) == len(volumes), bodies
     for (volume, area, loose), exact in zip(bodies, volumes):
@@ -70,7 +73,8 @@ def told(folder, *arguments):
     return ran.stdout
 
 
-# Of the pin the fillet leaves the radius 3 + sqrt(4 - u^2), u above its beginning: the integral of pi (25 - r^2) is cut off.
+# The fillet reduces the pin to the radius 3 + sqrt(4 - u^2), u above its beginning: the removed volume is the integral of pi
+# (25 - r^2).
 PEG = math.pi * 25 * 20 - math.pi * (24 + 8 / 3 - 6 * math.pi) + 24 * 24 * 4
 CONE = math.pi * 4 / 3 * (5.2**2 + 5.2 * 9.2 + 9.2**2)
 SOCKET = 30**3 - math.pi * 5.2**2 * 14 - CONE
@@ -98,20 +102,21 @@ with tempfile.TemporaryDirectory() as home:
     assert "face centre of the mating face: fixed half (0, 0, -9) mm, moving half (0, 0, 11) mm; they coincide when mated" in said, said
     assert "off by at most 0.05 mm (deflection, as written), by OCP " in said, said
     assert "mm, the larger lateral extent of the facets that can touch" in said, said
-    # Its flat end, radius 3, slides off the mouth, radius 9.2, up to an offset of 6.2, but for what polygons cut off of both.
+    # Its flat end, radius 3, slides off the mouth, radius 9.2, up to an offset of 6.2, less the area that polygons cut off
+    # both.
     poses = [(e * math.cos(k), e * math.sin(k), e < 6.2) for e in (1.0, 5.0, 6.05, 6.35, 7.5) for k in range(8)]
     (home / "poses.csv").write_text("x_mm,y_mm\n" + "".join(f"{x},{y}\n" for x, y, _ in poses))
     rows = told(home, "outcome", "design.toml", "--poses", "poses.csv").splitlines()[1:]
     for (x, y, aligned), row in zip(poses, rows, strict=True):
         assert (row.split(",")[2] == "aligned") == aligned, (x, y, row)
-    # The same parts, proposed.
+    # The same parts, as a proposal.
     told(home, "place", "socket.step", "peg.step", "-o", "placed.toml")
     assert 'facing = "+z"' in (home / "placed.toml").read_text()
 
     import make
     from OCP.Interface import Interface_Static
 
-    # A ball and a bar that overlap are two bodies, and so they are of a file in inches.
+    # A ball and a bar that overlap are two bodies, also in a file in inches.
     for unit in ("MM", "INCH"):
         Interface_Static.SetCVal_s("write.step.unit", unit)
         ball = make.BRepPrimAPI_MakeCone(make.axis(0), 5, 0, 5).Shape()

@@ -1,11 +1,11 @@
-"""Spoilt designs, tables, stored results and command lines through the real program, under a limit of its memory.
+"""Mutated designs, tables, stored results and command lines through the real program, under a memory limit.
 
     python3 tests/storm.py PROGRAM [COUNT] [--seed SEED] [--from NUMBER] [--mib 1024] [--longest 20] [--keep FOLDER]
 
-Every subcommand has its part; where the program has one that is neither here nor in LEFT_OUT, nothing is run.
-Every run must end with exit code 0 to 5, 130 or 143, say something where it is 2 to 5, steer no terminal, call nothing a bug and leave
-nothing unfinished. A run that takes more than --longest seconds of the processor is interrupted, must hear that, and is counted. The same seed and number
-give the same run; what failed is named with both, and kept with --keep. Unix, Python's own library alone.
+Every subcommand has its generator; if the program has a subcommand that is neither here nor in LEFT_OUT, the script runs nothing. Every run must end with
+exit code 0 to 5, 130 or 143, print something for 2 to 5, print no terminal control characters, report no bug and leave no unfinished file. A run that
+takes more than --longest seconds of CPU time is interrupted, must react to that, and is counted. The same seed and number give the same run; a failure is
+reported with both, and kept with --keep. Unix, Python's own library alone.
 """
 
 import argparse
@@ -38,7 +38,7 @@ def corpus(name):
 
 
 def spoilt(dice, seed, others):
-    """A copy with one to four faults."""
+    """A copy with one to four mutations."""
     data = bytearray(seed)
     for _ in range(dice.randint(1, 4)):
         at = dice.randint(0, len(data))
@@ -69,7 +69,7 @@ def spoilt(dice, seed, others):
 
 
 class Dice(random.Random):
-    """Calm ones make what the program can compute, so that not all ends at the door."""
+    """Calm dice make input that the program can compute, so that some runs pass the input checks."""
 
     calm = False
 
@@ -196,12 +196,12 @@ def value(dice, *usual):
 
 
 def written(dice, *endings):
-    """Prints, or writes a file as well, now and then one whose name says nothing."""
+    """Prints, or also writes a file, occasionally one whose name has no known extension."""
     return dice.choice([[], [], ["--json"], ["-o", "out." + dice.choice([*endings, "txt"])], ["-o", "d.toml", "--force"]])
 
 
 def study(dice):
-    """What rests on exact motions, few of them."""
+    """Studies by exact motions, with few motions each."""
     command = dice.choice("window success jams friction rests hold".split())
     # `rests --jams` has an old name.
     named = ["rests", "--jams"] if command == "jams" and dice.random() < 0.5 else [command]
@@ -240,7 +240,7 @@ def chance(dice):
 
 
 def bench(dice):
-    """A test on the bench, planned or judged."""
+    """A robot trial, planned or evaluated."""
     if dice.random() < 0.5:
         args = ["validate", "tried.csv", "d.toml", "--repeatability", pose(dice)]
         args += dice.choice([[], [], ["--estimate-friction"], ["--limit", value(dice, 1, 3)]])
@@ -272,7 +272,7 @@ def page(dice):
 
 
 def systems(dice):
-    """What stands above the connector."""
+    """Commands on systems above the connector."""
     command = dice.choice("solids classify catalog invert compose latch chain".split())
     of_design = [command, "d.toml"] + design_options(dice)
     if command == "solids":
@@ -300,7 +300,7 @@ def systems(dice):
 
 
 def many(dice):
-    """Several designs or tables."""
+    """Commands on several designs or tables."""
     if dice.random() < 0.2:
         return ["reproduce", dice.choice(["2.1", "2.1", "9.9"])] + dice.choice([[], ["--json"], ["--csv"], ["-o", "out"]]) + exec_options(dice)
     args = ["sweep", "d.toml", "--resolution", resolution(dice), "--samples", value(dice, 0, 10)] + design_options(dice) + exec_options(dice)
@@ -329,13 +329,13 @@ def small(dice):
 
 
 def words(dice):
-    """A spoilt command line of the corpus."""
+    """A mutated command line of the corpus."""
     lines = corpus("arguments")
     data = spoilt(dice, dice.choice(lines), lines)
     return [word for word in data.replace(b"\0", b"").split(b"\n")]
 
 
-# Who makes command lines of which subcommands, and how often.
+# The generators of command lines, each with its frequency and its subcommands.
 KINDS = {
     run: (6, ["run"]),
     outcome: (4, ["trace"]),
@@ -354,12 +354,12 @@ KINDS = {
 }
 
 
-# Subcommands that have a new name; the old ones still work.
+# Renamed subcommands; the old names still work.
 OLD = {"outcome": "trace", "jams": "rests", "chance": "dynamics"}
 
 
 def subcommands(program):
-    """Those that the program lists in its help."""
+    """The subcommands that the program's help lists."""
     listed = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
     return set(re.findall(r"^  ([a-z]+)  ", listed, re.MULTILINE))
 
@@ -390,7 +390,7 @@ class Storm:
 
     @staticmethod
     def files_beside():
-        """By what they are called: files that other commands read, and by what they are spoilt with."""
+        """By name: files that other commands read, and files that supply mutations."""
         read = lambda path: (ROOT / "designs" / path).read_bytes()
         files = {
             "robots.toml": read("robots/robots.toml"),
@@ -420,7 +420,7 @@ class Storm:
         return [design.encode() for design in designs]
 
     def drawn(self, dice):
-        """By their names: the files of those designs, from the corpora of the fuzzer, some of them spoilt."""
+        """By name: the files of those designs, from the corpora of the fuzzer, some of them mutated."""
         files = {"part.step": b"ISO-10303-21;\n"}
         for name, endings in (("stl", ["stl"]), ("obj", ["obj"]), ("ply", ["ply"]), ("threemf", ["3mf"]), ("drawing", ["svg", "dxf"])):
             seeds = corpus(name)
@@ -430,13 +430,13 @@ class Storm:
         return files
 
     def start(self, args, folder):
-        """Exit code (minus the signal), kilobytes, seconds of the processor and what it said."""
+        """Exit code (minus the signal), kilobytes, CPU seconds and output."""
         with open(self.home / "stdout", "wb") as out, open(self.home / "stderr", "wb") as err, open(os.devnull) as null:
             pid = os.fork()
             if pid == 0:
                 try:
                     os.chdir(folder)
-                    # Whoever starts a storm in the background has it ignore Ctrl-C, and the program would do so, too.
+                    # A storm started in the background ignores Ctrl-C, and the program would inherit that.
                     for number in (signal.SIGINT, signal.SIGPIPE, signal.SIGXFSZ):
                         signal.signal(number, signal.SIG_DFL)
                     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
@@ -456,19 +456,19 @@ class Storm:
                 signal.sigtimedwait({signal.SIGCHLD}, 1.0)
         code, took = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
         if asked == signal.SIGINT and code == -signal.SIGINT:
-            code = 130  # as shells say it: still reading, with nothing begun
+            code = 130  # the shells' code: interrupted while reading, before any work
         if asked == signal.SIGINT and code == 130:
             self.slow.append((took, args))
         return code, usage.ru_maxrss, took, (self.home / "stderr").read_bytes()
 
     @staticmethod
     def used(pid):
-        """Seconds of the processor."""
+        """CPU seconds."""
         fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def prepare(self, dice):
-        """A folder with a design, a table and stored results, some of them spoilt; and the command."""
+        """A folder with a design, a table and stored results, some of them mutated; and the command."""
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir()
         dice.calm = dice.random() < 0.4
@@ -560,7 +560,7 @@ def main():
     options = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_AS, (options.mib << 20, options.mib << 20))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    # Waited for, not handled.
+    # Collected by sigtimedwait, without a handler.
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})
     storm, began = Storm(options.program, options.longest, options.keep), time.monotonic()
     try:

@@ -37,7 +37,7 @@ def check(path: str) -> None:
         found, stated = int((outcome == code).sum()), report["acceptance"]["outcomes"][name]
         assert found == stated, f"{name}: {found} cells, but the report says {stated}"
 
-    # Selecting by coordinate gives what selecting by position gives: the axes are in the right order.
+    # Selecting by coordinate equals selecting by position: the axes are in the right order.
     middle = {name: axis["cells"] // 3 for name, axis in axes.items()}
     at = {name: float(run[name][k]) for name, k in middle.items()}
     assert int(outcome.sel(at, method="nearest")) == int(outcome.isel(middle))

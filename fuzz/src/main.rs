@@ -1,6 +1,6 @@
-//! One program for all fuzz targets: the environment variable `CATCHMENT_FUZZ` names the one that runs. `fuzz/run` starts it.
+//! One program for all fuzz targets: the environment variable `CATCHMENT_FUZZ` selects one. `fuzz/run` starts it.
 //!
-//! What must hold of a target is said beside its function; the tests of the readers run the same functions.
+//! The function of a target documents its properties; the tests of the readers run the same functions.
 
 #![no_main]
 
@@ -13,7 +13,7 @@ mod systems;
 use libfuzzer_sys::fuzz_target;
 use std::sync::OnceLock;
 
-/// Targets beside those of the readers.
+/// Targets other than the readers.
 const OTHERS: &[readers::Target] =
     &[("arguments", arguments), ("request", request), ("systems", systems::file)];
 
@@ -22,7 +22,7 @@ fuzz_target!(|bytes: &[u8]| {
     TARGET.get_or_init(chosen)(bytes);
 });
 
-/// The target that the environment names.
+/// The target selected by the environment.
 fn chosen() -> fn(&[u8]) {
     let name = std::env::var("CATCHMENT_FUZZ").unwrap_or_default();
     let targets = || readers::TARGETS.iter().chain(OTHERS);
@@ -37,7 +37,8 @@ fn chosen() -> fn(&[u8]) {
     )
 }
 
-/// A command line, a word per line: read, or refused with a message that steers no terminal.
+/// A command line, one word per line: accepted, or refused with a message without terminal control
+/// characters.
 fn arguments(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let words = std::iter::once("catchment").chain(text.lines());
@@ -47,7 +48,7 @@ fn arguments(bytes: &[u8]) {
     }
 }
 
-/// The head of a request to `view`: it is refused without the token and the name of this machine.
+/// The head of a request to `view`: refused without the token and the name of this machine.
 fn request(bytes: &[u8]) {
     if let Some(path) = catchment_cli::admitted(bytes, 9, "token") {
         let text = std::str::from_utf8(bytes).expect("what is let in is text");

@@ -40,7 +40,7 @@ def block(low, high):
 
 def write(path, *shapes):
     writer = STEPControl_Writer()
-    # It tells stdout all about it.
+    # The writer prints its progress to stdout.
     stdout, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     for shape in shapes:

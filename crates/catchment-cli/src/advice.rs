@@ -1,10 +1,10 @@
-//! What the library advises, in the words of the command line.
+//! Translates the library's advice into command-line options.
 
 use catchment::diagnostic::{Advice, Advised};
 use catchment::landscape::Resolution;
 use std::error::Error;
 
-/// The options that do what is advised; none where no option does.
+/// The options that carry out the advice; `None` if no option does.
 pub(crate) fn flags(advice: &Advice) -> Option<String> {
     Some(match advice {
         Advice::AtMostResolution(cells) if *cells >= Resolution::LEAST => {
@@ -31,7 +31,7 @@ pub(crate) fn flags(advice: &Advice) -> Option<String> {
     })
 }
 
-/// The options that help against an error, however deep its advice lies.
+/// The options that resolve an error; searches its whole source chain for the advice.
 pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let mut next = Some(error);
     let advised = loop {

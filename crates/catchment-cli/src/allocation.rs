@@ -1,8 +1,9 @@
-//! The system's allocator, and what happens when it has nothing left: a message and the exit code of a failure, where the
-//! standard library would abort. Large results are compared with the memory budget long before; this is for what is left over,
-//! under limits such as `ulimit -v`.
+//! The system allocator with an out-of-memory handler: a message and a failure exit code, where the standard
+//! library would abort. Large results are checked against the memory budget long before; this handler covers
+//! the remaining allocations, under limits such as `ulimit -v`.
 //!
-//! Tests build it with fault points ([`faults`]): the system then seems to refuse the n-th request, and on wish all after it.
+//! Tests build it with fault points ([`faults`]), which simulate the failure of the n-th request and
+//! optionally of every later request.
 
 #![expect(unsafe_code, reason = "an allocator has no safe form; all calls go to the system's unchanged")]
 
@@ -19,25 +20,25 @@ static ALLOCATOR: OrLeave = OrLeave;
 
 struct OrLeave;
 
-// SAFETY: every call is that of the system's allocator with the same arguments; where it refuses, the process ends.
+// SAFETY: every call forwards the same arguments to the system allocator; a failed request ends the process.
 unsafe impl GlobalAlloc for OrLeave {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: as promised by the caller.
+        // SAFETY: guaranteed by the caller.
         given(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as promised by the caller.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.dealloc(memory, layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: as promised by the caller.
+        // SAFETY: guaranteed by the caller.
         given(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: as promised by the caller.
+        // SAFETY: guaranteed by the caller.
         given(unsafe { System.realloc(memory, layout, size) }, size)
     }
 }
@@ -49,12 +50,13 @@ fn given(memory: *mut u8, size: usize) -> *mut u8 {
     memory
 }
 
-/// Requests that seem to be refused, in builds with debug assertions; no others have any of it.
+/// Simulated allocation failures; compiled only with debug assertions.
 #[cfg(debug_assertions)]
 pub(crate) mod faults {
     use std::sync::atomic::{AtomicU64, Ordering};
 
-    /// Which request from now on is refused, and whether all after it are; `N` or `N..`.
+    /// Environment variable with the number of the failing request: `N` for this request alone, `N..` for
+    /// this and all later requests.
     pub(crate) const NAME: &str = "CATCHMENT_REFUSED_REQUEST";
 
     const NONE: u64 = u64::MAX;
@@ -62,7 +64,7 @@ pub(crate) mod faults {
     static LAST: AtomicU64 = AtomicU64::new(NONE);
     static ASKED: AtomicU64 = AtomicU64::new(0);
 
-    /// Reads what is wished from the environment.
+    /// Reads the fault points from the environment.
     pub(crate) fn prepare() {
         let Ok(message) = std::env::var(NAME) else { return };
         let number = message.trim_end_matches("..");
@@ -72,7 +74,7 @@ pub(crate) mod faults {
         FIRST.store(first, Ordering::Relaxed);
     }
 
-    /// Counts a request.
+    /// Counts a request and returns whether it fails.
     pub(super) fn refuses() -> bool {
         let first = FIRST.load(Ordering::Relaxed);
         if first == NONE {
@@ -83,7 +85,7 @@ pub(crate) mod faults {
     }
 }
 
-/// No request is refused but by the system.
+/// No simulated failures: only the system refuses requests.
 #[cfg(not(debug_assertions))]
 pub(crate) mod faults {
     pub(crate) const fn prepare() {}
@@ -93,27 +95,28 @@ pub(crate) mod faults {
     }
 }
 
-/// How long other threads wait for the one that ends the process.
+/// Time that other threads wait for the thread that ends the process.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 thread_local! {
     static LEAVES: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Says that memory ran out, removes what is unfinished where it can, and ends the process, allocating next to nothing.
+/// Reports that memory ran out, removes unfinished files if possible, and ends the process with almost no
+/// allocation.
 #[cold]
 fn leave(size: usize) -> ! {
     static LEAVING: AtomicBool = AtomicBool::new(false);
     if LEAVES.replace(true) {
-        // There was not even enough to tidy up; the next start does.
+        // Memory is too short for the cleanup; the next start does it.
         end();
     }
     if LEAVING.swap(true, Ordering::Relaxed) {
-        // Another thread ends the process, unless it waits for this one.
+        // Another thread ends the process, unless it waits for this thread.
         std::thread::sleep(PATIENCE);
         end();
     }
-    // Standard error has no buffer, and numbers are written piece by piece.
+    // stderr has no buffer, and numbers are written piece by piece.
     let _ = writeln!(
         io::stderr(),
         "catchment: out of memory: the system refused {size} bytes; use a coarser grid (--resolution), fewer threads (--threads), \
@@ -123,11 +126,12 @@ fn leave(size: usize) -> ! {
     end();
 }
 
-/// Ends the process here and now: what [`std::process::exit`] would still do may ask for memory, and it must not be called by itself.
+/// Ends the process immediately: the cleanup in [`std::process::exit`] may allocate, and that function must
+/// not be re-entered.
 fn end() -> ! {
     unsafe extern "C" {
         fn _exit(code: std::ffi::c_int) -> !;
     }
-    // SAFETY: it takes any number, and nothing runs after it.
+    // SAFETY: `_exit` accepts any number and never returns.
     unsafe { _exit(i32::from(ExitStatus::NotComputed.code())) }
 }

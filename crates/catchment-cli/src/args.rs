@@ -37,7 +37,7 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-/// What the long help ends with, above the exit codes.
+/// End of the long help, above the exit codes.
 const AFTER: &str = "\
 Common options: catchment COMMAND -h. All options, with examples: --help.
 Version: catchment --version.
@@ -55,16 +55,16 @@ NO_COLOR=1 overrides the file, too.
 
 Exit codes:";
 
-/// The command line, before it is read.
+/// The command-line definition, before parsing.
 pub(crate) fn command() -> clap::Command {
     let codes = ExitStatus::ALL.map(|(status, end)| format!("\n  {:>3}  {end}", status.code()));
     grouped(Cli::command().color(color::of_help()).after_long_help(AFTER.to_owned() + &codes.concat()))
 }
 
-/// Reads a command line; its first word is the name of the program.
+/// Parses a command line; its first word is the name of the program.
 ///
 /// # Errors
-/// What cannot be read, or help that is asked for.
+/// A parse error, or a request for help or the version.
 pub(crate) fn parse(
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<Cli, clap::Error> {
@@ -100,17 +100,17 @@ pub(crate) struct DesignArgs {
 }
 
 impl DesignArgs {
-    /// Reads the file and applies the changes.
+    /// Reads the file and applies the overrides.
     pub(crate) fn draft(&self) -> Result<Draft, ProblemError> {
         self.change(Draft::read(read_design(&self.path)?)?)
     }
 
-    /// The same, given up where a stop is asked for.
+    /// Like [`Self::draft`], but stops on cancellation.
     pub(crate) fn draft_on(&self, exec: &Exec) -> Result<Draft, ProblemError> {
         self.change(Draft::read_on(read_design(&self.path)?, exec)?)
     }
 
-    /// Options that change the design, and the keys that they change.
+    /// The options given and the design keys that they override.
     pub(crate) fn changed(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         [
             ("--free", "alignment.free", self.free.is_some()),
@@ -122,7 +122,7 @@ impl DesignArgs {
         .filter_map(|(option, key, given)| given.then_some((option, key)))
     }
 
-    /// The changes as they are typed: ` --free x,y,yaw`; empty without any.
+    /// The overrides as command-line text: ` --free x,y,yaw`; empty without overrides.
     pub(crate) fn as_typed(&self) -> String {
         let free = self.free.map(|free| format!(" --free {}", free.to_string().replace(", ", ",")));
         let cor = self.cor.map(|cor| format!(" --cor '{cor}'"));
@@ -131,7 +131,7 @@ impl DesignArgs {
         [free, cor, ratio, rho].into_iter().flatten().collect()
     }
 
-    /// Applies the changes.
+    /// Applies the overrides.
     pub(crate) fn change(&self, mut draft: Draft) -> Result<Draft, ProblemError> {
         if let Some(free) = self.free {
             draft = draft.change("--free", |design| design.with_free(free))?;
@@ -148,17 +148,17 @@ impl DesignArgs {
         Ok(draft)
     }
 
-    /// The problem to decide: its mated pose holds.
+    /// The problem, with its mated pose checked to be a rest.
     pub(crate) fn problem(&self) -> Result<Problem, ProblemError> {
         self.halves()?.checked()
     }
 
-    /// The same, also where its mated pose does not hold: for what follows no motions.
+    /// The problem without that check, for commands that follow no motions.
     pub(crate) fn halves(&self) -> Result<Problem, ProblemError> {
         self.draft()?.build()
     }
 
-    /// What the design says, or the one that was decided before; and the friction of that.
+    /// The problem of a design, or that of a stored result together with its friction coefficient.
     pub(crate) fn decided(&self, exec: &Exec) -> Result<(Problem, f64), Failure> {
         let path = &self.path;
         if !path.is_dir() {
@@ -178,7 +178,7 @@ impl DesignArgs {
     }
 }
 
-/// Reads names of errors.
+/// Parses a list of errors.
 pub(crate) fn dofs(text: &str) -> Result<DofSet, String> {
     parse_dofs(text).map_err(|complaint| with_advice(&complaint))
 }
@@ -187,7 +187,7 @@ pub(crate) fn quantity(text: &str) -> Result<Quantity, String> {
     text.parse().map_err(|complaint| with_advice(&complaint))
 }
 
-/// A complaint about the text of an option, and what to write instead.
+/// A diagnostic about the value of an option, with its advice.
 pub(crate) fn with_advice(complaint: &DesignDefect) -> String {
     escaped(&match complaint.help() {
         Some(help) => format!("{complaint}; {help}"),
@@ -217,7 +217,7 @@ mod tests {
         paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
     }
 
-    /// Requests to `view` and thousands of spoilt ones: nobody is let in without the token.
+    /// Fuzzes requests to `view` with thousands of mutations: only requests with the token are admitted.
     #[test]
     fn spoilt_requests_are_let_in_with_the_token_alone() {
         const RUNS: usize = 5000;
@@ -235,7 +235,8 @@ mod tests {
         assert!((2..RUNS).contains(&admitted), "{admitted} of {RUNS} let in");
     }
 
-    /// Command lines and thousands of spoilt ones, a word per line: read or refused with a message that steers no terminal.
+    /// Fuzzes command lines with thousands of mutations, one word per line: each is parsed, or rejected with
+    /// a message without terminal control characters.
     #[test]
     fn spoilt_command_lines_are_read_or_refused() {
         const RUNS: usize = 2000;

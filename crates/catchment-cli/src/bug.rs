@@ -1,5 +1,5 @@
-//! A panic is a bug of the program. The person is told so, where it was and what to do; files that were being written go away,
-//! and the exit code is that of every other failure.
+//! Panic handler. A panic is a bug of the program: the message reports this, with the source location and
+//! advice. Unfinished files are removed, and the exit code is that of any other failure.
 
 use crate::exit::ExitStatus;
 use catchment::exec::is_panic_expected;
@@ -7,19 +7,19 @@ use catchment::terminal::escaped;
 use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 
-/// Does the work; a panic on any of its threads ends it as a failure.
+/// Runs `work`; a panic on any of its threads ends it as a failure.
 pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
     panic::set_hook(Box::new(|bug| {
         if !is_panic_expected() {
-            // Nobody is left to tell when stderr itself is gone.
+            // If stderr itself is closed, the message is lost.
             let _ = io::stderr().lock().write_all(message(bug).as_bytes());
         }
     }));
-    // Nothing of the work is used after a panic.
+    // No state of `work` is used after a panic.
     panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(ExitStatus::NotComputed)
 }
 
-/// What is said of a panic.
+/// The message for a panic.
 fn message(bug: &PanicHookInfo<'_>) -> String {
     let message = bug.payload_as_str().unwrap_or("no message");
     let place = bug.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);

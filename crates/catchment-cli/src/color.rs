@@ -22,11 +22,11 @@ pub(crate) enum Color {
     Never,
 }
 
-/// What this process does; [`Color::Auto`] until it is chosen.
+/// The choice of this process; [`Color::Auto`] by default.
 static CHOSEN: AtomicU8 = AtomicU8::new(Color::Auto as u8);
 
 impl Color {
-    /// The choice of a command line that is not read yet: its help and its errors are coloured, too.
+    /// The choice on a command line before it is parsed, because help and parse errors are coloured, too.
     pub(crate) fn of_words(words: &[OsString]) -> Option<Self> {
         const OPTION: &str = "--color";
         let mut words = words.iter().skip(1).map_while(|word| word.to_str().filter(|word| *word != "--"));
@@ -43,7 +43,7 @@ impl Color {
         None
     }
 
-    /// From now on.
+    /// Sets the choice of this process.
     pub(crate) fn choose(self) {
         CHOSEN.store(self as u8, Ordering::Relaxed);
         let is_coloured = match self {
@@ -51,9 +51,9 @@ impl Color {
             Self::Always => Some(true),
             Self::Never => Some(false),
         };
-        // There is one already where this runs twice in a process.
+        // A second run in the same process finds the hook already set.
         let _ = miette::set_hook(Box::new(move |_| {
-            // An option that is broken at its hyphens cannot be copied.
+            // An option broken at its hyphens cannot be copied.
             let options = MietteHandlerOpts::new().word_splitter(WordSplitter::NoHyphenation);
             Box::new(
                 is_coloured.map_or_else(|| options.clone(), |colour| options.clone().color(colour)).build(),
@@ -61,7 +61,7 @@ impl Color {
         }));
     }
 
-    /// The choice so far.
+    /// The current choice.
     fn chosen() -> Self {
         let all = [Self::Auto, Self::Always, Self::Never];
         all.into_iter().find(|one| *one as u8 == CHOSEN.load(Ordering::Relaxed)).unwrap_or(Self::Auto)
@@ -77,12 +77,12 @@ pub(crate) fn is_coloured(stream: &impl IsTerminal) -> bool {
     }
 }
 
-/// Whether the user wants no colours, <https://no-color.org>.
+/// Whether the user disables colours, <https://no-color.org>.
 pub(crate) fn no_color() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
-/// The choice, for help and errors of the command line.
+/// The choice, in clap's type, for help and parse errors.
 pub(crate) fn of_help() -> ColorChoice {
     match Color::chosen() {
         Color::Auto => ColorChoice::Auto,

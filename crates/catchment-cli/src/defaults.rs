@@ -1,11 +1,12 @@
-//! Defaults of the user's own, for options that change no result: from the environment or from a file.
+//! User defaults for options that change no result: from the environment or from a file.
 //!
 //! ```text
 //!   --threads 4 ▶ CATCHMENT_THREADS=4 ▶ threads = 4 in config.toml ▶ built in
 //! ```
 //!
-//! The file is `$XDG_CONFIG_HOME/catchment/config.toml`, or `~/.config/catchment/config.toml`. A value that cannot be read is refused with
-//! its source, whatever the command does. Nothing here changes a number: --samples, --budget, --seed and --method have no such default.
+//! The file is `$XDG_CONFIG_HOME/catchment/config.toml`, or `~/.config/catchment/config.toml`. Every command
+//! rejects an invalid value and names its source. No default changes a number: --samples, --budget, --seed
+//! and --method have none.
 
 use crate::color::{Color, no_color};
 use crate::command::unit;
@@ -23,24 +24,24 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use toml::de::{DeTable, DeValue};
 
-/// What the user wants, as far as it is stated.
+/// The user's defaults; `None` for a default that is not set.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Defaults {
-    /// Worker threads; 0 is one per core.
+    /// Worker threads; 0 means one per core.
     pub(crate) threads: Option<u16>,
     /// The memory budget, in bytes.
     pub(crate) memory: Option<u64>,
-    /// The unit of files that do not state theirs, and who says so.
+    /// The unit of files that do not state theirs, with the source of this default.
     pub(crate) unit: Option<(LengthUnit, String)>,
     /// When output is coloured.
     pub(crate) color: Option<Color>,
 }
 
-/// A key of the file, which an environment variable overrides.
+/// A key of the file; its environment variable overrides it.
 struct Key {
     name: &'static str,
     variable: &'static str,
-    /// Reads a value and keeps it, with the name of its source.
+    /// Parses a value and stores it, with the name of its source.
     set: fn(&mut Defaults, &str, &str) -> Result<(), String>,
 }
 
@@ -73,21 +74,21 @@ const KEYS: [Key; 4] = [
 
 static DEFAULTS: OnceLock<Defaults> = OnceLock::new();
 
-/// The defaults of this process; those that are built in until they are loaded.
+/// The defaults of this process; the built-in ones until [`load`] has run.
 pub(crate) fn get() -> Defaults {
     DEFAULTS.get().cloned().unwrap_or_default()
 }
 
-/// Reads the defaults of this process.
+/// Loads the defaults of this process.
 ///
 /// # Errors
-/// A value that cannot be read, with its source.
+/// An invalid value, with its source.
 pub(crate) fn load() -> Result<(), Failure> {
     let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty());
     let mut defaults = match place(variable) {
-        // The home of somebody else, as after `su`, has nothing of this user.
+        // Another user's home directory, as after `su`, may be unreadable: it holds no defaults of this user.
         Some(path) if path.metadata().is_ok() => {
-            // Whatever is wrong with it: the command line would have said it.
+            // Any defect counts as a usage error, like the same value on the command line.
             let text = read_table(&path).map_err(|failure| failure.ends(ExitStatus::Usage))?;
             of_file(&text)
                 .map_err(|diagnostics| Failure::of_diagnostics(diagnostics).ends(ExitStatus::Usage))?
@@ -106,22 +107,22 @@ pub(crate) fn load() -> Result<(), Failure> {
             })?;
         }
     }
-    // A process that runs several command lines reads them once.
+    // A process that runs several command lines loads them once.
     let _ = DEFAULTS.set(defaults);
     Ok(())
 }
 
-/// Where the file may be.
+/// The path of the file, if a base directory is known.
 fn place(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<PathBuf> {
     const BELOW: [&str; 2] = ["catchment", "config.toml"];
     let home = || variable("HOME").or_else(|| if cfg!(windows) { variable("USERPROFILE") } else { None });
-    // As the specification has it, a relative path there counts for nothing.
+    // The XDG specification ignores a relative path here.
     let base = variable("XDG_CONFIG_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
     let base = base.or_else(|| Some(PathBuf::from(home()?).join(".config")))?;
     Some(base.join(BELOW[0]).join(BELOW[1]))
 }
 
-/// The defaults of a file.
+/// Parses the defaults of a file.
 fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
     let refused = |list: Vec<Diagnostic>| Diagnostics { source: Some(source.clone()), list, omitted: 0 };
     let table = DeTable::parse(&source.text).map_err(|error| {
@@ -154,7 +155,7 @@ fn of_file(source: &SourceText) -> Result<Defaults, Diagnostics> {
             list.push(Diagnostic::error("defaults", message, None).at(Some(value.span())));
         }
     }
-    // The table has its keys by their names.
+    // The TOML table is sorted by key; restore the order of the file.
     list.sort_by_key(|wrong| wrong.span.as_ref().map(|span| span.start));
     if list.is_empty() { Ok(defaults) } else { Err(refused(list)) }
 }

@@ -1,4 +1,4 @@
-//! The settings of drop tests, as a person writes them.
+//! Command-line settings of drop tests.
 
 use crate::failure::Failure;
 use crate::setting::number;
@@ -94,13 +94,13 @@ fn preset_parser() -> ValueParser {
 }
 
 impl DropArgs {
-    /// What was asked for: option, setting and value, in the order of the options.
+    /// The requested changes, each with option, setting and value, in the order of the options.
     pub(crate) fn changes(&self) -> Vec<Change> {
         let mut changes = Vec::new();
         let mut add = |option: &'static str, setting: &'static str, value: Option<Value>| {
             changes.extend(value.map(|value| Change { option, setting, value }));
         };
-        // First: what is given beside it replaces it.
+        // The preset comes first, so that other options override it.
         let preset = self.preset.as_ref();
         add("--preset", "push", preset.map(|preset| json!(preset.push)));
         add("--preset", "body", preset.map(|preset| json!(preset.body)));
@@ -143,7 +143,7 @@ impl DropArgs {
         changes
     }
 
-    /// The first option that was given.
+    /// The first option given.
     pub(crate) fn first_given(&self) -> Option<&'static str> {
         self.changes().first().map(|change| change.option)
     }
@@ -151,42 +151,43 @@ impl DropArgs {
     /// Drop tests with these settings.
     ///
     /// # Errors
-    /// A setting that no trial can be made with.
+    /// An invalid setting.
     pub(crate) fn settings(&self) -> Result<DropSettings, Failure> {
         Ok(serde_json::from_value(self.of("drop")?.settings())?)
     }
 
-    /// These settings with what was asked for, but for the number of trials and their seed, which need not be odd there.
+    /// The given settings with the options applied, except the number of trials, which need not be odd there,
+    /// and the seed.
     ///
     /// # Errors
-    /// A setting that no trial can be made with.
+    /// An invalid setting.
     pub(crate) fn on(&self, settings: DropSettings) -> Result<DropSettings, Failure> {
         let mut changes = self.changes();
         changes.retain(|change| !matches!(change.setting, "trials" | "seed"));
         Ok(serde_json::from_value(with_changes(&Method::new(settings), &changes)?.settings())?)
     }
 
-    /// Trials, where they were given.
+    /// The number of trials, if given.
     pub(crate) fn trials(&self) -> Option<usize> {
         self.trials.map(|trials| trials as usize)
     }
 
-    /// Their seed, where it was given.
+    /// The seed of the trials, if given.
     pub(crate) const fn seed(&self) -> Option<u64> {
         self.trial_seed
     }
 
-    /// Friction between the halves; 0 where nothing is said.
+    /// Friction coefficient between the halves; 0 by default.
     pub(crate) fn friction(&self) -> f64 {
         self.friction.unwrap_or_default()
     }
 
-    /// Whether it is said what pushes the half.
+    /// Whether an option sets the driving force.
     pub(crate) const fn pushes(&self) -> bool {
         self.push.is_some() || self.gravity.is_some() || self.preset.is_some()
     }
 
-    /// The option that gives a circumstance a number.
+    /// The option that fixes the value of a circumstance, if given.
     pub(crate) fn fixes(&self, of: Circumstance) -> Option<&'static str> {
         let (option, given) = match of {
             Circumstance::Speed => ("--speed", self.speed.is_some()),
@@ -202,21 +203,21 @@ impl DropArgs {
         given.then_some(option)
     }
 
-    /// A method by its name with what was asked for.
+    /// The named method with the options applied.
     ///
     /// # Errors
-    /// A setting that it does not have, or refuses.
+    /// A setting that the method lacks or rejects.
     pub(crate) fn of(&self, method: &str) -> Result<Method, Failure> {
         with_changes(&method.parse::<Method>()?, &self.changes())
     }
 }
 
-/// Two numbers.
+/// Parses two numbers.
 fn pair(text: &str) -> Result<[f64; 2], String> {
     numbers(text)
 }
 
-/// Three numbers.
+/// Parses three numbers.
 fn triple(text: &str) -> Result<[f64; 3], String> {
     numbers(text)
 }

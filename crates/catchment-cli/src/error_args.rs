@@ -1,4 +1,4 @@
-//! The errors that a person expects, for the success probability.
+//! The expected pose errors, for the success probability.
 
 use crate::failure::Failure;
 use crate::source::read_table;
@@ -25,12 +25,12 @@ pub(crate) struct ErrorArgs {
 }
 
 impl ErrorArgs {
-    /// Whether any errors are asked about.
+    /// Whether any expected errors are given.
     pub(crate) const fn is_some(&self) -> bool {
         self.error_sigma.is_some() || self.error_uniform.is_some()
     }
 
-    /// The distribution asked for, in D and radians.
+    /// The requested distribution, in D and radians.
     pub(crate) fn distribution(&self, design: &Design) -> Result<Option<Distribution>, Failure> {
         let (option, text, read) = match (&self.error_sigma, &self.error_uniform) {
             (Some(text), _) => ("--error-sigma", text, Distribution::normal(text, design)),
@@ -57,7 +57,7 @@ pub(crate) struct SpreadArgs {
 }
 
 impl SpreadArgs {
-    /// What is expected.
+    /// The expected errors: given, measured, or those of a single robot in a file.
     pub(crate) fn spread(&self, design: &Design) -> Result<Option<Spread>, Failure> {
         if let Some(path) = &self.robots {
             let mut robots = robots_of(path, design)?;
@@ -78,7 +78,7 @@ impl SpreadArgs {
     }
 }
 
-/// The robots of a file; tables that it names lie beside it.
+/// The robots of a file; paths of its tables are relative to its folder.
 pub(crate) fn robots_of(path: &Path, design: &Design) -> Result<Vec<Robot>, Failure> {
     let source = SourceText::new(path, load(path)?);
     let folder = path.parent().unwrap_or(Path::new(""));

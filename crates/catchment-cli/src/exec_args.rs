@@ -1,4 +1,4 @@
-//! How a computation runs: threads, memory, progress. Nothing here changes a result.
+//! Execution options: threads, memory, progress. No option here changes a result.
 
 use crate::defaults;
 use crate::failure::Failure;
@@ -29,21 +29,21 @@ pub(crate) struct ExecArgs {
     quiet: bool,
 }
 
-/// An [`Exec`] that signals cancel, with its progress bar, which goes away with it.
+/// An [`Exec`] that is cancelled by signals, with a progress bar that disappears when it is dropped.
 pub(crate) struct Running {
-    /// Hand it to the library.
+    /// The execution settings for the library.
     pub exec: Exec,
     bar: ProgressBar,
 }
 
 impl Running {
-    /// From now on, and until this goes away, the process may be left in the middle of a step: nothing is kept before the end, and
-    /// nothing is written.
+    /// Lets a signal end the process in the middle of a step until this value is dropped. Use it only while
+    /// nothing is stored and nothing is written.
     pub(crate) fn may_be_left(&self) {
         self.may_be_left_after(|| ());
     }
 
-    /// The same where something is kept before the end: `last` says what.
+    /// Like [`Self::may_be_left`] for commands that store intermediate results: `last` reports them.
     pub(crate) fn may_be_left_after(&self, last: impl Fn() + Send + 'static) {
         let bar = self.bar.clone();
         signals::may_leave(move || {
@@ -52,7 +52,7 @@ impl Running {
         });
     }
 
-    /// Prints something while the progress bar makes room.
+    /// Hides the progress bar while `print` runs.
     pub(crate) fn beside_bar<T>(&self, print: impl FnOnce() -> T) -> T {
         self.bar.suspend(print)
     }
@@ -65,16 +65,16 @@ impl Drop for Running {
     }
 }
 
-/// Progress where no bar can be drawn: one line per tenth of a stage, of computations that take long.
+/// Progress without a bar: one line per tenth of a stage, for long computations only.
 struct Log {
     started: Instant,
-    /// The stage that was reported last, and the tenths of it.
+    /// The last reported stage, and its completed tenths.
     stage: &'static str,
     tenths: u32,
 }
 
 impl Log {
-    /// What ends earlier than this needs no progress.
+    /// Computations shorter than this print no progress.
     const SILENT: Duration = Duration::from_secs(20);
 
     fn new() -> Self {
@@ -96,12 +96,12 @@ impl Log {
 }
 
 impl ExecArgs {
-    /// How many worker threads are asked for; 0 means one per core.
+    /// The requested number of worker threads; 0 means one per core.
     pub(crate) fn threads(&self) -> usize {
         usize::from(self.threads.or(defaults::get().threads).unwrap_or(0))
     }
 
-    /// Starts threads, progress (a bar on a terminal, lines elsewhere) and the handling of signals: once per process.
+    /// Starts threads, progress (a bar on a terminal, lines elsewhere) and signal handling: once per process.
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
         let mut exec = Exec::new().with_threads(self.threads())?;
@@ -132,16 +132,16 @@ impl ExecArgs {
     }
 }
 
-/// More threads than any machine has cores.
+/// Upper limit, above the number of cores of any machine.
 const MOST_THREADS: i64 = 1024;
 
-/// A number of threads, as `--threads` takes it.
+/// Parses a number of threads for `--threads`.
 pub(crate) fn threads(text: &str) -> Result<u16, String> {
     let number = text.parse().ok().filter(|number| i64::from(*number) <= MOST_THREADS);
     number.ok_or_else(|| format!("a number of threads is a whole number from 0 to {MOST_THREADS}"))
 }
 
-/// A size such as `4 GiB`, `500 MB` or `1e9` (bytes).
+/// Parses a size such as `4 GiB`, `500 MB` or `1e9` (bytes).
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 9] = [
         ("", 1.0),
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(log.line(0.51, "cells").as_deref(), Some("progress: 50 % after 40 s (cells)"));
         assert_eq!(log.line(0.59, "cells"), None);
         assert!(log.line(0.6, "cells").is_some() && log.line(1.0, "cells").is_some());
-        // The next stage begins anew.
+        // The next stage restarts at zero.
         assert_eq!(log.line(0.3, "limits").as_deref(), Some("progress: 30 % after 40 s (limits)"));
     }
 

@@ -1,4 +1,4 @@
-//! What the exit code says.
+//! Exit codes.
 //!
 //! ```text
 //!     0  done                          4  bad input: a file that was read has a defect
@@ -46,24 +46,25 @@ use std::error::Error;
 use std::io;
 use std::process::ExitCode;
 
-/// How a command ended.
+/// The exit status of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExitStatus {
-    /// Done; every stated requirement is met.
+    /// Done; every requirement is met.
     Done,
-    /// Done, but a stated requirement is not met.
+    /// Done, but a requirement is not met.
     RequirementNotMet,
-    /// The command line cannot be followed: unknown, contradictory or impossible options, or a place that must not be overwritten.
+    /// An unusable command line: unknown, contradictory or impossible options, or an output that must not be
+    /// overwritten.
     Usage,
-    /// A file that the command line names cannot be opened.
+    /// A file on the command line cannot be opened.
     NoSuchFile,
-    /// A file was read, and something in it is wrong.
+    /// A file was read and has a defect.
     BadInput,
-    /// There is no result: no memory, no place to write, no solution; or a bug.
+    /// No result: out of memory, output not writable, no solution; or a bug.
     NotComputed,
     /// Stopped by Ctrl-C.
     Interrupted,
-    /// Asked to end by the system, or by the terminal that went away.
+    /// Terminated by the system, or because the terminal closed.
     Terminated,
 }
 
@@ -80,7 +81,7 @@ impl ExitStatus {
         (Self::Terminated, "terminated (SIGTERM, SIGHUP)"),
     ];
 
-    /// The number for the system.
+    /// The exit code.
     pub const fn code(self) -> u8 {
         match self {
             Self::Done => 0,
@@ -89,13 +90,13 @@ impl ExitStatus {
             Self::NoSuchFile => 3,
             Self::BadInput => 4,
             Self::NotComputed => 5,
-            // 128 and the number of the signal, as shells expect.
+            // 128 plus the signal number, as shells expect.
             Self::Interrupted => 130,
             Self::Terminated => 143,
         }
     }
 
-    /// How a command ends because of an error of the library.
+    /// The exit status for an error of the library.
     pub(crate) fn of(error: &(dyn Error + 'static)) -> Self {
         if is_usage(error) {
             Self::Usage
@@ -122,7 +123,7 @@ fn is<T: Error + 'static>(error: &(dyn Error + 'static), has: impl Fn(&T) -> boo
     error.downcast_ref::<T>().is_some_and(has)
 }
 
-/// Whether the command line asks for what cannot be, whatever the files hold.
+/// Whether the command line requests the impossible, independent of the files.
 fn is_usage(error: &(dyn Error + 'static)) -> bool {
     let of_any_kind = error.is::<MethodError>()
         || error.is::<NotApplicable>()
@@ -136,7 +137,7 @@ fn is_usage(error: &(dyn Error + 'static)) -> bool {
     of_any_kind || is(error, in_the_way) || is_setting_of_run(error) || is_setting_of_study(error)
 }
 
-/// Whether something is in the way of what is to be written.
+/// Whether an existing file or folder blocks the output.
 fn in_the_way(error: &WriteError) -> bool {
     use WriteError::{
         Exists, IsFolder, MountPoint, NameTooLong, NoFolder, NotAFile, NotAResult, NotUtf8, OtherKind,
@@ -157,7 +158,7 @@ fn in_the_way(error: &WriteError) -> bool {
     )
 }
 
-/// Whether a run, an export or a comparison does not take its settings.
+/// Whether a run, an export or a comparison rejects its settings.
 fn is_setting_of_run(error: &(dyn Error + 'static)) -> bool {
     let of_method = |error: &DecideError| match error {
         DecideError::NotApplicable(_) | DecideError::NeedsGrid { .. } => true,
@@ -196,12 +197,12 @@ fn is_setting_of_run(error: &(dyn Error + 'static)) -> bool {
         || is(error, |error: &ZarrError| matches!(error, ZarrError::Write(error) if in_the_way(error)))
 }
 
-/// Whether a partition does not take its settings.
+/// Whether a partition rejects its settings.
 fn is_setting_of_partition(error: &PartitionError) -> bool {
     matches!(error, PartitionError::Setting { .. })
 }
 
-/// Whether a study does not take its settings.
+/// Whether a study rejects its settings.
 fn is_setting_of_study(error: &(dyn Error + 'static)) -> bool {
     let of_depth = |error: &DepthError| matches!(error, DepthError::Resolution(_) | DepthError::Friction);
     is(error, |error: &WindowError| {
@@ -249,7 +250,7 @@ fn is_setting_of_study(error: &(dyn Error + 'static)) -> bool {
         })
 }
 
-/// Whether a file was read, and something in it is wrong; what is wrong at a place of a text has its own way.
+/// Whether a file was read and has a defect; defects with a place in a text take another path.
 fn is_bad_input(error: &(dyn Error + 'static)) -> bool {
     error.is::<LoadError>()
         || error.is::<GeometryError>()

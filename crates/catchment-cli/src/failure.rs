@@ -1,4 +1,4 @@
-//! Why a command could not do its work, and how that is shown.
+//! The reasons why a command failed, and their display.
 
 use crate::advice;
 use crate::exit::ExitStatus;
@@ -10,22 +10,22 @@ use miette::{MietteDiagnostic, Report};
 use std::any::Any;
 use std::io::Write;
 
-/// Reports for stderr; `?` makes one of any error.
+/// Reports for stderr; `?` converts any error into it.
 #[derive(Debug)]
 pub(crate) struct Failure {
     reports: Vec<Report>,
     closing: Option<String>,
-    /// How the command ends; done where the reader of stdout went away.
+    /// The exit status; [`ExitStatus::Done`] if the reader of stdout closed the pipe.
     status: ExitStatus,
 }
 
 impl Failure {
-    /// Reports and a closing line, such as their number.
+    /// Several reports and a closing line, such as their number.
     pub(crate) fn many(reports: Vec<Report>, closing: Option<String>, status: ExitStatus) -> Self {
         Self { reports, closing, status }
     }
 
-    /// A message with advice, about the command line unless [`Self::ends`] says so.
+    /// A message with advice; a usage error unless [`Self::ends`] changes the status.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
         Self::many(
             vec![Report::new(report(&Diagnostic::error("usage", message, help)))],
@@ -34,17 +34,17 @@ impl Failure {
         )
     }
 
-    /// An error of the library with advice of the command line.
+    /// An error of the library with command-line advice.
     pub(crate) fn explained<E: std::error::Error + 'static>(error: &E, help: Option<String>) -> Self {
         Self::with_help(error.to_string(), help).ends(ExitStatus::of(error))
     }
 
-    /// The same, with another end of the command.
+    /// The same failure with another exit status.
     pub(crate) fn ends(self, status: ExitStatus) -> Self {
         Self { status, ..self }
     }
 
-    /// Everything that is wrong with the text of an option.
+    /// All diagnostics about the value of an option.
     pub(crate) fn of_option(option: &str, text: &str, refusal: Diagnostics) -> Self {
         let count = refusal.list.len() + refusal.omitted;
         let reports =
@@ -54,24 +54,24 @@ impl Failure {
         Self::many(reports.collect(), closing, ExitStatus::Usage)
     }
 
-    /// The reader of stdout went away.
+    /// The reader of stdout closed the pipe.
     pub(crate) fn broken_pipe() -> Self {
         Self::many(Vec::new(), None, ExitStatus::Done)
     }
 
-    /// What it says, without colours: for a page.
+    /// Its text without colours, for a page.
     pub(crate) fn text(&self) -> String {
         let words: Vec<String> = self.reports.iter().map(ToString::to_string).collect();
         words.join("\n")
     }
 
-    /// Prints it on stderr and says how the command ended.
+    /// Prints the failure on stderr and returns the exit status.
     pub(crate) fn show(self) -> ExitStatus {
         if self.status == ExitStatus::Done {
             return self.status;
         }
         let mut stderr = std::io::stderr().lock();
-        // Nobody is left to tell when stderr itself is gone.
+        // If stderr itself is closed, the message is lost.
         if let Some(status) = signals::received() {
             let _ = writeln!(stderr, "interrupted; {}", output::what_was_written());
             return status;
@@ -89,7 +89,7 @@ impl Failure {
 impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         let mut error = Some(error);
-        // Errors that know their places are shown there.
+        // Errors with a known place are shown there.
         if let Some(problem) = taken::<_, ProblemError>(&mut error) {
             return Self::of_problem(problem);
         }
@@ -101,8 +101,8 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// A diagnostic for the terminal. It may repeat what a file or its name says: neither steers the terminal, nor begins a line that
-/// looks like one of the program's own.
+/// Formats a diagnostic for the terminal. It may quote file contents or names; these can neither emit control
+/// characters nor begin a line that imitates the program's output.
 pub(crate) fn report(diagnostic: &Diagnostic) -> MietteDiagnostic {
     let mut report = MietteDiagnostic::new(escaped(diagnostic.message.trim_end()));
     let help = diagnostic.advice.as_ref().and_then(advice::flags);
@@ -110,7 +110,7 @@ pub(crate) fn report(diagnostic: &Diagnostic) -> MietteDiagnostic {
     report
 }
 
-/// The message of an error, and those of its causes that it does not repeat itself.
+/// The message of an error, followed by those of its causes that it does not already contain.
 fn with_causes(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();
     let causes = std::iter::successors(error.source(), |cause| cause.source());
@@ -122,7 +122,7 @@ fn with_causes(error: &dyn std::error::Error) -> String {
     message
 }
 
-/// The error, if it is a `T`.
+/// Takes the error out if it is a `T`.
 fn taken<E: 'static, T: 'static>(error: &mut Option<E>) -> Option<T> {
     (error as &mut dyn Any).downcast_mut::<Option<T>>().and_then(Option::take)
 }

@@ -1,11 +1,12 @@
-//! The subcommands in the order and in the groups of the help.
+//! The subcommands in the order and the groups of the help.
 //!
 //! ```text
 //!   catchment -h      question, groups, first commands       one screen
-//!   catchment --help  the same, and what scripts rely on
+//!   catchment --help  the same, and the interface for scripts
 //! ```
 //!
-//! Summaries come from the subcommands themselves; a test holds that every subcommand stands in exactly one group.
+//! The subcommands supply their own summaries; a test checks that every subcommand belongs to exactly one
+//! group.
 
 use clap::Command;
 use std::fmt::Write;
@@ -14,11 +15,11 @@ use std::fmt::Write;
 pub(crate) struct Group {
     /// The heading.
     pub(crate) heading: &'static str,
-    /// The names of the subcommands, in their order.
+    /// The names of the subcommands, in order.
     pub(crate) names: &'static [&'static str],
 }
 
-/// Every subcommand that the help lists.
+/// The groups, with every subcommand that the help lists.
 pub(crate) const GROUPS: [Group; 6] = [
     Group {
         heading: "Every day",
@@ -37,29 +38,29 @@ pub(crate) const GROUPS: [Group; 6] = [
     Group { heading: "Tools", names: &["schema", "completions", "man", "solids", "help"] },
 ];
 
-/// Which commands come first.
+/// The first commands to run.
 const FIRST: &str = "  catchment place socket.stl plug.stl --unit mm -o design.toml
   catchment check design.toml
   catchment run design.toml -o out
   (no parts at hand: catchment new pyramid -o design.toml)";
 
-/// The summary of the subcommand that clap adds itself.
+/// The summary of the subcommand that clap adds.
 const HELP: &str = "Print the help of a command";
 
-/// The command line whose help lists the groups.
+/// The command line with grouped help.
 pub(crate) fn grouped(command: Command) -> Command {
     let listed = listed(&command);
     command.help_template(listed)
 }
 
-/// The help, but for what follows the options.
+/// The help text, up to the options.
 fn listed(command: &Command) -> String {
     let (header, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
     let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
     let names = || GROUPS.iter().flat_map(|group| group.names);
     let width = names().map(|name| name.len()).max().unwrap_or(0);
     for (number, Group { heading, names }) in GROUPS.iter().enumerate() {
-        // The daily ones stand apart; the rest shall fit on the screen, too.
+        // The daily commands stand apart; the other groups are closed up to fit on the screen.
         let gap = if number < 2 { "\n" } else { "" };
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{gap}{header}{heading}:{header:#}");
@@ -90,7 +91,8 @@ mod tests {
         assert_eq!(all, grouped);
     }
 
-    /// Numbers of sampled poses are `--samples`, cells per axis `--resolution`: other names are aliases that no help shows.
+    /// Numbers of sampled poses are `--samples`, cells per axis `--resolution`: other names are hidden
+    /// aliases.
     #[test]
     fn one_meaning_has_one_name() {
         const OLD: [&str; 7] =
@@ -102,7 +104,7 @@ mod tests {
         }
     }
 
-    /// Plain lines of 80 columns, about as many as a screen has.
+    /// Plain lines of at most 80 columns, about one screen in total.
     #[test]
     fn the_help_fits_on_a_screen() {
         let help = args::command().render_help().to_string();

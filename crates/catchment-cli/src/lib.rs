@@ -1,7 +1,8 @@
 //! The `catchment` command: typed arguments → meaning → library → print.
 //!
-//! Data goes to stdout, everything else to stderr. Exit codes: see [`ExitStatus`]. It is a library so that the fuzzer reads
-//! command lines as the program does, and Python's wheel has the program; nothing here is promised to others.
+//! Data goes to stdout, everything else to stderr. Exit codes: see [`ExitStatus`]. It is a library so that
+//! the fuzzer parses command lines like the program, and so that Python's wheel includes the program. The API
+//! is not promised to other users.
 
 mod advice;
 mod args;
@@ -30,16 +31,16 @@ pub use exit::ExitStatus;
 use color::Color;
 use std::ffi::OsString;
 
-/// Does what the command line of this process says.
+/// Runs the command line of this process.
 pub fn run() -> ExitStatus {
     run_words(std::env::args_os())
 }
 
-/// Does what a command line says; its first word is the name of the program.
+/// Runs a command line; its first word is the name of the program.
 pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitStatus {
     signals::outlive_file_limits();
     let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
-    // Whoever reads JSON types nothing.
+    // JSON output goes to a program, which needs no suggestion of a next command.
     let is_read = words.iter().any(|word| word == "--json");
     bug::caught(|| {
         let loaded = defaults::load();
@@ -61,8 +62,8 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
     })
 }
 
-/// What is said of a command line that cannot be read, as it reaches a terminal; nothing of one that can, or that asks for help.
-/// The first word is the name of the program.
+/// The error message for an invalid command line, as printed on a terminal; `None` for a valid command line
+/// or a request for help. The first word is the name of the program.
 pub fn usage_error(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
     let mut usage = args::parse(words).err().filter(clap::Error::use_stderr)?;
     usage::advise(&mut usage);
@@ -70,7 +71,7 @@ pub fn usage_error(words: impl IntoIterator<Item = impl Into<OsString> + Clone>)
     Some(usage::still_steering(&usage).unwrap_or_else(|| usage.to_string()))
 }
 
-/// What the head of a request to `view` asks for below its token, if it is let in.
+/// The path below the token in the head of a request to `view`, if the request is admitted.
 pub fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
     command::admitted(head, port, token)
 }

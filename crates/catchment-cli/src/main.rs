@@ -1,4 +1,4 @@
-//! The `catchment` command, on an allocator that ends it with a message when memory is out.
+//! The `catchment` command, with an allocator that reports running out of memory and ends the process.
 
 mod allocation;
 

@@ -1,4 +1,4 @@
-//! A method and its settings, as a person writes them.
+//! Command-line choice of a method and its settings.
 
 use crate::drop_args::DropArgs;
 use crate::failure::Failure;
@@ -19,7 +19,7 @@ pub(crate) struct MethodArgs {
     pub(crate) settings: SettingArgs,
 }
 
-/// Heading of the settings that a single method has.
+/// Heading of the settings that belong to a single method.
 const SETTINGS: &str = "Method settings";
 
 /// Settings of methods.
@@ -73,12 +73,12 @@ impl SettingArgs {
         changes
     }
 
-    /// A method with what was asked for.
+    /// The method with the options applied.
     pub(crate) fn of(&self, method: &Method) -> Result<Method, Failure> {
         with_changes(method, &self.changes())
     }
 
-    /// Every method, each with those settings that it has; each setting belongs to one of them.
+    /// Every method with those options applied that it supports; each setting belongs to one method.
     pub(crate) fn of_all(&self) -> Result<Vec<Method>, Failure> {
         let changes = self.changes();
         Method::all()
@@ -92,23 +92,23 @@ impl SettingArgs {
 }
 
 impl PoseMethodArgs {
-    /// The method with what was asked for.
+    /// The method with the options applied.
     pub(crate) fn of(&self) -> Result<Method, Failure> {
         with_changes(&self.method, &self.drop.changes())
     }
 }
 
-/// One method, or all of them.
+/// One method, or all methods.
 #[derive(Debug, Clone)]
 pub(crate) enum Choice {
     One(Method),
     All,
 }
 
-/// What stands for all methods.
+/// The name for all methods.
 const ALL: &str = "all";
 
-/// What a person may write for some of the methods.
+/// The accepted names of the selected methods.
 fn possible(which: impl Fn(&RegistryEntry) -> bool) -> Vec<PossibleValue> {
     REGISTRY
         .iter()
@@ -117,18 +117,18 @@ fn possible(which: impl Fn(&RegistryEntry) -> bool) -> Vec<PossibleValue> {
         .collect()
 }
 
-/// Reads the name of one method.
+/// Parser of a method name.
 pub(crate) fn method_parser() -> ValueParser {
     PossibleValuesParser::new(possible(|_| true)).try_map(|name| name.parse::<Method>()).into()
 }
 
-/// Reads the name of a method that decides each pose by itself.
+/// Parser of the name of a method that decides each pose independently.
 pub(crate) fn pose_method_parser() -> ValueParser {
     let by_pose = |entry: &RegistryEntry| entry.method().follows().is_some();
     PossibleValuesParser::new(possible(by_pose)).try_map(|name| name.parse::<Method>()).into()
 }
 
-/// Reads the name of one method, or `all`.
+/// Parser of a method name, or `all`.
 fn choice_parser() -> ValueParser {
     let all = PossibleValue::new(ALL).help("every method that applies, side by side, and how they agree");
     PossibleValuesParser::new(possible(|_| true).into_iter().chain([all]))

@@ -1,4 +1,4 @@
-//! Where text goes: stdout, or a file that is there whole or not at all.
+//! Output of text: to stdout, or to a file that is written completely or not at all.
 
 use crate::color::is_coloured;
 use crate::exit::ExitStatus;
@@ -26,33 +26,33 @@ pub(crate) struct OutputArgs {
 }
 
 impl OutputArgs {
-    /// Into this file, or to stdout.
+    /// Output to this file, or to stdout.
     pub(crate) const fn new(output: Option<PathBuf>, force: bool) -> Self {
         Self { output, force }
     }
 
-    /// The file, if there is one.
+    /// The file, if any.
     fn file(&self) -> Option<&Path> {
         file(self.output.as_deref())
     }
 
-    /// Whether stdout is named.
+    /// Whether the option names stdout.
     pub(crate) fn names_stdout(&self) -> bool {
         self.output.as_deref().is_some_and(is_stream)
     }
 
-    /// Refuses what cannot be written in the end, before anything is computed.
+    /// Rejects an unwritable output before the computation.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         self.file().map_or(Ok(()), |path| check_place(path, self.force))
     }
 
-    /// Refuses what cannot be written where the command is interrupted.
+    /// Rejects an unwritable file for partial results of an interrupted command.
     pub(crate) fn check_partial(&self) -> Result<(), Failure> {
         self.partial().map_or(Ok(()), |path| check_place(&path, self.force))
     }
 
-    /// Writes what was finished of a text: not where it should go, which would look like the whole, but beside that. Where it went, if
-    /// into a file.
+    /// Writes the finished part of a text: not to the requested file, which would then look complete, but to
+    /// a file beside it. Returns the path of that file, if any.
     pub(crate) fn write_partial(&self, text: &str) -> Result<Option<PathBuf>, Failure> {
         let path = self.partial();
         match &path {
@@ -62,19 +62,19 @@ impl OutputArgs {
         Ok(path)
     }
 
-    /// The file beside the one to write.
+    /// The file for partial results, beside the requested file.
     fn partial(&self) -> Option<PathBuf> {
         let mut path = self.file()?.to_owned().into_os_string();
         path.push(".partial");
         Some(path.into())
     }
 
-    /// Whether it is printed, so that parts of it can be told before the whole is there.
+    /// Whether the output goes to stdout, so that finished parts can be printed early.
     pub(crate) fn is_printed(&self) -> bool {
         self.file().is_none()
     }
 
-    /// Writes `text` where it should go.
+    /// Writes `text` to the output.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         match self.file() {
             Some(path) => write_file(path, text.as_bytes(), self.force),
@@ -83,7 +83,7 @@ impl OutputArgs {
     }
 }
 
-/// The file that `-o` names: `-` is stdout.
+/// The file of `-o`; `None` for `-`, which is stdout.
 pub(crate) fn file(output: Option<&Path>) -> Option<&Path> {
     output.filter(|path| !is_stream(path))
 }
@@ -100,12 +100,12 @@ pub(crate) struct FileArgs {
     force: bool,
 }
 
-/// Options that name files to write.
+/// Heading of the options that name output files.
 const FILES: &str = "files";
 
 impl FileArgs {
-    /// Which of the `known` endings the file has, where one is asked for. Refuses what cannot be written in the
-    /// end, before anything is computed.
+    /// The ending of the requested file among the `known` ones. Rejects an unwritable file before the
+    /// computation.
     pub(crate) fn kind(&self, known: &[&'static str]) -> Result<Option<&'static str>, Failure> {
         let Some(path) = file(self.output.as_deref()) else { return Ok(None) };
         let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
@@ -120,12 +120,12 @@ impl FileArgs {
         Ok(Some(kind))
     }
 
-    /// Writes a picture of this kind, if a file is asked for.
+    /// Writes a picture of this kind, if a file is requested.
     pub(crate) fn draw(&self, kind: &str, picture: &Picture) -> Result<(), Failure> {
         self.write(&image(picture, kind)?)
     }
 
-    /// Writes the file, if one is asked for.
+    /// Writes the file, if one is requested.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         file(self.output.as_deref()).map_or(Ok(()), |path| write_file(path, bytes, self.force))
     }
@@ -134,18 +134,18 @@ impl FileArgs {
 /// Pixels per unit of a picture.
 const PNG_SCALE: f32 = 2.0;
 
-/// A picture as a file of this kind: png, else svg.
+/// Encodes a picture as png if `kind` is png, else as svg.
 pub(crate) fn image(picture: &Picture, kind: &str) -> Result<Vec<u8>, Failure> {
     if kind == "png" { Ok(picture.png(PNG_SCALE)?) } else { Ok(picture.svg().as_bytes().to_vec()) }
 }
 
-/// Tries out whether a file can be written at `path`.
+/// Checks that a file can be written at `path`.
 pub(crate) fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
     write::check_file(path, replace).map_err(refused)
 }
 
-/// Refuses two files of one command that are one and the same, whatever they are called: the second would replace the first, or fail when
-/// everything is computed.
+/// Rejects two outputs of one command that are the same file under different names: the second would replace
+/// the first, or fail after the computation.
 pub(crate) fn check_apart(first: Option<&Path>, second: Option<&Path>) -> Result<(), Failure> {
     let Some((first, second)) = first.zip(second) else { return Ok(()) };
     if place(first)? != place(second)? {
@@ -155,16 +155,16 @@ pub(crate) fn check_apart(first: Option<&Path>, second: Option<&Path>) -> Result
     Err(Failure::with_help(message, Some("give two names".to_owned())))
 }
 
-/// Where a path leads, whatever way it takes.
+/// The real path, with links resolved.
 fn place(path: &Path) -> Result<PathBuf, Failure> {
     let place = write::place(path)?;
     let parent = place.parent().filter(|parent| !parent.as_os_str().is_empty());
-    // A folder that is not there is told where the file is looked at.
+    // The check of the file itself reports a missing folder.
     let folder = parent.unwrap_or_else(|| Path::new(".")).canonicalize().unwrap_or_default();
     Ok(folder.join(place.file_name().unwrap_or_default()))
 }
 
-/// What cannot be written, with the option that helps.
+/// The error, with the option that resolves it.
 fn refused(error: WriteError) -> Failure {
     match error {
         WriteError::Exists { .. } => {
@@ -174,15 +174,15 @@ fn refused(error: WriteError) -> Failure {
     }
 }
 
-/// What this process has completed.
+/// The files and folders that this process has completed.
 static WRITTEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// A file or folder is complete, whatever happens from now on.
+/// Records a completed file or folder.
 pub(crate) fn written(path: &Path) {
     kept(&shown(path).to_string());
 }
 
-/// Something is complete, whatever happens from now on.
+/// Records a completed item.
 pub(crate) fn kept(what: &str) {
     let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     if !written.iter().any(|known| known == what) {
@@ -190,7 +190,7 @@ pub(crate) fn kept(what: &str) {
     }
 }
 
-/// What is there although the command did not come to its end.
+/// The completed files and folders, for the message of a command that stopped early.
 pub(crate) fn what_was_written() -> String {
     let written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     if written.is_empty() {
@@ -200,28 +200,28 @@ pub(crate) fn what_was_written() -> String {
     }
 }
 
-/// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns.
+/// The text layout on stdout: the width of the terminal or of `COLUMNS`, else 80 columns.
 pub(crate) fn style(details: bool) -> Style {
     Style { colour: is_coloured(&io::stdout()), ..layout(details) }
 }
 
-/// Diagnostics as lines of stderr, for what no report holds.
+/// Diagnostics as lines for stderr, if no report contains them.
 pub(crate) fn lines(list: &[Diagnostic]) -> Vec<String> {
     let unwrapped = Style { columns: usize::MAX, ..Style::default() };
     document::diagnostics(list, unwrapped).iter().flat_map(|text| text.lines().map(str::to_owned)).collect()
 }
 
-/// The warnings of a report, on stderr.
+/// Prints the warnings of a report on stderr.
 pub(crate) fn warn(warnings: &[Diagnostic]) {
     let style = Style { colour: is_coloured(&io::stderr()), ..layout(true) };
     let mut stderr = io::stderr().lock();
     for warning in document::diagnostics(warnings, style) {
-        // Nobody is left to tell when stderr itself is gone.
+        // If stderr itself is closed, the message is lost.
         let _ = stderr.write_all(warning.as_bytes());
     }
 }
 
-/// The width of a text, without colours.
+/// The text layout without colours.
 fn layout(details: bool) -> Style {
     let stated = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let is_terminal = io::stdout().is_terminal();
@@ -232,7 +232,7 @@ fn layout(details: bool) -> Style {
     Style { columns, details, ..default }
 }
 
-/// Prints data. A reader that went away (`| head`) ends the command quietly.
+/// Prints data. A closed pipe (`| head`) ends the command quietly.
 pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -245,23 +245,23 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints data, and beside it what else a person should know.
+/// Prints data on stdout and notes on stderr.
 pub(crate) fn tell(data: &str, notes: &[String]) -> Result<ExitStatus, Failure> {
     to_stdout(data)?;
     to_stderr(notes);
     Ok(ExitStatus::Done)
 }
 
-/// Tells the person something beside the data, a line each.
+/// Prints notes on stderr, one line each.
 pub(crate) fn to_stderr(lines: &[String]) {
     let mut stderr = io::stderr().lock();
     for line in lines {
-        // Nobody is left to tell when stderr itself is gone.
+        // If stderr itself is closed, the message is lost.
         let _ = writeln!(stderr, "{}", escaped(line));
     }
 }
 
-/// Writes a file, which is there whole or not at all.
+/// Writes a file completely or not at all.
 pub(crate) fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), Failure> {
     write::file(path, bytes, replace).map_err(refused)?;
     written(path);

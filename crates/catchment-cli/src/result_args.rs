@@ -1,4 +1,4 @@
-//! How a result is printed and stored, alike on every command that has one.
+//! Printing and storage of results, the same for every command that has one.
 //!
 //! ```text
 //!   report ──┬─▶ stdout         text; --json, --csv
@@ -69,12 +69,12 @@ pub(crate) struct ResultArgs {
     force: bool,
 }
 
-/// Reads a requirement.
+/// Parses a requirement.
 fn requirement(text: &str) -> Result<Requirement, String> {
     text.parse::<Requirement>().map_err(|error| escaped(&error.to_string()))
 }
 
-/// What a path receives.
+/// The content of an output path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Json,
@@ -85,11 +85,11 @@ pub(crate) enum Kind {
     Png,
     Svg,
     Folder,
-    /// What the command writes itself, by its ending.
+    /// A file that the command writes itself, by its ending.
     Own(&'static str),
 }
 
-/// Every ending that a file may have.
+/// All supported endings of files.
 const ENDINGS: [(&str, Kind); 7] = [
     ("json", Kind::Json),
     ("csv", Kind::Csv),
@@ -101,7 +101,7 @@ const ENDINGS: [(&str, Kind); 7] = [
 ];
 
 impl Kind {
-    /// By the ending of a path; one without an ending is a folder. `own` endings precede the others.
+    /// The kind by the ending of a path; a path without an ending is a folder. `own` endings take precedence.
     fn of(path: &Path, drawable: bool, own: &[&'static str]) -> Result<Self, Failure> {
         let Some(ending) = path.extension().and_then(OsStr::to_str) else { return Ok(Self::Folder) };
         let own = own.iter().map(|name| (*name, Self::Own(name)));
@@ -114,7 +114,7 @@ impl Kind {
         Err(Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help)))
     }
 
-    /// By the ending of a path that receives the whole report as one text.
+    /// The kind by the ending of a path that receives the whole report as one text.
     pub(crate) fn of_text(path: &Path) -> Option<Self> {
         Self::of(path, false, &[]).ok().filter(|kind| !matches!(kind, Self::Csv | Self::Folder))
     }
@@ -128,7 +128,7 @@ impl Kind {
     }
 }
 
-/// Places that were tried out before anything is computed.
+/// Output destinations, checked before the computation.
 #[derive(Debug)]
 pub(crate) struct Output<'a> {
     print: &'a PrintArgs,
@@ -140,12 +140,12 @@ pub(crate) struct Output<'a> {
     drawable: bool,
 }
 
-/// Pictures under the names of their files.
+/// Pictures with their file names.
 pub(crate) type Pictures = Vec<(&'static str, Picture)>;
 
 impl ResultArgs {
-    /// The same of a command that writes one table, into the file of -o in place of stdout: whether it is JSON, and where it goes. `own` are
-    /// endings of files that hold something else.
+    /// Output of a command that writes one table to the file of -o instead of stdout: whether the table is
+    /// JSON, and its destination. `own` are endings of files with other contents.
     pub(crate) fn as_table(&self, own: &[&'static str]) -> Result<(bool, OutputArgs), Failure> {
         let refused =
             |message: &str, help: &str| Err(Failure::with_help(message.to_owned(), Some(help.to_owned())));
@@ -182,13 +182,13 @@ impl ResultArgs {
         file(self.output.as_deref())
     }
 
-    /// Refuses, before anything is computed, what cannot be written and requirements that no report of this kind answers. `drawable`: whether there is a
-    /// picture of it.
+    /// Rejects, before the computation, unwritable outputs and requirements that no report of this kind can
+    /// answer. `drawable`: whether the report has a picture.
     pub(crate) fn check(&self, report: &'static str, drawable: bool) -> Result<Output<'_>, Failure> {
         self.check_all(report, report, drawable, &[])
     }
 
-    /// The same; table and picture have this name in a folder, and not that of the report.
+    /// Like [`Self::check`], with this name for table and picture in a folder instead of the report's name.
     pub(crate) fn check_named(
         &self,
         report: &'static str,
@@ -197,7 +197,8 @@ impl ResultArgs {
         self.check_all(report, name, true, &[])
     }
 
-    /// The same of a command that writes files with some endings itself; [`Output::own`] says whether one is to be written.
+    /// Like [`Self::check`] for a command that writes files with some endings itself; [`Output::own`] returns
+    /// the ending to write.
     pub(crate) fn check_with(
         &self,
         report: &'static str,
@@ -247,30 +248,31 @@ impl ResultArgs {
         Ok(Output { print: &self.print, force: self.force, file, figure, name, drawable })
     }
 
-    /// Refuses requirements that no report of this kind meets or fails. `absent` are places that are null with the options at hand.
+    /// Rejects requirements that no report of this kind can answer. `absent` are places that are null with
+    /// the given options.
     pub(crate) fn check_requirements(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         self.print.check(report, absent)
     }
 
-    /// Whether a file is named that holds a picture.
+    /// Whether a named file holds a picture.
     pub(crate) fn names_picture(&self) -> bool {
         let of = |path: &Path| Kind::of(path, true, &[]).is_ok_and(Kind::is_picture);
         self.figure.is_some() || self.output().is_some_and(of)
     }
 
-    /// Refuses requirements on items that a list of the report does not have.
+    /// Rejects requirements on items that a list of the report does not have.
     pub(crate) fn check_items(&self, list: &str, names: &[&str]) -> Result<(), Failure> {
         self.print.check_each(|requirement| requirement.check_items(list, names))
     }
 
-    /// What must hold of the report.
+    /// The requirements on the report.
     pub(crate) fn requirements(&self) -> &[Requirement] {
         &self.print.require
     }
 }
 
 impl<'a> Output<'a> {
-    /// Of a command with options of its own for what is printed and where it is written.
+    /// The output of a command with its own options for printing and storage.
     pub(crate) fn of(
         print: &'a PrintArgs,
         path: Option<&'a Path>,
@@ -290,12 +292,12 @@ impl<'a> Output<'a> {
         Ok(Self { print, force, file, figure: None, name: report, drawable: true })
     }
 
-    /// The folder, for a command that fills it itself.
+    /// Takes the folder, for a command that fills it itself.
     pub(crate) fn take_folder(&mut self) -> Option<&'a Path> {
         self.file.take_if(|(_, kind)| *kind == Kind::Folder).map(|(path, _)| path)
     }
 
-    /// The ending of the file that the command writes itself, if there is one.
+    /// The ending of the file that the command writes itself, if any.
     pub(crate) fn own(&self) -> Option<&'static str> {
         match self.file {
             Some((_, Kind::Own(ending))) => Some(ending),
@@ -308,7 +310,7 @@ impl<'a> Output<'a> {
         self.file.map_or(Ok(()), |(path, _)| write_file(path, bytes, self.force))
     }
 
-    /// The same without its pictures, where there is nothing to draw.
+    /// The same output without pictures, for a report without a drawing.
     pub(crate) fn without_picture(self) -> Self {
         let kept = |place: &(&Path, Kind)| !place.1.is_picture();
         Self { file: self.file.filter(kept), figure: self.figure.filter(kept), drawable: false, ..self }
@@ -328,7 +330,8 @@ impl<'a> Output<'a> {
         self.figure.is_some() || self.file.is_some_and(is_drawn)
     }
 
-    /// Writes and prints a report, and says which requirements it does not meet. `draw` makes its picture, if there is one.
+    /// Writes and prints a report, and reports the requirements that it does not meet. `draw` makes its
+    /// picture, if any.
     pub(crate) fn finish<B: Printed + Serialize>(
         self,
         report: &ReportEnvelope<B>,
@@ -339,8 +342,8 @@ impl<'a> Output<'a> {
         self.print(report, &notes)
     }
 
-    /// Writes the files of a report, and says what a folder received. `draw` makes its pictures: a file gets the first, a folder gets all. `more` adds to the
-    /// folder, and names what it added.
+    /// Writes the files of a report, and reports the files written into a folder. `draw` makes its pictures:
+    /// a file gets the first, a folder gets all. `more` adds files to the folder and returns their names.
     pub(crate) fn write<B: Printed + Serialize>(
         &self,
         report: &ReportEnvelope<B>,
@@ -379,7 +382,7 @@ impl<'a> Output<'a> {
         Ok(notes)
     }
 
-    /// Prints a report, and notes beside it; says which requirements it does not meet.
+    /// Prints a report with notes; reports the requirements that it does not meet.
     pub(crate) fn print<B: Printed + Serialize>(
         &self,
         report: &ReportEnvelope<B>,
@@ -392,7 +395,8 @@ impl<'a> Output<'a> {
 }
 
 impl PrintArgs {
-    /// Refuses requirements that no report of this kind answers. `absent` are places that are null with the options at hand.
+    /// Rejects requirements that no report of this kind can answer. `absent` are places that are null with
+    /// the given options.
     fn check(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
         let Some(schema) = json_schema::of_kind(report) else { return Ok(()) };
         self.check_each(|requirement| requirement.check(&schema, absent))
@@ -409,7 +413,7 @@ impl PrintArgs {
         Ok(())
     }
 
-    /// Prints a report, and says which requirements it does not meet.
+    /// Prints a report, and reports the requirements that it does not meet.
     pub(crate) fn print<B: Printed + Serialize>(
         &self,
         report: &ReportEnvelope<B>,
@@ -456,10 +460,10 @@ fn table<B: Printed>(report: &ReportEnvelope<B>) -> Result<Vec<u8>, Failure> {
     Ok(csv(&records)?)
 }
 
-/// A picture of a report of a problem.
+/// Draws the report of a problem.
 pub(crate) type Draw<T> = fn(&ReportOf<T>, &Problem) -> Result<Picture, Failure>;
 
-/// Computes a result of a design, prints and stores it: what every study does.
+/// The common sequence of every study: computes a result of a design, prints and stores it.
 pub(crate) fn study<T: Subject>(
     design: &DesignArgs,
     result: &ResultArgs,
@@ -486,7 +490,7 @@ const NOTHING_TO_REPLACE: &str = "--force replaces files, and none is to be writ
 
 const NO_PICTURE: &str = "there is no picture of this result";
 
-/// Asked for a picture of something that has none: refused before anything was computed.
+/// The error for a requested picture of a report without one, raised before the computation.
 pub(crate) fn no_picture() -> Failure {
     Failure::with_help(NO_PICTURE.to_owned(), None)
 }

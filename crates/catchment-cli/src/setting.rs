@@ -5,10 +5,10 @@ use catchment::method::{Method, MethodError};
 use catchment::suggest::number_help;
 use serde_json::{Map, Value};
 
-/// Reads a plain number of an option: finite, and its unit is that of the option.
+/// Parses a plain finite number; the option defines its unit.
 ///
 /// # Errors
-/// What to write instead.
+/// Advice on the expected format.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -20,18 +20,18 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A setting that was given by an option.
+/// A setting given by an option.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Change {
     /// The option.
     pub(crate) option: &'static str,
     /// The setting that it changes.
     pub(crate) setting: &'static str,
-    /// To what.
+    /// The new value.
     pub(crate) value: Value,
 }
 
-/// A method with some of its settings changed; a refusal names the option.
+/// A method with some of its settings changed; an error names the option.
 pub(crate) fn with_changes(method: &Method, changes: &[Change]) -> Result<Method, Failure> {
     let map: Map<String, Value> =
         changes.iter().map(|change| (change.setting.to_owned(), change.value.clone())).collect();

@@ -1,13 +1,14 @@
-//! Being asked to end: by Ctrl-C, by the system, by a terminal that goes away.
+//! Termination signals: Ctrl-C, termination by the system, a closed terminal.
 //!
 //! ```text
 //!   SIGINT            130 ──┐
-//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again: remove what is unfinished, end at once
+//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again: remove unfinished files, end at once
 //! ```
 //!
-//! A computation whose steps take long, and of which nothing is kept before its end, is left after half a second ([`may_leave`]).
+//! A computation with long steps that stores nothing before its end is abandoned after half a second
+//! ([`may_leave`]).
 //!
-//! A signal that whoever started the program had it ignore (`nohup`, a script's background) stays ignored.
+//! A signal that the parent process set to be ignored (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
 use crate::output::what_was_written;
@@ -21,16 +22,16 @@ use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Nothing was received.
+/// No signal received.
 const NONE: u8 = 0;
 
 static RECEIVED: AtomicU8 = AtomicU8::new(NONE);
 
-/// The same where the system gave no thread to listen.
+/// The signal received, if the system provides no listener thread.
 #[cfg(unix)]
 static NOTED: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 
-/// How the command ends because of a signal, if there was one.
+/// The exit status of the received signal, if any.
 pub(crate) fn received() -> Option<ExitStatus> {
     let received = usize::from(RECEIVED.load(Ordering::Relaxed));
     #[cfg(unix)]
@@ -40,26 +41,27 @@ pub(crate) fn received() -> Option<ExitStatus> {
         .find(|status| usize::from(status.code()) == received)
 }
 
-/// How long a computation that may be left has to stop by itself, and to end what it started.
+/// Time for a computation that may be abandoned to stop by itself and to end what it started.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Tidies the terminal before the process ends in the middle of a computation.
+/// Restores the terminal before the process ends in the middle of a computation.
 type Tidy = Box<dyn Fn() + Send>;
 
-/// There while a computation may be left.
+/// Set while a computation may be abandoned.
 static MAY_LEAVE: Mutex<Option<Tidy>> = Mutex::new(None);
 
-/// From now on the process may end in the middle of what it computes: nothing of it is kept before its end, and nothing is written.
+/// Allows the process to end in the middle of a computation that stores nothing before its end and writes
+/// nothing.
 pub(crate) fn may_leave(tidy: impl Fn() + Send + 'static) {
     *MAY_LEAVE.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(tidy));
 }
 
-/// From now on it may not: results are written. Where it is just ending, this does not return.
+/// Revokes [`may_leave`] before results are written. Does not return if the process is just ending.
 pub(crate) fn must_stay() {
     *MAY_LEAVE.lock().unwrap_or_else(PoisonError::into_inner) = None;
 }
 
-/// A signal came. Whoever sends two does not want to wait for the end of a step.
+/// Handles a signal. A second signal ends the process without waiting for the end of a step.
 fn receive(status: ExitStatus, cancel: &AtomicBool) {
     cancel.store(true, Ordering::Relaxed);
     if RECEIVED.swap(status.code(), Ordering::Relaxed) != NONE {
@@ -72,7 +74,7 @@ fn receive(status: ExitStatus, cancel: &AtomicBool) {
     std::thread::sleep(PATIENCE);
     if let Some(tidy) = &*may_leave() {
         tidy();
-        // Nobody is left to tell when stderr itself is gone.
+        // If stderr itself is closed, the message is lost.
         let _ = writeln!(io::stderr(), "interrupted; {}", what_was_written());
         leave(status);
     }
@@ -84,7 +86,7 @@ fn leave(status: ExitStatus) {
     std::process::exit(i32::from(status.code()));
 }
 
-/// From now on signals set `cancel`.
+/// Makes signals set `cancel` from now on.
 #[cfg(unix)]
 pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -106,8 +108,8 @@ pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
     }
 }
 
-/// The same without a thread: the first signal sets `cancel`, a second one ends the process at once, and what is unfinished then
-/// is removed by the next start.
+/// Like [`listen`] without a thread: the first signal sets `cancel`, a second one ends the process at once,
+/// and the next start removes the unfinished files.
 #[cfg(unix)]
 fn note(signal: i32, status: ExitStatus, cancel: &Arc<AtomicBool>) -> io::Result<()> {
     use signal_hook::flag;
@@ -116,18 +118,19 @@ fn note(signal: i32, status: ExitStatus, cancel: &Arc<AtomicBool>) -> io::Result
     flag::register(signal, Arc::clone(cancel)).map(drop)
 }
 
-/// A limit on the size of files (`ulimit -f`) makes a write fail, as a full disk does, and does not end the process.
+/// Makes a limit on file sizes (`ulimit -f`) fail the write, like a full disk, instead of ending the process.
 #[cfg(unix)]
 pub(crate) fn outlive_file_limits() {
-    // If it is not available, the process ends, and the next one removes what it left.
+    // If the handler is not available, the process ends, and the next start removes the unfinished files.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
 }
 
-/// There are no such limits.
+/// This system has no such limits.
 #[cfg(not(unix))]
 pub(crate) fn outlive_file_limits() {}
 
-/// The signals that are ignored from the start, the lowest bit for the first; none where the system does not say.
+/// Bit mask of the signals ignored at the start, the lowest bit for signal 1; 0 if the system does not report
+/// them.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -135,7 +138,7 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// From now on Ctrl-C sets `cancel`.
+/// Makes Ctrl-C set `cancel` from now on.
 #[cfg(not(unix))]
 pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
     let cancel = Arc::clone(cancel);

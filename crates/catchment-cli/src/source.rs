@@ -1,4 +1,4 @@
-//! Whatever is wrong with what a person gave, shown in its place.
+//! Reading of user input, and reports of its defects in place.
 
 use crate::exit::ExitStatus;
 use crate::failure::{self, Failure};
@@ -14,32 +14,32 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Whether a path stands for stdin, or for stdout: a file of that name is `./-`.
+/// Whether a path stands for stdin or stdout; a file of that name is `./-`.
 pub(crate) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// What messages call stdin.
+/// The name of stdin in messages.
 const STDIN: &str = "stdin";
 
-/// The design that came from stdin: it is read once, and kept for whoever reads the design again.
+/// The design from stdin: it is read once and kept for later reads.
 static DESIGN: OnceLock<String> = OnceLock::new();
 
-/// Reads the text of a design file, or of stdin for `-`; paths in that are taken from the current folder.
+/// Reads the text of a design file, or of stdin for `-`; paths in stdin are relative to the current folder.
 pub(crate) fn read_design(path: &Path) -> Result<SourceText, ProblemError> {
     if !is_stream(path) {
         return Ok(SourceText::new(path, load(path)?));
     }
     let named = Path::new(STDIN);
     if DESIGN.get().is_none() {
-        // Whoever is first keeps it.
+        // The first reader stores it.
         let _ = DESIGN.set(text_of_design(io::stdin().lock(), named)?);
     }
     let text = DESIGN.get().cloned().unwrap_or_default();
     Ok(SourceText::new(named, text))
 }
 
-/// The text of a design, as [`load`] takes it from a file.
+/// Reads the text of a design under the rules of [`load`] for files.
 fn text_of_design(from: impl Read, named: &Path) -> Result<String, LoadError> {
     let path = || named.to_path_buf();
     let mut bytes = Vec::new();
@@ -53,7 +53,7 @@ fn text_of_design(from: impl Read, named: &Path) -> Result<String, LoadError> {
     if text.trim().is_empty() { Err(LoadError::Empty { path: path() }) } else { Ok(text) }
 }
 
-/// Reads a design, or that of stdin for `-`.
+/// Reads a design file, or stdin for `-`.
 pub(crate) fn open_design(path: &Path) -> Result<Problem, ProblemError> {
     Draft::read(read_design(path)?)?.build()
 }
@@ -89,14 +89,14 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
     })
 }
 
-/// The diagnostic as a report with the lines it is about. Where those are too long to show (a mesh written
-/// on one line), it says their numbers instead.
+/// The diagnostic as a report with the affected lines. If these are too long to show (a mesh written on one
+/// line), the report has the line and column numbers instead.
 fn report(source: Option<&SourceText>, diagnostic: Diagnostic) -> Report {
     let mut labelled = failure::report(&diagnostic);
     let Some(source) = source else { return Report::new(labelled) };
     let name = shown(&source.path).to_string();
     let Some(span) = diagnostic.span else {
-        // What is said of an option is not said of the file.
+        // A diagnostic about an option does not concern the file.
         if !labelled.message.contains(&name) && !labelled.message.starts_with("--") {
             labelled.message = format!("{name}: {}", labelled.message);
         }
@@ -115,10 +115,11 @@ fn report(source: Option<&SourceText>, diagnostic: Diagnostic) -> Report {
     Report::new(labelled).with_source_code(Excerpt { name, text: printable(&source.text[lines]), before })
 }
 
-/// Longest line that is shown, in bytes.
+/// Longest line shown, in bytes.
 const WIDEST: usize = 300;
 
-/// Lines of a text and how many come before them: what is shown of it costs the same however long it is.
+/// An excerpt of a text and the number of lines before it: the cost of display is independent of the length
+/// of the text.
 #[derive(Debug)]
 struct Excerpt {
     name: String,
@@ -145,21 +146,21 @@ impl SourceCode for Excerpt {
     }
 }
 
-/// A span that ends with the line it starts in.
+/// Truncates a span to its first line.
 fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
     let end = text[span.start..].find(['\r', '\n']).map_or(text.len(), |at| span.start + at);
     span.start..span.end.min(end.max(span.start))
 }
 
-/// The line of `byte` with those before and behind it.
+/// The line of `byte` with the neighbouring lines.
 fn around(text: &str, byte: usize) -> Range<usize> {
     let start_of = |byte: usize| text[..byte].rfind('\n').map_or(0, |at| at + 1);
     let end_of = |byte: usize| text[byte..].find('\n').map_or(text.len(), |at| byte + at + 1);
     start_of(start_of(byte).saturating_sub(1))..end_of(end_of(byte))
 }
 
-/// The text with control characters replaced, byte for byte: a file must not steer the terminal. A return to the start of the
-/// line is left at the end of a line only, as it is in files of Windows.
+/// The text with control characters replaced, byte for byte: a file must not control the terminal. A carriage
+/// return is kept only at the end of a line, as in Windows files.
 fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text.chars().peekable();
@@ -175,7 +176,7 @@ fn printable(text: &str) -> String {
 }
 
 impl Failure {
-    /// Everything that is wrong with a text, each in its place.
+    /// All diagnostics about a text, each in its place.
     pub(crate) fn of_diagnostics(diagnostics: Diagnostics) -> Self {
         let Diagnostics { source, mut list, omitted } = diagnostics;
         let count = list.len() + omitted;
@@ -187,7 +188,7 @@ impl Failure {
         };
         let place = source.as_ref().map(|source| shown(&source.path));
         let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{part}"));
-        // Of a design that an option changes, the option may be what is wrong.
+        // If options override the design, the defect may lie in an option.
         let is_of_options = list.iter().all(|diagnostic| diagnostic.message.starts_with("--"));
         let status = if is_of_options { ExitStatus::Usage } else { ExitStatus::BadInput };
         let reports = list.into_iter().map(|diagnostic| report(source.as_ref(), diagnostic)).collect();
@@ -196,7 +197,7 @@ impl Failure {
 }
 
 impl Failure {
-    /// Why there is no problem to decide.
+    /// The error that prevents a problem from being built.
     pub(crate) fn of_problem(error: ProblemError) -> Self {
         match error {
             ProblemError::Load(error) => Self::explained(&error, None),

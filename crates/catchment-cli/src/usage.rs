@@ -1,4 +1,4 @@
-//! What is said of a command line that cannot be read, and the help that was asked for.
+//! Messages for an invalid command line, and requested help.
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -8,12 +8,12 @@ use clap::error::{ContextKind, ContextValue};
 use std::error::Error;
 use std::io::{self, Write};
 
-/// Prints it: help and version on stdout, complaints on stderr.
+/// Prints it: help and version on stdout, errors on stderr.
 pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
     if usage.use_stderr() {
         advise(&mut usage);
         silence(&mut usage);
-        // Nobody is left to tell when stderr itself is gone.
+        // If stderr itself is closed, the message is lost.
         let _ = match still_steering(&usage) {
             Some(text) => io::stderr().write_all(text.as_bytes()),
             None => usage.print(),
@@ -21,7 +21,7 @@ pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
         return ExitStatus::Usage;
     }
     match usage.print().and_then(|()| io::stdout().flush()) {
-        // A reader that has gone away is no trouble.
+        // A closed pipe is not an error.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Failure::with_help(format!("cannot write to stdout: {error}"), None)
                 .ends(ExitStatus::NotComputed)
@@ -31,7 +31,7 @@ pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
     }
 }
 
-/// Takes from what the person wrote, and the complaint repeats, what could steer a terminal.
+/// Removes terminal control characters from quoted user input in the error.
 pub(crate) fn silence(usage: &mut clap::Error) {
     let silent = |text: &String| printable(text);
     let repeated: Vec<(ContextKind, ContextValue)> = usage
@@ -54,7 +54,7 @@ pub(crate) fn silence(usage: &mut clap::Error) {
     }
 }
 
-/// Says what to write in the place of a number that is none, where the complaint is that of a parser that does not.
+/// Adds advice on invalid numbers to errors of parsers that give none.
 pub(crate) fn advise(usage: &mut clap::Error) {
     const NO_WHOLE_NUMBER: &str = "invalid digit found in string";
     let reason = usage.source().map(ToString::to_string).unwrap_or_default();
@@ -69,7 +69,8 @@ pub(crate) fn advise(usage: &mut clap::Error) {
     usage.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
 }
 
-/// A silenced complaint in which the reason of a parser still repeats such characters: its text without them, and without colours.
+/// The text of a silenced error without control characters and colours, if a parser's reason still repeats
+/// such characters.
 pub(crate) fn still_steering(usage: &clap::Error) -> Option<String> {
     let text = usage.to_string();
     let silent: String =

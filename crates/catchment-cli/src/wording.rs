@@ -1,15 +1,15 @@
-//! Tests of the help: it fits on a screen, ends with examples, and speaks plainly.
+//! Tests of the help: it fits on a screen, ends with examples, and uses plain language.
 
 use crate::args;
 use crate::groups::GROUPS;
 use clap::Command;
 
-/// Width of the narrowest terminal that counts.
+/// Narrowest supported terminal width.
 const COLUMNS: usize = 80;
-/// Lines of a screen, with the prompt.
+/// Lines of a screen, including the prompt.
 const SCREEN: usize = 40;
 
-/// Every subcommand that the help lists, and those below it.
+/// Every listed subcommand, with nested subcommands.
 fn commands() -> Vec<Command> {
     let mut all = args::command();
     all.build();
@@ -21,7 +21,7 @@ fn commands() -> Vec<Command> {
     result
 }
 
-/// The help of a command, by parts: but for values that another crate names.
+/// The texts of a command's help, except values named by another crate.
 fn texts(command: &Command) -> Vec<String> {
     let mut texts: Vec<String> = [
         command.get_about(),
@@ -57,7 +57,7 @@ fn the_short_help_of_daily_commands_fits_on_a_screen() {
 fn every_help_ends_with_examples_that_fit() {
     for command in commands().iter().filter(|one| !one.is_hide_set() && !one.has_subcommands()) {
         let name = command.get_name();
-        // Of catalog, the command above has the examples.
+        // The parent command has the examples for the subcommands of `catalog`.
         let Some(text) = command.get_after_long_help().map(ToString::to_string) else {
             assert!(["show", "design"].contains(&name), "{name} has no examples");
             continue;
@@ -68,7 +68,7 @@ fn every_help_ends_with_examples_that_fit() {
     }
 }
 
-/// At most so many per thousand words.
+/// Upper limits per thousand words.
 #[test]
 fn the_help_speaks_plainly() {
     const MOST: [(&[&str], f64); 5] = [

@@ -1,4 +1,4 @@
-//! Published numbers computed again, and how far the methods of [`catchment`] can be trusted.
+//! Published numbers recomputed, and the accuracy of the methods of [`catchment`].
 //!
 //! ```text
 //!   published ──▶ recipe ──▶ tables ──▶ study ──▶ report
@@ -7,17 +7,18 @@
 //!                   computed)   they differ) coverage)
 //! ```
 //!
-//! Imports run against that flow. The library knows nothing of this crate.
+//! Imports run against that flow. The library does not depend on this crate.
 //!
 //! - [`published`]: the printed tables, as data.
-//! - [`recipe`]: how an entry is computed, by the method of its table and exactly; [`recipe::dissertation`] holds the
+//! - [`recipe`]: computation of an entry, by the method of its table and exactly; [`recipe::dissertation`] holds the
 //!   conventions that reproduce the discrete tables.
-//! - [`tables`]: which tables there are, and where they are known to differ.
-//! - [`study`]: the tables beside ours, a figure drawn again, the accuracy of every method, the coverage of stated intervals.
-//! - [`report`]: what a person or a program reads of them.
+//! - [`tables`]: the reproducible tables and their known differences.
+//! - [`study`]: published and recomputed tables, a recomputed figure, the accuracy of every method, the coverage of stated
+//!   intervals.
+//! - [`report`]: output for people and programs.
 //!
 //! **Not promised:** that published numbers are right. Many were reproduced with conventions fitted to these very numbers; each
-//! result says which.
+//! result names its conventions.
 
 pub mod published;
 pub mod recipe;

@@ -11,13 +11,13 @@ pub struct Published {
     pub values: Vec<Vec<f64>>,
 }
 
-/// A published table that does not read as a table.
+/// A published file that is not a valid table.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the published table {table} cannot be read: {reason}")]
 pub struct PublishedError {
-    /// Which table.
+    /// The table.
     pub table: &'static str,
-    /// What is wrong.
+    /// The defect.
     pub reason: String,
 }
 
@@ -25,11 +25,11 @@ pub struct PublishedError {
 /// begins with its name. Every row has a positive value in every column.
 ///
 /// # Errors
-/// When it is no such table.
+/// When the text is not such a table.
 pub fn read(table: &'static str, csv: &str) -> Result<Published, PublishedError> {
     let bad = |reason: String| PublishedError { table, reason };
     let number = |text: &str| text.trim().parse::<f64>().map_err(|e| bad(format!("`{text}`: {e}")));
-    // `1.0` and `1` are one name.
+    // `1.0` and `1` are the same name.
     let name =
         |text: &str| text.trim().parse::<f64>().map_or_else(|_| text.trim().to_owned(), |v| v.to_string());
     let mut lines = csv.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());

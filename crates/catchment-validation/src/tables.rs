@@ -1,4 +1,4 @@
-//! Which tables can be reproduced, how, and where they are known to differ.
+//! Reproducible tables, their computation, and their known differences.
 
 use crate::published::{self, Published, PublishedError};
 use crate::recipe::Recipe;
@@ -9,39 +9,39 @@ use catchment::method::kinematic::PlanarFace;
 /// A table that can be reproduced.
 #[derive(Debug, Clone, Copy)]
 pub struct ReproducibleTable {
-    /// Its number in the dissertation: what a person asks for.
+    /// Its number in the dissertation, by which it is selected.
     pub name: &'static str,
-    /// What it holds.
+    /// Its title.
     pub title: &'static str,
     /// Unit of its values.
     pub unit: &'static str,
-    /// What the columns are.
+    /// Meaning of the columns.
     pub column_name: &'static str,
     csv: &'static str,
-    /// Relative error within which an entry matches; 0 where integer counts must agree; `None` where nothing is promised:
-    /// the two stand beside each other.
+    /// Relative error within which an entry matches; 0 where integer counts must agree; `None` for a comparison without a
+    /// promised agreement.
     pub tolerance: Option<f64>,
-    /// How its entries are computed.
+    /// Computation of its entries.
     pub recipe: Recipe,
     known: &'static [Known],
     /// Whether the source highlights the largest and the smallest value.
     pub highlights: bool,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: &'static [&'static str],
 }
 
-/// Something published that is held but not computed.
+/// A published table that is stored but not computed.
 #[derive(Debug, Clone, Copy)]
 pub struct UncomputedTable {
     /// Its number.
     pub name: &'static str,
-    /// What it holds.
+    /// Its title.
     pub title: &'static str,
     /// Why it is not computed.
     pub reason: &'static str,
 }
 
-/// What is known of the dissertation's numbers and not computed here, with the reason.
+/// Known numbers of the dissertation that are not computed here, with the reason.
 pub const HELD: &[UncomputedTable] = &[
     UncomputedTable {
         name: "1.1",
@@ -70,7 +70,7 @@ pub const HELD: &[UncomputedTable] = &[
 type Known = (usize, usize, &'static str);
 
 impl ReproducibleTable {
-    /// The table of a name.
+    /// The table with this name.
     pub fn of(name: &str) -> Option<&'static Self> {
         TABLES.iter().find(|table| table.name == name)
     }
@@ -78,19 +78,19 @@ impl ReproducibleTable {
     /// The printed numbers.
     ///
     /// # Errors
-    /// When the committed file is no table.
+    /// When the committed file is not a valid table.
     pub fn published(&self) -> Result<Published, PublishedError> {
         published::read(self.name, self.csv)
     }
 
-    /// The table of its first row alone.
+    /// The table reduced to its first row.
     #[cfg(test)]
     pub(crate) fn first_row(&self) -> Self {
         let lines: Vec<&str> = self.csv.lines().filter(|line| !line.starts_with('#')).take(2).collect();
         Self { csv: lines.join("\n").leak(), ..*self }
     }
 
-    /// Whether two values agree within the table's tolerance; `None` where nothing is promised.
+    /// Whether two values agree within the table's tolerance; `None` without a promised agreement.
     pub fn matches(&self, published: f64, ours: f64) -> Option<bool> {
         self.tolerance.map(|tolerance| {
             if tolerance == 0.0 {
@@ -158,7 +158,7 @@ const PITCH_ROLL: &str = "the conventions behind table 5.9 are only partly known
 const WITH_YAW: &str = "the conventions are those of table 5.9, with the rotations named, and are only partly known: this entry depends on \
      which sampling artefacts are merged";
 
-/// Every table that can be reproduced, in the order of their numbers.
+/// Every reproducible table, in the order of the table numbers.
 pub const TABLES: &[ReproducibleTable] = &[
     ReproducibleTable {
         name: "2.1",

@@ -1,11 +1,11 @@
-//! Imports run against the flow from printed numbers to what is told of them: a room knows the rooms before it.
+//! Imports run against the flow from printed numbers to their report: a room imports only from rooms before it.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The rooms in the order in which numbers walk through them.
+/// The rooms in the order of the data flow.
 const ROOMS: [&str; 5] = ["published", "recipe", "tables", "study", "report"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -19,7 +19,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The rooms that a text reaches through `crate::`, outside comments.
+/// The rooms that a text imports through `crate::`, outside comments.
 fn reached(text: &str) -> Vec<String> {
     let name = |rest: &str| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
     let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());

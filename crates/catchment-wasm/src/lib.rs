@@ -1,15 +1,15 @@
-//! Exact motions in a page: the core of the library behind plain functions that any WebAssembly host can call.
+//! Exact motions in a web page: the core of the library as plain functions that any WebAssembly host can call.
 //!
 //! ```text
-//!   input(n) ─▶ where n bytes go      the page writes there:  design (JSON) · fixed half · moving half   (Half::to_bytes)
-//!   load(design, fixed) ─▶ 0 or 1     lengths of the first two; 1: output is what is wrong
+//!   input(n) ─▶ address of n bytes    the page writes there:  design (JSON) · fixed half · moving half   (Half::to_bytes)
+//!   load(design, fixed) ─▶ 0 or 1     lengths of the first two; 1: output is the error message
 //!   trace(x, y, roll, pitch, yaw, friction) ─▶ 0 or 1
-//!   output() · output_length()        the JSON of `catchment trace`, or what is wrong, UTF-8
+//!   output() · output_length()        the JSON of `catchment trace`, or the error message, UTF-8
 //! ```
 //!
-//! All numbers of a trace are those of the library, computed by the same code. Not promised: the last bits, where the sines and
-//! cosines of another machine round otherwise. Memory is handed over by place and length in safe code; a panic ends the
-//! module, and the page starts another.
+//! A trace has the numbers of the library, computed by the same code. Not promised: the last bits, where another machine rounds
+//! sines and cosines differently. Memory is passed by address and length in safe code. A panic ends the module, and the page
+//! starts another.
 
 use catchment::connector::Half;
 use catchment::design::Design;
@@ -20,7 +20,7 @@ use catchment::report::TraceReport;
 use std::fmt::Display;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the page gave, what it gets, and the problem that it asks about.
+/// Input from the page, output to the page, and the loaded problem.
 struct Desk {
     input: Vec<u8>,
     output: Vec<u8>,
@@ -33,9 +33,9 @@ fn desk() -> MutexGuard<'static, Desk> {
     DESK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Done; the output has what was asked for.
+/// Success: the output holds the result.
 const DONE: u32 = 0;
-/// Not done; the output says why.
+/// Failure: the output holds the reason.
 const REFUSED: u32 = 1;
 
 impl Desk {
@@ -53,7 +53,7 @@ fn message(error: impl Display) -> String {
     error.to_string()
 }
 
-/// The problem that the input holds.
+/// Parses the problem in the input.
 fn problem(input: &[u8], design: usize, fixed: usize) -> Result<Problem, String> {
     let cut = || format!("the input has {} bytes, fewer than announced", input.len());
     let (design, halves) = input.split_at_checked(design).ok_or_else(cut)?;
@@ -63,7 +63,7 @@ fn problem(input: &[u8], design: usize, fixed: usize) -> Result<Problem, String>
     Problem::of_halves(design, fixed.map_err(message)?, moving.map_err(message)?).map_err(message)
 }
 
-/// Where `length` bytes of input go.
+/// Address of `length` bytes of input.
 #[expect(unsafe_code, reason = "a name for the page to call by")]
 #[unsafe(no_mangle)]
 pub extern "C" fn input(length: usize) -> usize {
@@ -72,7 +72,7 @@ pub extern "C" fn input(length: usize) -> usize {
     desk.input.as_ptr().addr()
 }
 
-/// Takes the problem that the input holds: the design in its first bytes, then the halves.
+/// Loads the problem from the input: the design in the first bytes, then the halves.
 #[expect(unsafe_code, reason = "a name for the page to call by")]
 #[unsafe(no_mangle)]
 pub extern "C" fn load(design: usize, fixed: usize) -> u32 {
@@ -106,14 +106,14 @@ pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, frictio
     desk.answer(stated)
 }
 
-/// Where the output is.
+/// Address of the output.
 #[expect(unsafe_code, reason = "a name for the page to call by")]
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> usize {
     desk().output.as_ptr().addr()
 }
 
-/// How many bytes it has.
+/// Length of the output in bytes.
 #[expect(unsafe_code, reason = "a name for the page to call by")]
 #[unsafe(no_mangle)]
 pub extern "C" fn output_length() -> usize {

@@ -1,11 +1,11 @@
-//! Reads mesh files one by one, as a half whose width is its own, and says of each whether it bounds a solid, and what was done to it:
+//! Reads mesh files one by one, each as a half scaled to its own width. Prints whether it bounds a solid, and the mesh preparation:
 //!
 //! ```console
 //! $ cargo run --release --example read_meshes -- FILE…
 //! ok    0.02 s   1520 triangles  dock.stl
 //! ```
 //!
-//! With `SIMPLIFY=0.001` in the environment, simplified to that part of its width; with `REPAIR=0`, taken as they are.
+//! `SIMPLIFY=0.001` in the environment simplifies each mesh to that fraction of its width; `REPAIR=0` disables repair.
 
 use catchment::connector::{Connector, FileBytes, GeometryDefect, HalfSource, MeshProblem};
 use catchment::design::{FileSpec, MeshPreparation};

@@ -1,4 +1,4 @@
-//! What a program that uses the library needs, in one `use`: from a problem to its answer.
+//! Everything that a program needs from the library in one `use`: from a problem to its result.
 //!
 //! ```
 //! use catchment::prelude::*;

@@ -1,4 +1,4 @@
-//! Every committed design builds, and its mated pose holds.
+//! Every committed design builds, and its mated pose is a rest.
 
 use catchment::design::SourceText;
 use catchment::pose::CorPose;
@@ -34,7 +34,7 @@ fn the_whole_design_of_the_guide_is_mated() {
     assert_eq!(draft.and_then(Draft::build).unwrap().mated_warnings(), []);
 }
 
-/// Drawn docked in one frame, as OBJ and PLY, the pyramid is the one that is drawn half by half.
+/// Drawn docked in one frame, as OBJ and PLY, the pyramid equals the one drawn half by half.
 #[test]
 fn the_assembled_pyramid_is_the_pyramid() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");
@@ -52,7 +52,7 @@ fn the_assembled_pyramid_is_the_pyramid() {
     }
     let drawing = CheckReport::good(&assembled).drawing.unwrap();
     let near = |a: [f64; 3], b: [f64; 3]| DVec3::from_array(a).abs_diff_eq(DVec3::from_array(b), 1e-6);
-    // The middle of the assembly's pyramid; the centre of rotation 25 mm along the approach; y of an error is the assembly's z.
+    // The middle of the assembly's pyramid; the centre of rotation 25 mm along the approach; the error y is the assembly's z.
     assert!(near(drawing.fixed.face_center, [120.0, 40.0, 15.0]), "{drawing:?}");
     assert!(near(drawing.moving.center_of_rotation, [120.0, 65.0, 15.0]), "{drawing:?}");
     assert_eq!((drawing.fixed.x, drawing.fixed.y), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]));

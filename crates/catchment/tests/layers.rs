@@ -1,4 +1,4 @@
-//! The X-Face as a solid: layers of finite thickness with a gap, whose y matters.
+//! The X-Face as a solid: layers of finite thickness with a gap, so that y matters.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -44,7 +44,7 @@ fn fate(problem: &Problem, error: PoseError) -> (Outcome, Option<FailureReason>)
     (end.outcome, FailureReason::of(problem, end.outcome, &end.error))
 }
 
-/// What is written as the default is the default, to the bit.
+/// The default value, written explicitly, equals the default to the bit.
 #[test]
 fn the_default_layers_are_what_they_were() {
     let halves = |layers| problem(&[Dof::X, Dof::Pitch], layers, 0.0).connector().clone();
@@ -55,14 +55,14 @@ fn the_default_layers_are_what_they_were() {
     places.sort_unstable();
     places.dedup();
     assert_eq!(places, [0.05f64, 0.5, -0.05, -0.5].map(f64::to_bits));
-    // Neither is written into the digest, so that it is the one of all versions before.
+    // Defaults stay out of the digest, so that it equals that of all earlier versions.
     let spec = FamilySpec::new(Family::XFace);
     assert!(!spec.has_depth() && spec.is_layered());
 }
 
-/// Rotations locked, offset x = s: up to the gap a layer meets its partner alone, and slides home from |s| < 1. Beyond it and
-/// up to a layer's thickness it also meets the wrong one, height H(1 − |s|) against H|s|: it jams at |s| = ½. Beyond that
-/// the wrong one is all it meets, until both layers are past each other: it slides off.
+/// Rotations locked, offset x = s: up to the gap a layer touches only its partner, and slides home from |s| < 1. Beyond it
+/// and up to a layer's thickness it also touches the wrong layer, height H(1 − |s|) against H|s|: it jams at |s| = ½. Beyond
+/// that it touches only the wrong layer, until both layers are past each other: it slides off.
 #[test]
 fn the_range_of_y_has_a_closed_form() {
     let flat = problem(&[Dof::X, Dof::Y], Some([THICK, GAP]), GAP);
@@ -88,8 +88,8 @@ fn the_range_of_y_has_a_closed_form() {
     assert!((end.error.x.abs() - 0.5).abs() < 1e-6 && (end.error.y - 0.3).abs() < 1e-9, "{end:?}");
 }
 
-/// Which layers meet is a matter of plan: y up to the gap, yaw up to 2·atan(gap/D), where the low corner of a layer comes over
-/// the high one of the wrong layer. Turned the other way high corners come over low ones, and do not touch.
+/// The plan view decides which layers touch: y up to the gap, yaw up to 2·atan(gap/D), where the low corner of a layer comes
+/// over the high corner of the wrong layer. Turned the other way, high corners come over low ones, and do not touch.
 #[test]
 fn partners_meet_up_to_the_gap_and_its_angle() {
     let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
@@ -106,7 +106,7 @@ fn partners_meet_up_to_the_gap_and_its_angle() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// No loss while |y| is less than the gap: the outcome of a pose is its outcome in the plane.
+    /// No loss while |y| is less than the gap: a pose has the outcome of its planar pose.
     #[test]
     fn flat_errors_within_the_gap_cost_nothing(
         x in -1.0f64..1.0, y in -0.999f64..0.999, pitch in -1.3f64..1.3,
@@ -120,7 +120,7 @@ proptest! {
     }
 }
 
-/// Rolled, pitched and off in both directions it still docks from near by, and y stays within the gap.
+/// With small errors in roll, pitch, x and y it still docks, and y stays within the gap.
 #[test]
 fn roll_is_corrected_as_well() {
     let free = [Dof::X, Dof::Y, Dof::Roll, Dof::Pitch];
@@ -133,8 +133,8 @@ fn roll_is_corrected_as_well() {
     assert!(end.error.roll.abs() < 0.02 && end.error.pitch.abs() < 0.02, "{end:?}");
 }
 
-/// Ramps of opposite slope side by side push the halves round: with yaw free the aligned pose is no rest, and the halves turn until
-/// the walls of the layers meet, at 2·atan(gap/D).
+/// Ramps of opposite slope side by side turn the halves: with yaw free the aligned pose is no rest, and the halves turn until the
+/// walls of the layers touch, at 2·atan(gap/D).
 #[test]
 fn free_yaw_turns_until_walls_meet() {
     let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
@@ -144,6 +144,6 @@ fn free_yaw_turns_until_walls_meet() {
         all.mated_warnings()
     );
     let end = descent::Follower::new(all.pair(), &DescentSettings::default()).rest(&PoseError::default());
-    // At rest within the steps of the motion, some 1e-5.
+    // At rest within the step of the motion, about 1e-5.
     assert!((end.error.yaw - 2.0 * GAP.atan()).abs() < 1e-4, "{end:?}");
 }

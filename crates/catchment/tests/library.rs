@@ -1,4 +1,5 @@
-//! The library as its users have it, in one program: a test program takes longer to link than most of these take to run.
+//! The library as its users see it, in one test program: a test program takes longer to link than most of these tests
+//! take to run.
 
 mod designs;
 mod field;

@@ -33,7 +33,7 @@ fn write(half: &Half, format: stl::StlEncoding, folder: &Path, name: &str, size:
     path
 }
 
-/// Both halves as STL files in units of which D has `size`.
+/// Both halves as STL files in units with D equal to `size`.
 fn meshes(format: stl::StlEncoding, folder: &Path, size: f64) -> Design {
     let connector = Connector::build(&family()).unwrap();
     let drawn = connector.moving.mapped(|p| Mount::X.apply(p));
@@ -125,7 +125,7 @@ fn all_problems_of_both_halves_come_at_once() {
 fn a_mesh_in_the_wrong_unit_is_reported_what_to_check() {
     let folder = tempfile::tempdir().unwrap();
     let mut design = meshes(stl::StlEncoding::Binary, folder.path(), 50.0);
-    // 50 mm read as if D were 50 m.
+    // 50 mm, read with a width D of 50 m.
     if let ConnectorSpec::Own(own) = &mut design.connector {
         for half in [&mut own.fixed, &mut own.moving] {
             if let HalfSpec::Mesh(file) = half {

@@ -1,5 +1,5 @@
-//! A run uses threads of its own: the process-wide pool of `rayon`, which no run can size and which panics where the
-//! system refuses threads, is never asked for. This file is a process of its own, so that it can tell.
+//! A run uses its own threads. It never uses the process-wide pool of `rayon`, which a run cannot size and which
+//! panics where the system refuses threads. This file is its own process, so that it can detect such a use.
 
 use catchment::acceptance::Domain;
 use catchment::connector::Connector;
@@ -35,6 +35,6 @@ fn the_process_wide_pool_is_never_started() {
         let poses = Domain::random(&pair.alignment, 20, 1);
         descent::run(&pair, poses, &descent::DescentSettings::default(), &exec).unwrap();
     }
-    // Refused if anything had started it.
+    // Fails if the pool had already been started.
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
 }

@@ -1,4 +1,5 @@
-//! Halves of parts: the same heights as the same solids given in other ways, and a kinematic coupling against its closed form.
+//! Halves made of parts: the same heights as the same solids in other representations, and a kinematic coupling against its
+//! closed form.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -18,7 +19,7 @@ use std::io::{Cursor, Write as _};
 use std::path::Path;
 
 const COR: f64 = 0.3;
-/// Every fifth of a turn or so: coarse, so that its corners fit a convex piece.
+/// About five facets per turn: coarse, so that the corners fit into a convex piece.
 const COARSE: f64 = 0.02;
 
 fn design(fixed: HalfSpec, moving: HalfSpec) -> Design {
@@ -93,9 +94,9 @@ fn moved(points: &[DVec3], by: &DAffine3) -> Vec<[f64; 3]> {
     points.iter().map(|p| by.transform_point3(*p).to_array()).collect()
 }
 
-/// The corners of what a part alone becomes.
+/// The corners of the solid that a single part becomes.
 fn corners(shape: &ShapeSpec) -> Vec<DVec3> {
-    // Wide enough to be a half.
+    // Wide enough for a half.
     let wide = PartSpec::new(ShapeSpec::Box { size: [1.0, 1.0, 0.1] }, [0.0, 0.0, -5.0]);
     let half = parts([PartSpec::new(shape.clone(), [0.0; 3]), wide]);
     connector(&design(half, socket()), &[]).fixed.surfaces[0]
@@ -105,7 +106,8 @@ fn corners(shape: &ShapeSpec) -> Vec<DVec3> {
         .collect()
 }
 
-/// Turned, moved and upright: a ball, a cylinder, a cone, its stump, a box and a prism are the convex hulls of their corners.
+/// Turned, moved and upright: a ball, a cylinder, a cone, a truncated cone, a box and a prism are the convex hulls of their
+/// corners.
 #[test]
 fn primitives_are_what_pieces_of_their_corners_are() {
     let hexagon: Vec<[f64; 2]> = (0..6)
@@ -142,7 +144,7 @@ fn primitives_are_what_pieces_of_their_corners_are() {
             ];
             let as_parts = pair(socket(), parts([plate(), part]), &[]);
             let as_pieces = pair(socket(), HalfSpec::Pieces(pieces), &[]);
-            // A hull counts what is nearer than 1e-9 of its size as on one plane.
+            // A hull treats points closer than 1e-9 of its size as coplanar.
             let apart = difference(&as_parts, &as_pieces);
             assert!(apart < 1e-8, "{shape:?} {axis:?}: {apart}");
         }
@@ -185,7 +187,7 @@ fn threemf_of(half: &Half, unit: &str) -> Vec<u8> {
     archive.finish().unwrap().into_inner()
 }
 
-/// The same halves, as STL and as 3MF whose unit is its own.
+/// The same halves, as STL and as 3MF with its own unit.
 #[test]
 fn a_3mf_is_the_same_half_in_its_own_unit() {
     let [fixed, moving] = pyramid();
@@ -198,7 +200,7 @@ fn a_3mf_is_the_same_half_in_its_own_unit() {
     ];
     let mesh = |name: &str, scale, unit| HalfSpec::Mesh(FileSpec { unit, ..FileSpec::new(name, scale) });
     let plain = pair(mesh("a.stl", 1.0, FileUnit::Beside), mesh("b.stl", 1.0, FileUnit::Beside), &files);
-    // D is 2 in; where the file says its unit, the scale is that of a metre.
+    // D is 2 in; where the file has a unit, the scale is that of a metre.
     let own = |name| mesh(name, 1.0 / (2.0 * 0.0254), FileUnit::InFile);
     let result = pair(own("a.3mf"), own("b.3mf"), &files);
     assert!(difference(&plain, &result) < 1e-12);
@@ -211,13 +213,12 @@ fn a_3mf_is_the_same_half_in_its_own_unit() {
     };
     let problems = Connector::build_with(&wrong, &read).unwrap_err();
     assert!(problems[0].to_string().contains("its unit is in, and the design says mm"), "{}", problems[0]);
-    // Without any unit in the design its numbers are what counts.
+    // Without a unit in the design, the scale is that of the file's numbers.
     let bare = pair(mesh("a.3mf", 0.5, FileUnit::Beside), mesh("b.3mf", 0.5, FileUnit::Beside), &files);
     assert!(difference(&plain, &bare) < 1e-12);
 }
 
-/// A mesh that is not convex, overlapped by a ball and a pin: what the lists say is what the definition says, and what one file with
-/// all of them says.
+/// A non-convex mesh, overlapped by a ball and a pin: the part list, the definition and one file with all bodies agree.
 #[test]
 fn a_mesh_with_primitives_has_the_heights_of_the_definition() {
     let [fixed, moving] = pyramid();
@@ -250,7 +251,7 @@ fn a_mesh_with_primitives_has_the_heights_of_the_definition() {
     assert!(contents.fixed[0].repairs.united > 0 && contents.moving[0].repairs.united > 0, "{contents:?}");
 }
 
-/// Whatever changes a part changes the digest.
+/// Every change of a part changes the digest.
 #[test]
 fn every_number_of_a_part_counts() {
     let files = [("a.svg", b"<svg><circle r='1'/></svg>".to_vec()), ("a.stl", stl_of(&pyramid()[0]))];
@@ -300,7 +301,7 @@ fn every_number_of_a_part_counts() {
     assert_eq!(digests.len(), all.len());
 }
 
-/// Three balls of radius r in V grooves of 90° and half width h: at rest r √2 above the bottoms of the grooves; without rotation errors they
+/// Three balls of radius r in V grooves of 90° and half width h: at rest r √2 above the bottoms of the grooves. Without rotation errors they
 /// find their seats while each ball's centre is above its groove, which is a hexagon of area 2 √3 h².
 #[test]
 fn balls_in_grooves_are_a_kinematic_coupling() {
@@ -309,7 +310,7 @@ fn balls_in_grooves_are_a_kinematic_coupling() {
     assert_eq!(problem.mated_warnings(), []);
     let drawing = CheckReport::good(&problem).drawing.unwrap();
     let apart = drawing.fixed.face_center[2] + drawing.moving.face_center[2];
-    // The bottoms of the grooves are at −5 mm, the centres of the balls at 8 mm; facets lie inside of the balls by up to 0.06 mm.
+    // The bottoms of the grooves are at −5 mm, the centres of the balls at 8 mm; facets lie inside the balls by up to 0.06 mm.
     let expected = 6.0 * 2f64.sqrt() - 5.0 + 8.0;
     assert!(apart < expected + 1e-9 && apart > expected - 0.06 * 2f64.sqrt(), "{apart} {expected}");
     let lateral = problem.design().clone().with_free([Dof::X, Dof::Y].into_iter().collect()).unwrap();
@@ -321,7 +322,7 @@ fn balls_in_grooves_are_a_kinematic_coupling() {
     assert!((area / hexagon - 1.0).abs() < 1e-6, "{area} {hexagon}");
 }
 
-/// Balls of facets in grooves: within a long step planes of facets that lie beside a ball hold it, where shorter steps go on. Of these poses 22 % jammed so.
+/// Faceted balls in grooves: within a long step, facet planes beside a ball stop it, where shorter steps continue. That made 22 % of these poses jam.
 #[test]
 fn balls_of_facets_do_not_rest_on_planes_beside_them() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml");

@@ -1,4 +1,4 @@
-//! Halves that are written as convex pieces are the solid that the pieces make: the same heights, the same outcomes.
+//! Halves written as convex pieces equal the union of the pieces: the same heights, the same outcomes.
 //!
 //! ```text
 //!   ┌─╲      ╱─┐      rings of wedges on a floor: they abut, upper ones over the seams of lower ones, and planes
@@ -33,8 +33,8 @@ fn outcome(pair: &Pair, [x, y, roll, pitch, yaw]: [f64; 5]) -> Outcome {
     descent::outcome(pair, &PoseError { x, y, roll, pitch, yaw }, &DescentSettings::default()).outcome
 }
 
-/// Outcomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first came to rest on a seam of the
-/// guide with a slope of 0.6 downhill, and the others hung on seams of the key's slot.
+/// Outcomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first once came to rest on a seam
+/// of the guide with a downhill slope of 0.6, and the others hung on seams of the key's slot.
 #[test]
 fn seams_hold_nothing() {
     let (connector, alignment) = read("dovetail");
@@ -60,8 +60,8 @@ fn seams_hold_nothing() {
     }
 }
 
-/// Corners, facets that lie in one plane counted once, and convex edges of the unions, as two other libraries have them; nothing is left of the walls
-/// between pieces, and the pieces are kept.
+/// Corners, facets (coplanar ones counted once) and convex edges of the unions, as computed by two other libraries. The walls between pieces are
+/// gone, and the pieces are kept.
 #[test]
 fn designs_are_one_surface() {
     for (name, pieces, corners, edges) in [
@@ -80,7 +80,7 @@ fn designs_are_one_surface() {
     }
 }
 
-/// The union of their pieces as it is, and as loose triangles in memory, which are welded and merged anew.
+/// The union of their pieces itself, and as loose triangles in memory, which are welded and merged again.
 #[test]
 fn designs_fare_as_their_triangles() {
     const POSES: usize = 40;
@@ -101,7 +101,7 @@ fn designs_fare_as_their_triangles() {
     }
 }
 
-/// How many outcomes of random poses differ.
+/// Number of sampled poses whose outcomes differ.
 fn changed(one: &Connector, other: &Connector, alignment: &Alignment, poses: usize) -> usize {
     let outcomes = |connector: &Connector| {
         let domain = Domain::random(alignment, poses, 1);
@@ -142,7 +142,7 @@ impl Funnel {
         (0..self.sides).map(|k| at(k).extend(z)).collect()
     }
 
-    /// From outside below over the rim to the floor, as one surface.
+    /// From below the outside over the rim to the floor, as one surface.
     fn surface(&self) -> Surface {
         let [low, high] = self.depth;
         let [a, b, c] = self.radii;
@@ -164,7 +164,7 @@ impl Funnel {
         Surface::from_polygons(rings.concat(), &polygons).unwrap()
     }
 
-    /// The same in convex pieces.
+    /// The same solid in convex pieces.
     fn pieces(&self) -> Vec<Surface> {
         let [low, high] = self.depth;
         let wedge = |k: usize, inner: [f64; 2], z: [f64; 2]| {
@@ -182,7 +182,7 @@ impl Funnel {
             let cut = |piece: &Vec<DVec3>| {
                 let solid = convex_hull(piece).unwrap();
                 let parts = [below(&solid, normal, *level), below(&solid, -normal, -level)];
-                // A part that is hardly there would be no piece that anybody writes.
+                // No design would contain a piece this thin.
                 let is_thick = |part: &Vec<DVec3>| convex_hull(part).is_ok_and(|part| part.volume() > 1e-5);
                 if parts.iter().all(is_thick) { parts.to_vec() } else { vec![piece.clone()] }
             };
@@ -194,7 +194,7 @@ impl Funnel {
         pieces.iter().map(written).collect()
     }
 
-    /// A peg that is smaller by a hundredth, in two pieces; drawn facing up.
+    /// A peg smaller by a hundredth, in two pieces; drawn facing up.
     fn peg(&self) -> Vec<Surface> {
         let [low, high] = self.depth;
         let [a, b, c] = self.radii.map(|radius| radius - 0.01);
@@ -231,7 +231,8 @@ fn below(solid: &Surface, normal: DVec3, level: f64) -> Vec<DVec3> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(30))]
 
-    /// The union has the heights that the judge finds over its pieces, and the outcomes of the solid drawn as one surface.
+    /// The union has the heights that brute force finds over its pieces, and the outcomes of the solid drawn as one
+    /// surface.
     #[test]
     fn a_funnel_in_pieces_is_the_funnel(
         funnel in funnels(),
@@ -252,7 +253,7 @@ proptest! {
             let pose = CorPose { lateral: DVec2::new(x, y), rotation: rotation(roll, pitch, yaw) };
             match (pair.height(&pose), brute::height(&judge, &pose)) {
                 (Some(fast), Some(slow)) => prop_assert!((fast - slow).abs() < 1e-9, "{} {}", fast, slow),
-                // Beside each other by rounding.
+                // Beside each other by rounding only.
                 (fast, slow) => prop_assert!(fast.is_some() == slow.is_some(), "{:?} {:?}", fast, slow),
             }
         }

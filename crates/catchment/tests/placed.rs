@@ -1,4 +1,5 @@
-//! Halves as their files have them: whichever way they are drawn, the same problem; and where they are not what they are said to be, why.
+//! Halves in the frames of their files: the problem does not depend on the frame, and a half that contradicts its declaration is refused
+//! with the reason.
 
 use catchment::design::{ConnectorSpec, DrawnFrames, HalfSpec, OwnSpec, PartPlacement, SourceText};
 use catchment::pose::CorPose;
@@ -44,7 +45,7 @@ fn plain() -> OwnSpec {
     OwnSpec::new(HEIGHT / 2.0, fixed, moving)
 }
 
-/// Both in one frame, docked, `apart` along the approach, seen from the world by `world`.
+/// Both in one frame, docked, `apart` along the approach; `world` is the pose of that frame.
 fn assembled(world: &DAffine3, apart: f64) -> OwnSpec {
     let face = DAffine3::from_translation(DVec3::new(0.0, 0.0, -HEIGHT / 2.0));
     let half_turn = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)));
@@ -62,7 +63,8 @@ fn assembled(world: &DAffine3, apart: f64) -> OwnSpec {
     }
 }
 
-/// Largest difference of the heights over poses spread over the error box; `turned` about z is how the second differs.
+/// Largest difference of the heights over poses spread over the error box; `turned` is the rotation of the second
+/// about z.
 fn difference(a: &Problem, b: &Problem, turned: f64) -> f64 {
     let spread = |k: u32, step: f64, half: f64| ((f64::from(k) * step).fract() * 2.0 - 1.0) * half;
     let mut largest = 0.0f64;
@@ -104,7 +106,7 @@ fn affine([x, y, z]: [f64; 3], translation: [f64; 3]) -> DAffine3 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A part that its file has turned and far off comes back by `rotate` and `translate`.
+    /// `rotate` and `translate` restore a part that its file has turned and moved far away.
     #[test]
     fn a_placed_half_is_where_it_was(a in turn(), s in prop::array::uniform3(-20.0..20.0f64)) {
         let place = affine(a, s);
@@ -125,14 +127,14 @@ proptest! {
         prop_assert!(origin.moving.transform_point3(face).length() < 1e-9);
     }
 
-    /// An assembly in any frame, drawn a little apart or into each other: mated where the halves first touch, the face centre found.
+    /// An assembly in any frame, drawn slightly apart or overlapping: mated at first contact, with the face centre computed.
     #[test]
     fn an_assembly_is_found_in_any_frame(a in turn(), s in prop::array::uniform3(-20.0..20.0f64), apart in -0.04..0.04f64) {
         let world = affine(a, s);
         let own = problem(assembled(&world, apart)).unwrap();
         let origin = own.connector().origin;
         prop_assert!((origin.apart.unwrap() - apart).abs() < 1e-9);
-        // The frame that is found may be turned about the approach.
+        // The computed frame may be turned about the approach.
         let seen = origin.fixed * world;
         let turned = seen.transform_vector3(DVec3::X).truncate().to_angle();
         prop_assert!(seen.transform_vector3(DVec3::Z).abs_diff_eq(DVec3::Z, 1e-9));
@@ -142,7 +144,7 @@ proptest! {
     }
 }
 
-/// Facing +z, the heights of the face centres are found; so they are where the two files have them at different heights.
+/// Facing +z, the heights of the face centres are computed, also if the two files have them at different heights.
 #[test]
 fn the_face_height_is_found() {
     let [fixed, moving] = drawn();
@@ -161,7 +163,7 @@ fn the_face_height_is_found() {
     for (result, true_) in [(drawing.fixed.face_center[2], 3.35), (drawing.moving.face_center[2], -6.65)] {
         assert!((result - true_).abs() < 1e-9, "{result} {true_}");
     }
-    // In front of the moving face, inside of the fixed half.
+    // In front of the moving face, inside the fixed half.
     assert!((drawing.fixed.center_of_rotation[2] - (3.35 - COR)).abs() < 1e-9);
     assert!((drawing.moving.center_of_rotation[2] - (-6.65 + COR)).abs() < 1e-9);
 }
@@ -173,7 +175,7 @@ fn an_assembly_that_is_not_docked_is_refused() {
     assert!(refused(-0.3).contains("0.3 D deeper than it gets"), "{}", refused(-0.3));
 }
 
-/// Exported from an assembly that was put together by eye: refused as it is, and the same pair where it settles.
+/// Exported from an assembly aligned by eye: refused as drawn; the same pair builds with `settle`.
 #[test]
 fn an_assembly_drawn_askew_settles() {
     let askew = DAffine3::from_mat3_translation(DMat3::from_rotation_x(0.01), DVec3::new(0.012, -0.007, 0.0));
@@ -193,7 +195,7 @@ fn an_assembly_drawn_askew_settles() {
     assert!((error.roll + 0.01).abs() < 1e-4, "{error:?}");
 }
 
-/// Point on point nothing holds.
+/// Point on point has no rest.
 #[test]
 fn halves_that_run_off_do_not_settle() {
     let tip = || {
@@ -237,7 +239,8 @@ fn whatever_places_a_half_changes_the_digest() {
     assert_eq!(digests.len(), all);
 }
 
-/// A funnel of twelve sides with a flat floor and its plug, docked in one frame, in mm on a width of 50; every corner off by up to 0.05 mm in x, y and z.
+/// A funnel of twelve sides with a flat floor and its plug, docked in one frame, in mm on a width of 50; every corner has an error of up to 0.05 mm in x,
+/// y and z.
 fn noisy_funnel(seed: u64, settle: bool) -> SourceText {
     const SIDES: usize = 12;
     let mut random = seed;
@@ -288,8 +291,8 @@ fn noisy_funnel(seed: u64, settle: bool) -> SourceText {
         .with_files([("fixed.obj".into(), fixed), ("moving.obj".into(), moving)])
 }
 
-/// Scanned halves do not rest exactly as drawn: a run answers, or refuses with the distance to where they rest and the remedy, and never with a Sum of 0. With the
-/// remedy every one answers.
+/// Scanned halves do not rest exactly as drawn: a run returns a result, or refuses with the distance to the rest and the remedy, and never returns a Sum of 0.
+/// With the remedy every run returns a result.
 #[test]
 fn a_noisy_mesh_answers_or_says_where_it_settles() {
     let quick =

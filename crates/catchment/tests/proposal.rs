@@ -1,4 +1,4 @@
-//! Parts thrown anywhere, and the design that is proposed for them: the same seat and the same heights as those of the design they come from.
+//! Parts at arbitrary poses, and the design proposed for them: it has the same seat and the same heights as the original design.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -17,10 +17,10 @@ use std::path::Path;
 /// D of the parts in their files, in mm.
 const WIDTH: f64 = 40.0;
 
-/// As two files, and as an assembly.
+/// As two files, or as one assembly.
 const BOTH: [PartFrames; 2] = [PartFrames::Facing, PartFrames::Any];
 
-/// Numbers that look random.
+/// Pseudorandom numbers.
 struct Dice(u64);
 
 impl Dice {
@@ -29,7 +29,7 @@ impl Dice {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A frame turned by right angles, somewhere, in mm.
+    /// A frame turned by right angles and translated at random, in mm.
     fn frame(&mut self) -> DAffine3 {
         let mut quarters = || f64::from((self.next() * 4.0) as u32) * FRAC_PI_2;
         let turn = DMat3::from_rotation_z(quarters())
@@ -63,7 +63,7 @@ fn family(name: &str, more: &str) -> Problem {
     problem(&format!("[connector]\nfamily = \"{name}\"\n{more}\n"))
 }
 
-/// How much the heights over lateral offsets differ at most, in D of `a`, seen from the best of four turns.
+/// Largest difference of the heights over lateral offsets, in D of `a`, for the best of four quarter turns.
 fn difference(a: &Problem, b: &Problem) -> f64 {
     let rotation = DMat3::IDENTITY;
     let ratio = WIDTH / b.design().width;
@@ -89,7 +89,7 @@ fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &ProposalSettings) -
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Throws the halves of a design, lets them be placed in each of these frames, and compares the heights.
+/// Throws the halves of a design, proposes a design in each of these frames, and compares the heights.
 fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, frames: &[PartFrames]) {
     let wanted = frames;
     let mut dice = Dice(seed);
@@ -145,7 +145,8 @@ fn a_spatial_x_face_comes_back() {
 
 #[test]
 fn pins_come_back() {
-    // The seat has play: it is put in its middle, as well as play is known.
+    // The seat has play: the proposal puts the part in its middle, to the accuracy to which the play is
+    // known.
     comes_back(&family("pin-hole", "chord_error = 0.01\nclearance = 0.02"), None, 1e-3, 3, &BOTH);
 }
 
@@ -168,7 +169,7 @@ fn a_cone_comes_back_and_its_yaw_does_not_matter() {
     assert_eq!(result.problem.alignment().dont_care, DofSet::EMPTY.with(Dof::Yaw));
 }
 
-/// As an assembly: of the two files alone the balls may as well be meant to hang between the blocks, where they hold better.
+/// As an assembly: from the two files alone the balls could as well hang between the blocks, where they rest more stably.
 #[test]
 fn balls_in_grooves_come_back() {
     let text =
@@ -178,7 +179,8 @@ fn balls_in_grooves_come_back() {
     comes_back(&problem(&text), None, 1e-4, 5, &[PartFrames::Any]);
 }
 
-/// A peg that rattles in its tray, by more than a seat's play may be without being said: what walls stop is free, and the play is what counts as docked.
+/// A peg that rattles in its tray, by more play than a seat may have undeclared. A direction bounded by walls is free, and the play is the docking
+/// tolerance.
 #[test]
 fn what_walls_hold_far_apart_is_docked_within_the_play() {
     let (peg, hole, outside) = (DVec2::new(0.2, 0.17), DVec2::new(0.23, 0.2), 0.6);
@@ -203,7 +205,7 @@ fn what_walls_hold_far_apart_is_docked_within_the_play() {
     let result = proposed(&parts, folder.path(), &settings(PartFrames::Any));
     let alignment = result.problem.alignment();
     assert_eq!(alignment.free, DofSet::ALL, "{}", result.text);
-    // Its play in parts of D, two digits of it; straight or turned.
+    // Its play in D, to two digits; straight or turned.
     let width = result.problem.design().width / WIDTH;
     let limit = |dof: Dof| alignment.docked.limit(dof).unwrap();
     assert!((0.03..0.034).contains(&(limit(Dof::X) * width)), "{}", result.text);
@@ -212,7 +214,7 @@ fn what_walls_hold_far_apart_is_docked_within_the_play() {
     assert_eq!(alignment.docked.limit(Dof::Pitch), None);
 }
 
-/// Ungendered: one file, twice.
+/// Ungendered: the same file twice.
 #[test]
 fn the_same_part_twice_is_a_pair() {
     let truth = family("x-face-3d", "");
@@ -224,7 +226,7 @@ fn the_same_part_twice_is_a_pair() {
     assert!(result.problem.connector().ungendered(Mount::X));
 }
 
-/// What is known is not looked for; what is not so is refused.
+/// The proposal does not search for given values, and refuses wrong ones.
 #[test]
 fn a_pinned_choice_is_kept() {
     let truth = family("pyramid", "");
@@ -261,7 +263,7 @@ fn a_unit_that_nobody_says_is_asked_for() {
     assert!(refused.to_string().contains("the part is 40 × 40 × "), "{refused}");
 }
 
-/// A plate has no seat in a hollow; with the ball that was bought for it, it has.
+/// A plate alone has no seat in a hollow; with the purchased ball it has one.
 #[test]
 fn a_bought_ball_is_part_of_a_half() {
     let folder = tempfile::tempdir().unwrap();
@@ -273,7 +275,7 @@ fn a_bought_ball_is_part_of_a_half() {
         DVec3::new(0.5 * sign(0), 0.5 * sign(1), 0.1 * f64::from(k >> 2 & 1 == 1))
     };
     let plate = Half::of(vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()]);
-    // In its file the plate lies with its face to +x.
+    // In its file the plate faces +x.
     let frame = DAffine3 {
         matrix3: DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X),
         translation: DVec3::new(30.0, -7.0, 12.0),
@@ -291,12 +293,12 @@ fn a_bought_ball_is_part_of_a_half() {
     assert!(free.contains(Dof::X) && free.contains(Dof::Y), "{free:?}");
     let off = PoseError { x: 0.2, y: -0.1, ..PoseError::default() };
     assert_eq!(result.problem.follow(&off).outcome, Outcome::Aligned);
-    // What is wrong with a part is said as of a design.
+    // A defect of a part is reported like a defect of a design.
     let with = [vec![PartDetail::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
     let wrong = ProposalSettings { with, ..settings(PartFrames::Facing) };
     let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
-    // The plate in two files is the plate; a file whose unit nobody says is named with its own size.
+    // The plate in two files is the same plate; a file without a unit is reported with its own size.
     let half = |shift: f64| {
         let corners: Vec<_> = (0..8).map(corner).map(|p| DVec3::new(0.5 * p.x + shift, p.y, p.z)).collect();
         Half::of(vec![convex_hull(&corners).unwrap()])

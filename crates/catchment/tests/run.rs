@@ -1,4 +1,4 @@
-//! The run from outside: equal bits however it is entered or divided, warnings where they belong.
+//! The public interface of a run: equal bits for every entry point and division, and the right warnings.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -36,7 +36,7 @@ fn run(method: &str, cells: usize, samples: usize) -> Run {
     Run { over, sample, ..Run::by(method.parse().unwrap()) }
 }
 
-/// The report without what differs between equal runs.
+/// The report without the fields that differ between equal runs.
 fn printed(answer: &Answer) -> Value {
     let mut report = serde_json::to_value(Report::of_answer(answer)).unwrap();
     report["timing"] = Value::Null;
@@ -123,7 +123,7 @@ fn parts_of_a_run_in_five_dimensions_give_the_bits_of_the_whole() {
     for of in [1, 2, 7] {
         let mut parts: Vec<PartAnswer> = (0..of)
             .map(|number| whole.part(&problem, RunPart { number, of }, &Exec::new()).unwrap())
-            // Through the wire, as from another machine.
+            // Serialised, as from another machine.
             .map(|part| serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap())
             .collect();
         parts.reverse();
@@ -193,7 +193,7 @@ fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
         let run = Run { requirements: vec![requirement.parse().unwrap()], ..run(method, 8, 0) };
         check_requirements(&run, &planar())
     };
-    // A partition has a section of its own, a flood has basins; no other report has.
+    // A partition has its own section, a flood has basins; no other report has them.
     assert!(asks("partition", "partition.sum >= 0.1").is_ok());
     assert!(asks("flood", "basins.minima >= 1").is_ok());
     let refused = asks("descent", "partition.sum >= 0.1").unwrap_err();
@@ -216,7 +216,7 @@ fn a_grid_outside_its_own_sample_has_a_warning_and_so_has_no_sample() {
         assert_eq!(answer.sum(), Report::of_answer(&answer).acceptance.sum);
         answer.warnings()
     };
-    // Five cells per axis of flooding are far off, and a thousand exact poses show it.
+    // Flooding with five cells per axis is far from exact, and a thousand exactly followed poses show it.
     let biased = kinds(run("flood", 5, 1000));
     assert!(biased.iter().any(|w| w.code == "outside-sample"), "{biased:?}");
     assert!(kinds(run("flood", 5, 0)).iter().any(|w| *w == Warning::NoInterval));
@@ -232,13 +232,13 @@ fn what_would_not_fit_is_refused_before_it_is_computed() {
     }
 }
 
-/// Where it is known early that a half docks, its final pose is still the one in which it rests.
+/// If a motion is decided early, its final pose is still the one in which the half rests.
 #[test]
 fn final_poses_are_places_of_rest() {
     let problem = problem(Family::Pyramid, DofSet::ALL);
     let end = problem.follow(&PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() });
     let most = end.error.to_array().into_iter().map(f64::abs).fold(0.0, f64::max);
-    // Motions are called within 0.02 of the mated pose.
+    // Motions are decided early within 0.02 of the mated pose.
     assert!(end.outcome == Outcome::Aligned && most < 1e-3, "{end:?}");
 }
 
@@ -246,7 +246,7 @@ fn final_poses_are_places_of_rest() {
 fn undecided_random_motions_are_said() {
     use catchment::method::descent::DescentSettings;
     let problem = problem(Family::XFace3dLocking, DofSet::ALL);
-    // A budget that suffices for some.
+    // A budget that suffices for some of the motions.
     let short = DescentSettings { max_steps: 9, ..DescentSettings::default() };
     let run = Run {
         over: Over::Grid("2".parse().unwrap()),
@@ -263,7 +263,7 @@ fn undecided_random_motions_are_said() {
 }
 
 /// Over (x, y, yaw) the pyramid corrects |x|, |y| < D/2 and |yaw| < 45°, whatever its height and centre of rotation: π/2 D²·rad. The dissertation
-/// prints 2.47 in its text (section 5.3), which no convention that is known gives.
+/// prints 2.47 in its text (section 5.3), which no known convention gives.
 #[test]
 fn the_pyramid_over_x_y_and_yaw_measures_half_pi() {
     for (ratio, cor) in [(0.5, 0.5), (2.0, -1.0)] {
@@ -280,8 +280,8 @@ fn the_pyramid_over_x_y_and_yaw_measures_half_pi() {
     }
 }
 
-/// Of random poses in the largest cube, and in the largest around zero, practically all dock, and a cube 2 % larger holds one that does not: two to five
-/// free errors, with a sharp seat and with play.
+/// Practically all poses sampled from the largest cube, and from the largest cube around zero, dock. A cube 2 % larger holds a pose that does not. Two
+/// to five free errors, with a sharp seat and with play.
 #[test]
 fn what_a_run_claims_docks_and_hardly_more_does() {
     let planar = [Dof::X, Dof::Pitch].into_iter().collect::<DofSet>();
@@ -318,7 +318,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
             let poses = if family == Family::PinHole { 500 } else { 1000 };
             let docks = docking(bounds, poses, &|share| share);
             assert!(docks as f64 >= 0.999 * poses as f64, "{family:?} {bounds:?}: {docks} of {poses}");
-            // Larger ones fail in their corners and on their faces first, unless the error box ends them.
+            // Larger cubes fail first in their corners and on their faces, unless the error box bounds them.
             let is_cut = bounds.iter().any(|b| -of_box(b.lo, b.axis) > 0.99 || of_box(b.hi, b.axis) > 0.99);
             let outer = |share: f64| 1.02 * (3.0 * share).clamp(-1.0, 1.0);
             assert!(is_cut || docking(bounds, poses, &outer) < poses, "{family:?} {bounds:?}: too small");
@@ -326,7 +326,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
     }
 }
 
-/// A pyramid that cannot tilt corrects offsets up to D/2 and a yaw up to 45°, each alone.
+/// A pyramid that cannot tilt corrects offsets up to D/2 and a yaw up to 45° as single-axis limits.
 #[test]
 fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
     let answer = run("confluence", 4, 200).on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
@@ -336,7 +336,7 @@ fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
     for ((dof, limit), (axis, exact)) in limits.iter().zip(expected) {
         assert!(*dof == axis && (limit - exact).abs() < 0.01 * exact, "{limits:?}");
     }
-    // In their proportions: no wider than they are, and not much narrower.
+    // In proportion: no wider than the limits, and not much narrower.
     for (side, (axis, limit)) in upright.window.bounds.iter().zip(&limits) {
         let half = &side.hi;
         assert!(side.axis == *axis && *half <= *limit && *half > 0.9 * limit, "{upright:?}");
@@ -348,7 +348,7 @@ fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
     }
 }
 
-/// Where a grid that can be afforded is too coarse, random poses answer; a grid that is asked for stays one.
+/// If an affordable grid is too coarse, the default samples poses instead; an explicit grid is kept.
 #[test]
 fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
     let problem = problem(Family::PinHole, DofSet::ALL);
@@ -360,7 +360,7 @@ fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
     let plan = run("confluence", 4, 20).plan(&problem).unwrap();
     assert!(matches!(plan.domain, Domain::Grid(_)) && plan.method.name() == "confluence");
     let answer = few.on(&problem, &Exec::new()).unwrap();
-    // Window and limits rest on motions, with a grid or without.
+    // The window and the limits come from motions, with or without a grid.
     assert_eq!(answer.merits.tolerances.len(), problem.alignment().free.len());
     let centered = answer.merits.centered.as_ref().unwrap();
     assert!(centered.followed && centered.edge > 0.0 && answer.merits.onaa.is_none());

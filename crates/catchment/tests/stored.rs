@@ -7,7 +7,7 @@ use catchment::report::{Report, SCHEMA};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Fields of the last layout, and their names in this one.
+/// Fields of the last layout, and their names in the current one.
 const RENAMED: [(&str, &str); 7] = [
     ("firmness", "stability"),
     ("way_out", "escape_path"),
@@ -18,12 +18,12 @@ const RENAMED: [(&str, &str); 7] = [
     ("joined", "inherited"),
 ];
 
-/// A planar V on 8 × 8 cells with its jams, as the version before the fields were renamed wrote it.
+/// A planar V on 8 × 8 cells with its jams, as written by the version before the fields were renamed.
 fn old() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/schema-3")
 }
 
-/// The same with today's names.
+/// The same with the current names.
 fn renamed(value: Value) -> Value {
     match value {
         Value::Array(list) => list.into_iter().map(renamed).collect(),
@@ -41,8 +41,8 @@ fn old_json() -> Value {
     serde_json::from_str(&std::fs::read_to_string(old().join("report.json")).unwrap()).unwrap()
 }
 
-/// Adds a field to every object, except inside of inputs (settings and docking tolerance), which are read strictly, in
-/// tables by outcome, and beside the one that says which connector it is.
+/// Adds a field to every object, except inside inputs (settings and docking tolerance), which are read strictly,
+/// inside tables by outcome, and beside the field that identifies the connector.
 fn with_more_fields(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(with_more_fields),
@@ -66,7 +66,7 @@ fn a_report_of_the_last_layout_is_read_and_written_in_this_one() {
     let mut new: Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
     assert_eq!(new["schema"], SCHEMA);
     new["schema"] = 3.into();
-    // What a diagnostic has beside its facts and its sentence is derived from them.
+    // Apart from its facts and its sentence, the fields of a diagnostic are derived from them.
     for warning in new["warnings"].as_array_mut().unwrap().iter_mut().filter_map(Value::as_object_mut) {
         assert_eq!(warning.remove("severity"), Some("warning".into()));
         assert_eq!(warning.remove("code"), Some(warning["warning"]["kind"].clone()));
@@ -105,7 +105,7 @@ fn a_newer_layout_is_refused_with_advice_whatever_its_form() {
     assert!(other.contains(r"it is a report of `trace\u{1b}[2J`, not of `run`"), "{other}");
 }
 
-/// The version goes into pages, tables and files of other programs.
+/// The version appears in pages, tables and files for other programs.
 #[test]
 fn a_version_that_is_none_is_refused() {
     for hostile in ["0.1.0\"><script>alert(1)</script>", "", "0.1", "0.1.0\u{1b}[2J"] {

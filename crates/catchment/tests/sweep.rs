@@ -1,4 +1,5 @@
-//! Sweeps: what chapter 5 of the dissertation says of its own, of our motions; and what a sweep promises about threads and about what was kept.
+//! Sweeps: the statements of chapter 5 of the dissertation, checked by exact motion; and the guarantees of a sweep about threads and stored
+//! results.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -19,7 +20,7 @@ use std::io;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Enough for what a sweep of two designs holds, and for no grid.
+/// Enough memory for the result of a sweep of two designs, too little for a grid.
 const FIGURES: u64 = 2 * 2048;
 
 const RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
@@ -54,17 +55,17 @@ fn table(family: Family, free: &[Dof], cells: usize) -> Vec<Vec<f64>> {
     RATIOS.map(|ratio| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|cor| sum(ratio, cor)).to_vec()).to_vec()
 }
 
-/// Kendall's count: pairs that rise less pairs that fall, of all.
+/// Kendall's count: rising pairs minus falling pairs, as a share of all pairs.
 fn tendency(values: &[f64]) -> f64 {
     let pairs = (0..values.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
     let signs: Vec<f64> = pairs.map(|(i, j)| (values[j] - values[i]).signum()).collect();
     signs.iter().sum::<f64>() / signs.len() as f64
 }
 
-/// Section 5.2 of the dissertation, by exact motion and with the centre of rotation measured from the face: "more remote COR tends to
-/// correspond to larger AA" holds for both faces at every ratio. "As does smaller aspect ratio" holds for the V-Face where the centre does not
-/// lie behind the face, and does not for the X-Face, whose acceptance is largest in between. "Most of the areas of acceptance for the X-Face are
-/// larger than the V-Face by a factor of up to two" holds, but for the flattest.
+/// Section 5.2 of the dissertation, by exact motion and with the centre of rotation measured from the face: "more remote COR tends to correspond
+/// to larger AA" holds for both faces at every ratio. "As does smaller aspect ratio" holds for the V-Face if the centre does not lie behind the
+/// face. It does not hold for the X-Face, whose acceptance is largest in between. "Most of the areas of acceptance for the X-Face are larger
+/// than the V-Face by a factor of up to two" holds, except for the flattest.
 #[test]
 fn the_trends_of_the_planar_faces() {
     let v = table(Family::VFace, &[Dof::X, Dof::Pitch], 30);
@@ -91,8 +92,8 @@ fn the_trends_of_the_planar_faces() {
 }
 
 /// Section 5.3.2, of the pyramid in (x, y, pitch), likewise: a remote centre accepts more at every ratio. "Lower AR values yield AA that vary
-/// less with COR" does not hold of centres measured in D from the face: a pyramid of four widths is so steep that a width more or less
-/// changes nothing, which is seen best where its acceptance is small.
+/// less with COR" does not hold for centres measured in D from the face: a pyramid of four widths is so steep that a width more or less
+/// changes nothing. This shows most clearly where its acceptance is small.
 #[test]
 fn the_trends_of_the_pyramid() {
     let sums = table(Family::Pyramid, &[Dof::X, Dof::Y, Dof::Pitch], 20);
@@ -106,7 +107,7 @@ fn the_trends_of_the_pyramid() {
     assert!(tendency(&behind) > 0.0, "centres behind the face want steep pyramids: {behind:?}");
 }
 
-/// Keeps everything in memory, and counts what is asked for and found.
+/// Keeps everything in memory, and counts look-ups and hits.
 #[derive(Default)]
 struct Memory {
     kept: Mutex<BTreeMap<String, DesignResult>>,
@@ -142,22 +143,22 @@ fn threads_and_what_was_kept_change_nothing() {
     let whole = run(small(&axes), &memory, 1);
     assert_eq!(memory.kept.lock().unwrap().len(), 9);
     assert_eq!(run(small(&axes), &NoStore, 3), whole);
-    // Half of them are lost: the others are not computed again.
+    // Half of the results are lost: the sweep does not recompute the other half.
     memory.kept.lock().unwrap().retain(|key, _| key.as_bytes()[0].is_multiple_of(2));
     let left = memory.kept.lock().unwrap().len();
     assert_eq!(run(small(&axes), &memory, 2), whole);
     assert_eq!(memory.found.load(Ordering::Relaxed), left);
-    // Another run, or another design, finds none of them.
+    // Another run or another design hits no stored result.
     memory.found.store(0, Ordering::Relaxed);
     plan(&family("x-face", "['x', 'pitch']"), &axes, "10", 50).unwrap().run(&memory, &Exec::new()).unwrap();
     assert_eq!(memory.found.load(Ordering::Relaxed), 0);
-    // Fewer values find theirs.
+    // A sweep with fewer values hits the stored ones.
     let fewer = run(small(&["aspect_ratio=1", "cor=-1,1"]), &memory, 1);
     assert_eq!(memory.found.load(Ordering::Relaxed), 2);
     assert_eq!(fewer.designs[1].result, whole.designs[5].result);
 }
 
-/// One design of a sweep is what a run of that design is.
+/// One design of a sweep equals a run of that design.
 #[test]
 fn a_design_of_a_sweep_is_a_run() {
     let sweep = run(small(&["cor=-1,0.5"]), &NoStore, 1);
@@ -172,7 +173,7 @@ fn a_design_of_a_sweep_is_a_run() {
     assert_eq!(outline.outcomes, digits);
 }
 
-/// Two designs do not fit into this memory together, one alone does; and one that fits nowhere is an error, not a design refused.
+/// This memory holds one design, but not two together. A design that does not fit at all is an error, not a refused design.
 #[test]
 fn what_does_not_fit_side_by_side_is_computed_alone() {
     let fine = || plan(&family("x-face", "['x', 'pitch']"), &["cor=-1,0.5"], "40", 50).unwrap();

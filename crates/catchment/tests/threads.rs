@@ -1,4 +1,4 @@
-//! Threads never change a bit of a result, from the heights to the report's bytes.
+//! The number of threads never changes a bit of a result, from the heights to the report's bytes.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 

@@ -1,4 +1,4 @@
-//! Tight fits: outcomes that depend on the halves, not on the step, nor on how the solid was written down.
+//! Tight fits: outcomes depend on the halves, not on the step or the representation of the solid.
 //!
 //! ```text
 //!       ┌────────┐      peg: half width 0.2 D less the clearance, 0.25 D long
@@ -27,7 +27,7 @@ const DEPTH: f64 = 0.25;
 const CHAMFER: f64 = 0.08;
 const BASE: f64 = 0.2;
 
-/// How a solid is written down.
+/// Representation of a solid.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     Surface,
@@ -71,7 +71,7 @@ impl Fit {
         Surface::from_polygons(rings.concat(), &polygons).unwrap()
     }
 
-    /// The plate with the hole, its upper face at z = 0: from outside below over the rim to the bottom.
+    /// The plate with the hole, its upper face at z = 0: from below the outside over the rim to the bottom.
     fn hole(self) -> Vec<Vec<DVec3>> {
         let width = |z: f64| HALF_WIDTH + self.draft_deg.to_radians().tan() * (DEPTH + z);
         vec![
@@ -109,7 +109,7 @@ impl Fit {
         let mut alignment = Alignment::new(DofSet::ALL, Mount::X);
         alignment.center_of_rotation = 0.0;
         if self.sides > 4 {
-            // A round peg may turn as it likes.
+            // A round peg may turn freely.
             alignment.free = DofSet::ALL.without(Dof::Yaw);
         } else {
             alignment.symmetry = 4;
@@ -141,11 +141,11 @@ fn changed(a: &[Outcome], b: &[Outcome]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-/// Halves the step and counts what changes.
+/// Halves the step and counts the changed outcomes.
 fn halving_changes(pair: &Pair, poses: usize) -> usize {
     let step = DescentSettings::default().step;
     let whole = outcomes(pair, poses, step);
-    // Otherwise nothing is tested.
+    // If the fit is not tight or no pose docks, this tests nothing.
     assert!(pair.is_tight() && whole.contains(&Outcome::Aligned));
     changed(&whole, &outcomes(pair, poses, step / 2.0))
 }
@@ -153,7 +153,7 @@ fn halving_changes(pair: &Pair, poses: usize) -> usize {
 const SQUARE: Fit = Fit { sides: 4, clearance: 0.002, draft_deg: 0.0 };
 const ROUND: Fit = Fit { sides: 24, ..SQUARE };
 
-/// At most one of 300: the issue's bound.
+/// At most one of 300: the bound of the issue.
 #[test]
 fn pegs_do_not_depend_on_the_step() {
     for (fit, poses) in [(SQUARE, 300), (ROUND, 150)] {
@@ -179,7 +179,8 @@ fn pins_in_holes_do_not_depend_on_the_step() {
     assert!(changed <= 1, "{changed} of 50");
 }
 
-/// Pieces have walls inside the solid, an STL file has edges across its facets and corners off by 1e-8: neither is met.
+/// Pieces have walls inside the solid; an STL file has edges across its facets and corners off by 1e-8. A motion meets
+/// neither.
 #[test]
 fn pieces_and_stl_are_the_solid() {
     for (fit, poses) in [(SQUARE, 300), (ROUND, 60)] {
@@ -192,19 +193,19 @@ fn pieces_and_stl_are_the_solid() {
     }
 }
 
-/// What steps of 0.02 D accept is what steps 60 times smaller do: 64.7 % against 36.8 % before fits were followed from event to
-/// event, on a peg like this one.
+/// Steps of 0.02 D accept the same poses as steps 60 times smaller: 64.7 % against 36.8 % before fits were followed from event
+/// to event, on a peg like this one.
 #[test]
 fn the_accepted_share_is_that_of_small_steps() {
     const POSES: usize = 200;
     let pair = SQUARE.pair(Form::Surface);
     let step = DescentSettings::default().step;
     let changed = changed(&outcomes(&pair, POSES, step), &outcomes(&pair, POSES, step / 60.0));
-    // Pose by pose, which is more than their share.
+    // Pose by pose, which is stricter than comparing their shares.
     assert!(changed <= 1, "{changed} of {POSES}");
 }
 
-/// Families whose slopes centre them are followed by plain steps, which cost less.
+/// Plain steps, which cost less, follow the families whose slopes centre them.
 #[test]
 fn slopes_are_not_tight() {
     for family in Family::ALL {

@@ -1,7 +1,7 @@
 //! `descent` against an independent rigid-body engine: the committed trial sets of `reference/mujoco`.
 //!
-//! The engine integrates masses, soft contacts and time; catchment none of these. Where both describe frictionless,
-//! overdamped docking they must agree, up to poses that lie on the border of the accepted set.
+//! The engine integrates masses, soft contacts and time; catchment does not. Where both describe frictionless,
+//! overdamped docking they must agree, except for poses on the border of the accepted set.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -14,7 +14,7 @@ use catchment::method::descent::{self, DescentSettings};
 use catchment::pose::{Dof, DofSet, PoseError};
 use std::path::Path;
 
-/// One set of trials: the pair, and per pose whether the engine says aligned (`None`: undecided).
+/// One set of trials: the pair, and per pose whether the engine aligned it (`None`: undecided).
 struct Trials {
     name: String,
     pair: Pair,
@@ -75,7 +75,7 @@ impl Trials {
         descent::run(&self.pair, domain, settings, &Exec::new()).unwrap().0.outcomes
     }
 
-    /// Agreeing, decided, and the numbers of the disagreeing poses.
+    /// Number agreeing, number decided, and the indices of the disagreeing poses.
     fn compared(&self, outcomes: &[Outcome]) -> (usize, usize, Vec<usize>) {
         let decided: Vec<usize> = (0..self.poses.len())
             .filter(|&k| self.aligned[k].is_some() && outcomes[k] != Outcome::Undecided)
@@ -128,7 +128,7 @@ fn descent_agrees_with_the_engine() {
         let outcomes = trials.outcomes(&DescentSettings::default());
         let (same, of, differing) = trials.compared(&outcomes);
         println!("{}: {same} of {of}", trials.name);
-        // Undecided poses leave the comparison: hardly any may.
+        // Undecided poses leave the comparison: there may be hardly any.
         assert!(of * 100 >= trials.poses.len() * 99, "{}: only {of} decided", trials.name);
         assert!(same * 100 >= of * 96, "{}: {same} of {of}", trials.name);
         for k in differing {
@@ -170,7 +170,8 @@ fn the_engine_confirms_the_v_face_border() {
     assert!(same * 100 >= of * 98, "{same} of {of}");
 }
 
-/// Two ways that share no line of code: exact quasi-static motion, and a rigid-body engine with masses, springs and time steps.
+/// Two methods that share no line of code: exact quasi-static motion, and a rigid-body engine with masses, springs and time
+/// steps.
 #[cfg(feature = "drop")]
 #[test]
 fn drop_tests_agree_with_descent() {
@@ -191,7 +192,8 @@ fn drop_tests_agree_with_descent() {
     }
 }
 
-/// Poses whose motion is hard to follow: the half hooks under the underside of the other one, or a corner slides down a groove of the lip.
+/// Poses whose motion is hard to follow: the half hooks under the underside of the other half, or a corner slides down a groove of the
+/// lip.
 #[cfg(feature = "drop")]
 #[test]
 fn hooked_and_grooved_motions_end_as_in_the_engine() {
@@ -233,7 +235,7 @@ fn hooked_and_grooved_motions_end_as_in_the_engine() {
     }
 }
 
-/// The same with friction: Coulomb's cones step by step, and the engine's own.
+/// The same with friction: Coulomb cones in every step here, and the engine's own friction there.
 #[cfg(feature = "drop")]
 #[test]
 fn drop_tests_agree_with_friction() {
@@ -247,7 +249,7 @@ fn drop_tests_agree_with_friction() {
     let (pyramid, saddle) = (family("pyramid", 1.0), family("x-face-3d", 0.577_350_269_189_625_8));
     let peg = include_str!("../../../designs/chamfered-peg.toml").to_owned();
     let all = [0.5, 0.5, FRAC_PI_4, FRAC_PI_4, FRAC_PI_4];
-    // Above 0.25 the pyramid wedges, and soft contacts let go where rigid ones do not.
+    // Above 0.25 the pyramid wedges, and soft contacts release where rigid ones do not.
     for (name, text, friction, half) in [
         ("pyramid", &pyramid, 0.1, all),
         ("pyramid", &pyramid, 0.2, all),
@@ -258,7 +260,7 @@ fn drop_tests_agree_with_friction() {
     ] {
         let source = catchment::design::SourceText::new("f.toml", text.as_str());
         let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
-        // Evenly over the box (Roberts 2018: powers of the root of x⁶ = x + 1).
+        // Evenly over the error box (Roberts 2018: powers of the root of x⁶ = x + 1).
         let shares = [0.889_1f64, 0.790_6, 0.702_9, 0.625_0, 0.555_7];
         let pose = |k: u32| {
             let number = |j: usize| half[j] * (2.0 * (f64::from(k + 1) * shares[j]).fract() - 1.0);

@@ -1,7 +1,7 @@
 //! No motion passes through material: every waypoint is at first contact, or below it in free space.
 //!
-//! Two judges, neither of which the motion asks: the height of first contact by [`brute`], and, where a half has slid under an overhang, whether any two
-//! convex pieces of the halves, or any facets of closed surfaces, share a volume.
+//! Two oracles, both independent of the motion: the height of first contact by [`brute`], and, where a half has slid under an overhang, an overlap test
+//! of any two convex pieces of the halves, or of any facets of closed surfaces.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -16,10 +16,10 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// How far below first contact a waypoint may be by rounding, and how deep an overlap may be, in D.
+/// Rounding tolerance of a waypoint below first contact, and of the depth of an overlap, in D.
 const DEEP: f64 = 1e-6;
 
-/// The waypoints that are below first contact by more than [`DEEP`].
+/// The waypoints below first contact by more than [`DEEP`].
 fn below_first_contact<'a>(
     pair: &'a Pair,
     path: &'a Trajectory,
@@ -33,7 +33,7 @@ fn below_first_contact<'a>(
     })
 }
 
-/// Whether the judges, which look at every pair of facets, take no longer than a motion.
+/// Whether the oracles, which compare every pair of facets, take no longer than a motion.
 fn is_small(pair: &Pair) -> bool {
     let facets = |half: &Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
     facets(&pair.fixed) * facets(&pair.moving) < 3_000
@@ -55,8 +55,8 @@ fn poses(pair: &Pair, count: u32, start: u32) -> impl Iterator<Item = PoseError>
 
 // --- Convex pieces: overlap by separating axes. ---
 
-/// How deep two convex polyhedra overlap: the least over the normals of their facets and the directions across one edge of each
-/// (Gottschalk 1996), negative where they are apart.
+/// Depth of overlap of two convex polyhedra: the least over the normals of their facets and the directions across one edge of
+/// each (Gottschalk 1996), negative where they are apart.
 fn depth(a: &Surface, b: &Surface) -> f64 {
     let edges = |s: &Surface| -> Vec<DVec3> {
         s.edges.iter().map(|e| s.vertices[e.ends[1] as usize] - s.vertices[e.ends[0] as usize]).collect()
@@ -80,11 +80,11 @@ fn depth(a: &Surface, b: &Surface) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Two halves of strips between the same two planes y = ±`wide`: prisms under and over a broken line.
+/// Two halves made of strips between the same two planes y = ±`wide`: prisms under and over a polyline.
 struct Extruded {
     /// The strips of the fixed half, as drawn.
     strips: Vec<Vec<[f64; 3]>>,
-    /// Convex pieces of the fixed half, and of the moving half as seen from the COR.
+    /// Convex pieces of the fixed half, and of the moving half relative to the COR.
     pieces: [Vec<Surface>; 2],
     pair: Pair,
 }
@@ -151,7 +151,8 @@ impl Extruded {
 
 #[test]
 fn halves_that_end_in_the_same_planes_do_not_pass_through_each_other() {
-    // A V of two slopes, and of four: offsets with both turns had passed by up to 0.31 D into material.
+    // A V of two slopes, and of four: motions with offsets and both rotations once passed up to 0.31 D into
+    // material.
     let low = alignment(&[Dof::X, Dof::Pitch, Dof::Yaw], -0.5);
     let v = extruded(&[0.25, 0.0, 0.25], &[0.05, 0.05, 0.05], 0.5, &low);
     let missed = PoseError { x: -0.129_114_4, pitch: 0.626_097_4, yaw: 0.283_553_4, ..PoseError::default() };
@@ -166,8 +167,8 @@ fn halves_that_end_in_the_same_planes_do_not_pass_through_each_other() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Random profiles, mated between the same two planes, with and without play, over every choice of errors that keeps them there for part of
-    /// the way.
+    /// Random profiles, mated between the same two planes, with and without play, over every choice of errors that keeps them between these
+    /// planes for part of the way.
     #[test]
     fn random_extruded_halves_do_not_pass_through_each_other(
         heights in proptest::collection::vec(0.0..0.3f64, 3..7), loose in proptest::collection::vec(0.0..0.1f64, 7),
@@ -187,7 +188,7 @@ proptest! {
 
 // --- Every committed design. ---
 
-/// Solid angle under which a closed surface is seen from a point, as a share of 4π: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+/// Solid angle of a closed surface seen from a point, as a share of 4π: 1 inside, 0 outside (van Oosterom and Strackee 1983).
 fn winding(surface: &Surface, point: DVec3) -> f64 {
     let mut angle = 0.0;
     for facet in &surface.facets {
@@ -203,7 +204,7 @@ fn winding(surface: &Surface, point: DVec3) -> f64 {
     angle / (4.0 * std::f64::consts::PI)
 }
 
-/// A point of one surface that lies more than [`DEEP`] inside both: tried near the corners, the sides and the middle of every facet.
+/// A point of one surface more than [`DEEP`] inside both: tried near the corners, the sides and the middle of every facet.
 fn shared_point(a: &Surface, b: &Surface) -> Option<DVec3> {
     let (low, high) = b.bounds();
     a.facets.iter().find_map(|facet| {
@@ -236,7 +237,7 @@ fn no_design_passes_through_itself() {
         let count = if is_small(pair) { 15 } else { 3 };
         for error in poses(pair, count, 3) {
             let path = trace(pair, &error, &DescentSettings::default());
-            // Of many facets the last alone: what has passed a wall stays behind it.
+            // With many facets only the last waypoint: a half that has passed a wall stays behind it.
             let below: Vec<_> = below_first_contact(pair, &path).collect();
             for (pose, cor) in
                 if is_small(pair) { &below[..] } else { &below[below.len().saturating_sub(1)..] }
@@ -252,7 +253,8 @@ fn no_design_passes_through_itself() {
     }
 }
 
-/// A tip with a flat lands on a rim that is level: as soon as both lie flush nothing leads on, and it jams there.
+/// A tip with a flat lands on a level rim: as soon as both lie flush, no descent direction remains, and it jams
+/// there.
 #[test]
 fn a_tip_that_lands_flat_stays_where_it_lies() {
     // A groove between x = ±¼ in a level rim at z = 0.3; the tip's flat, 0.2 D wide, lies on the rim beside it.
@@ -277,7 +279,8 @@ fn a_tip_that_lands_flat_stays_where_it_lies() {
         assert_eq!(path.outcome, Outcome::Jammed, "{error:?}");
         let last = path.waypoints.last().unwrap();
         let flush = path.waypoints.iter().filter(|w| w.height - last.height < 1e-6);
-        // The last tilts that close, of 10⁻³ and less, lead on over some 10⁻⁴ D; before, one had led on over a whole step of 0.02 D.
+        // The last tilts to close, of 10⁻³ and less, continue over some 10⁻⁴ D; before the fix, one continued over a whole step of
+        // 0.02 D.
         for w in flush {
             let drift = (w.error.x - last.error.x).hypot(w.error.y - last.error.y);
             assert!(drift < 3e-4, "{error:?}: {drift}");

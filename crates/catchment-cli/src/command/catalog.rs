@@ -196,7 +196,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Done)
 }
 
-/// What the catalogue does not know, with what it knows as the advice.
+/// An unknown name, with the known names as advice.
 fn unknown(error: &UnknownError) -> Failure {
     Failure::with_help(error.to_string(), error.help())
 }

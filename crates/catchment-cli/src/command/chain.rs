@@ -86,7 +86,7 @@ fn modules(text: &str) -> Result<Modules, String> {
 }
 
 fn angles(text: &str) -> Result<Angles, String> {
-    /// The largest that a chain file takes, in radians.
+    /// The largest standard deviation that a chain file accepts, in radians.
     const LARGEST: f64 = 0.5;
     let angle = |text: &str| {
         let quantity: Quantity = text.trim().parse().map_err(|defect| with_advice(&defect))?;
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     output.finish(&report, || Ok(figure::draw(&report, &study)))
 }
 
-/// Refuses requirements on what this report has not.
+/// Rejects requirements on values that this report does not contain.
 fn check_requirements(requirements: &[Requirement], report: &ChainReport) -> Result<(), Failure> {
     for requirement in requirements {
         report.verdicts(std::slice::from_ref(requirement)).map_err(|error| {
@@ -129,7 +129,7 @@ fn check_requirements(requirements: &[Requirement], report: &ChainReport) -> Res
     Ok(())
 }
 
-/// Why there may be no probability.
+/// Advice for a report without a probability.
 fn advice(report: &ChainReport) -> Option<String> {
     let text = "a probability needs a [connector] in the file: design = \"x-face.toml\"";
     report.connector.is_none().then(|| text.to_owned())

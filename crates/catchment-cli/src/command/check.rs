@@ -1,4 +1,4 @@
-//! `catchment check`: everything that is wrong with a design, with its place in the file.
+//! `catchment check`: every defect of a design, with its place in the file.
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let (checked, problem) =
         match args.design.draft_on(&running.exec).and_then(|draft| draft.judged_on(&running.exec)) {
             Ok((problem, None)) => (problem.clone().checked(), Some(problem)),
-            // Also of halves that are refused for their mated pose: a picture shows why.
+            // Also for halves whose mated pose is rejected: the picture shows why.
             Ok((problem, Some(diagnostics))) => (Err(diagnostics.into()), Some(problem)),
             Err(error) => (Err(error), None),
         };

@@ -1,4 +1,4 @@
-//! `catchment classify`: a design among the published systems.
+//! `catchment classify`: a design among the published connectors.
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;

@@ -1,8 +1,8 @@
-//! `catchment compare`: two acceptances beside each other.
+//! `catchment compare`: overlap and differences of two acceptances.
 //!
 //! ```text
-//!   A  design ──▶ decided by a method ──┐
-//!      folder of `run -o` ──▶ read ─────┼──▶ the cells that both have ──▶ overlap, confusions, distances, picture
+//!   A  design ──▶ computed by a method ─┐
+//!      folder of `run -o` ──▶ read ─────┼──▶ common cells ──▶ overlap, confusions, distances, picture
 //!   B  likewise, or A again ────────────┘
 //! ```
 
@@ -55,7 +55,7 @@ pub(crate) struct CompareArgs {
     exec: ExecArgs,
 }
 
-/// The name of its table and its picture in a folder.
+/// Name of the table and the picture in a folder.
 const NAME: &str = "difference";
 
 pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     output.print(&report, &notes)
 }
 
-/// What A and B are, and who decides the designs among them.
+/// The sources A and B, with the method for each design.
 fn sources(args: &CompareArgs) -> Result<[ComparisonSource; 2], Failure> {
     let refused =
         |message: &str, help: &str| Err(Failure::with_help(message.to_owned(), Some(help.to_owned())));

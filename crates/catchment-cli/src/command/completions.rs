@@ -1,4 +1,4 @@
-//! `catchment completions`: what the Tab key knows.
+//! `catchment completions`: shell completion scripts.
 
 use crate::args;
 use crate::exit::ExitStatus;

@@ -1,4 +1,4 @@
-//! `catchment compose`: where two halves meet that both move.
+//! `catchment compose`: the combined reach of two halves that both move.
 
 use crate::args::with_advice;
 use crate::exec_args::ExecArgs;
@@ -113,7 +113,7 @@ fn region(path: &Path, exec: &Exec) -> Result<ParsedRegion, Failure> {
     })
 }
 
-/// Headings from one to the other, evenly spaced; one where there is no range.
+/// Evenly spaced headings in a range; a single heading if the range is empty.
 fn spread([from, to]: [f64; 2], count: u16) -> Vec<f64> {
     if from == to {
         return vec![from];
@@ -122,7 +122,7 @@ fn spread([from, to]: [f64; 2], count: u16) -> Vec<f64> {
     (0..count).map(|k| from + (to - from) * f64::from(k) / steps).collect()
 }
 
-/// `5 deg`, `-20..20 deg`, `-0.3..0.3`.
+/// Parses `5 deg`, `-20..20 deg`, `-0.3..0.3`.
 fn headings(text: &str) -> Result<[f64; 2], String> {
     let angle = |part: &str, unit: Option<QuantityUnit>| -> Result<(f64, QuantityUnit), String> {
         let mut quantity: Quantity = part.parse().map_err(|defect| with_advice(&defect))?;
@@ -138,7 +138,7 @@ fn headings(text: &str) -> Result<[f64; 2], String> {
     let Some((from, to)) = text.split_once("..") else {
         return angle(text, None).map(|(angle, _)| [angle; 2]);
     };
-    // The unit stands at the end for both.
+    // The unit follows the second angle and applies to both.
     let (to, unit) = angle(to, None)?;
     let (from, _) = angle(from, Some(unit))?;
     if from < to { Ok([from, to]) } else { Err("the range runs backwards or is empty".to_owned()) }

@@ -1,4 +1,5 @@
-//! `catchment dynamics`: the probability of docking with speed, mass and bounce. Its old name is `chance`, which its reports keep.
+//! `catchment dynamics`: docking probability with speed, mass and bounce. Alias `chance`, which remains the
+//! kind of its reports.
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
@@ -143,7 +144,7 @@ impl DynamicsArgs {
         })
     }
 
-    /// The laws of the file and of the options.
+    /// The distributions of the file, overridden by those of the options.
     fn declared(&self, design: &Design) -> Result<Dynamics, Failure> {
         let mut dynamics = match &self.dynamics {
             Some(path) => read_dynamics(&SourceText::new(path, load(path)?), design)?,
@@ -189,7 +190,7 @@ impl DynamicsArgs {
     }
 }
 
-/// Two different errors.
+/// Parses two different errors.
 fn two(text: &str) -> Result<[Dof; 2], String> {
     parse_dofs(text).map_err(|defect| defect.to_string())?;
     let named: Result<Vec<Dof>, _> = text.split(',').map(|name| name.trim().parse::<Dof>()).collect();

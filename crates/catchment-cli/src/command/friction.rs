@@ -1,4 +1,4 @@
-//! `catchment friction`: what friction takes.
+//! `catchment friction`: the effect of friction on docking.
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -59,7 +59,7 @@ impl FrictionArgs {
     }
 }
 
-/// Why there is no answer, with what helps.
+/// The error of the study, with advice.
 fn refused(error: FrictionError) -> Failure {
     match &error {
         FrictionError::NoFrictions => Failure::with_help(

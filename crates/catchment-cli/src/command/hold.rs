@@ -1,4 +1,4 @@
-//! `catchment hold`: how hard a docked half may be pushed and twisted.
+//! `catchment hold`: the force and torque that a docked half withstands.
 
 use crate::args::{DesignArgs, quantity};
 use crate::exec_args::ExecArgs;
@@ -99,7 +99,7 @@ impl HoldArgs {
     }
 }
 
-/// A preload.
+/// Parses a preload in newtons.
 fn newtons(text: &str) -> Result<f64, String> {
     let preload =
         number(text).map_err(|reason| format!("a preload is a number of newtons, such as 40; {reason}"))?;
@@ -109,7 +109,7 @@ fn newtons(text: &str) -> Result<f64, String> {
     Err("a preload presses the half on: a number above 0, in newtons".to_owned())
 }
 
-/// Why nothing can be said, with what helps.
+/// The error of the study, with advice.
 fn refused(error: HoldError) -> Failure {
     let help = match &error {
         HoldError::NoRest { .. } => {

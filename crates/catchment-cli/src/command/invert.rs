@@ -1,4 +1,4 @@
-//! `catchment invert`: wanted heights and the fixed half give the moving half.
+//! `catchment invert`: derives the moving half from contact heights and the fixed half.
 
 use crate::args::DesignArgs;
 use crate::args::{quantity, with_advice};
@@ -114,7 +114,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     output.finish(&report, || Ok(figure(design, &results)?))
 }
 
-/// What a file wants: heights without rotation, or the design whose heights are wanted at every rotation.
+/// Contact heights of a file: a table without rotation, or a design that gives heights at every rotation.
 #[derive(Default)]
 struct Wanted {
     level: Option<Heights>,

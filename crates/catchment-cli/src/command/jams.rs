@@ -1,4 +1,4 @@
-//! `catchment rests --jams`: rests that do not dock, and the features that hold them. Its old name is `catchment jams`.
+//! `catchment rests --jams`: rests that do not dock, and the features in contact. Alias `catchment jams`.
 
 use super::rests::{CauseArgs, SearchArgs};
 use crate::exit::ExitStatus;

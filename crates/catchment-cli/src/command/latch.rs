@@ -1,4 +1,4 @@
-//! `catchment latch`: the latching X-Face, from a few lengths to what a laser cutter takes.
+//! `catchment latch`: the latching X-Face, from a few lengths to laser-cutter drawings.
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -65,7 +65,7 @@ fn of_table(args: &LatchArgs) -> Result<ExitStatus, Failure> {
 fn of_design(args: &LatchArgs, design: &Path) -> Result<ExitStatus, Failure> {
     let mut output = args.result.check(LatchBody::KIND, true)?;
     let folder = output.take_folder();
-    // A pipe may be waited for, which does not listen.
+    // Read before the signal handler starts: waiting for a pipe cannot be cancelled.
     let source = read_table(design)?;
     let exec = Exec::new();
     signals::listen(&exec.cancel_flag())?;

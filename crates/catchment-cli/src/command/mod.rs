@@ -84,7 +84,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// Does what was asked for.
+    /// Runs the subcommand.
     pub(crate) fn run(self) -> Result<ExitStatus, Failure> {
         match self {
             Self::New(args) => new::run(&args),

@@ -1,4 +1,4 @@
-//! `catchment new`: a commented starting point.
+//! `catchment new`: a commented design file to start from.
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! The command that comes next: from two files to a window, jams and friction.
+//! The suggested next command: from two files to a window, jams and friction.
 //!
 //! ```text
 //!   place ─▶ check ─▶ run ─▶ report ─▶ view
@@ -6,7 +6,7 @@
 //!                      └─▶ window ─▶ rests --jams ─▶ friction ─▶ hold
 //! ```
 //!
-//! After `hold` comes `plan`, which needs numbers that only the reader has.
+//! `plan` follows `hold`, but needs numbers that only the user has.
 
 use super::Command;
 use crate::args::DesignArgs;
@@ -15,13 +15,13 @@ use catchment::terminal::shown;
 use std::path::Path;
 
 impl Command {
-    /// The usual next command, if there is one.
+    /// The usual next command, if any.
     pub(crate) fn next(&self) -> Option<String> {
         let of = |command: &str, path: &Path, more: &str| {
-            // What came from stdin is not there any more.
+            // stdin cannot be read a second time.
             (!is_stream(path)).then(|| format!("catchment {command} {}{more}", quoted(path)))
         };
-        // The options that change the design hold for what follows, too.
+        // The overrides of the design carry over to the next command.
         let on = |command: &str, design: &DesignArgs, more: &str| {
             of(command, &design.path, &(design.as_typed() + more))
         };
@@ -47,7 +47,7 @@ impl Command {
     }
 }
 
-/// A path as a shell reads it.
+/// A path quoted for the shell.
 fn quoted(path: &Path) -> String {
     let text = shown(path).to_string();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+,=@".contains(c);
@@ -60,7 +60,7 @@ mod tests {
     use crate::args;
     use std::path::Path;
 
-    /// Until nothing follows: `place` leads to a window, a page and what holds.
+    /// Follows the suggestions to the end: `place` leads to a window, a page and `hold`.
     #[test]
     fn every_next_command_can_be_typed() {
         for first in [

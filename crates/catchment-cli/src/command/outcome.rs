@@ -1,4 +1,4 @@
-//! `catchment trace --poses`: the outcome of every pose error in a table. Its old name is `catchment outcome`.
+//! `catchment trace --poses`: the outcome of every pose error in a table. Alias `catchment outcome`.
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -47,7 +47,7 @@ pub(crate) struct OutcomeArgs {
     exec: ExecArgs,
 }
 
-/// A table of pose errors, and where its outcomes go.
+/// A table of pose errors, and the destination of its outcomes.
 #[derive(Debug)]
 pub(super) struct Batch<'a> {
     pub(super) design: &'a DesignArgs,
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl Batch<'_> {
-    /// Follows every pose; prints each row as soon as it and all rows before it are decided.
+    /// Follows every pose; prints each row once it and all rows before it are complete.
     pub(super) fn run(&self) -> Result<ExitStatus, Failure> {
         self.output.check()?;
         self.output.check_partial()?;
@@ -102,7 +102,7 @@ impl Batch<'_> {
         let streams = self.output.is_printed() && !self.json;
         let stop = running.exec.cancel_flag();
         let tell = |number, end| {
-            // Here, where each is decided: on all threads.
+            // Computed here to run on all threads.
             let _may_stick = sticking.as_ref().map(|sticking| sticking.may_stick(number));
             if streams && !running.beside_bar(|| printed.push(number, end)) {
                 stop.store(true, Ordering::Relaxed);
@@ -119,7 +119,7 @@ impl Batch<'_> {
         self.write(&report, &text)
     }
 
-    /// Writes the table, or those rows that were finished before an interruption.
+    /// Writes the table, or the finished rows after an interruption.
     fn write(&self, report: &OutcomesReport<'_>, text: &str) -> Result<ExitStatus, Failure> {
         let notes = lines(&report.warnings).into_iter().chain(report.summary());
         if report.partial().is_none() {
@@ -136,13 +136,14 @@ impl Batch<'_> {
     }
 }
 
-/// Rows on stdout as they are decided. The names of the columns come with the first row: where nothing is decided nothing is printed.
+/// Prints rows to stdout as they complete. The header comes with the first row: without a row there is no
+/// output.
 struct Printed<'a>(Mutex<Printing<'a>>);
 
 struct Printing<'a> {
     rows: OutcomeRows<'a>,
     has_begun: bool,
-    /// Why it cannot go on.
+    /// The error that stops printing.
     failed: Option<Failure>,
 }
 
@@ -157,7 +158,7 @@ impl<'a> Printed<'a> {
         Self(Mutex::new(Printing { rows, has_begun: false, failed: None }))
     }
 
-    /// A pose is decided; false where rows cannot be printed any more.
+    /// Adds the outcome of a pose; returns false once rows can no longer be printed.
     fn push(&self, number: usize, end: End) -> bool {
         let mut printing = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if printing.failed.is_none()
@@ -168,7 +169,7 @@ impl<'a> Printed<'a> {
         printing.failed.is_none()
     }
 
-    /// What is left to print when no more poses will be decided.
+    /// The remaining rows to print after the last pose.
     fn rest(self) -> Result<String, Failure> {
         let printing = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let Some(failure) = printing.failed {

@@ -1,4 +1,4 @@
-//! `catchment place`: two parts as they come from CAD, and the design that docks them.
+//! `catchment place`: proposes a docking design for two CAD parts.
 
 use crate::advice::flags;
 use crate::defaults;
@@ -104,7 +104,7 @@ pub(crate) struct PlaceArgs {
     exec: ExecArgs,
 }
 
-/// Heading of the options that replace what the program finds.
+/// Heading of the options that override the proposal.
 const FOUND: &str = "Overrides";
 
 /// In which frames parts are drawn.
@@ -119,7 +119,7 @@ enum Drawn {
 }
 
 impl PlaceArgs {
-    /// The file that receives the design, if it is not printed.
+    /// The design file to write; `None` if the design is printed.
     pub(super) fn output(&self) -> Option<&Path> {
         file(self.output.as_deref())
     }
@@ -130,9 +130,9 @@ impl PlaceArgs {
     }
 }
 
-/// Candidates that are told.
+/// Number of candidates in the summary.
 const TOLD: usize = 3;
-/// A score that is worth telling.
+/// Smallest score that the summary lists.
 const WORTH: f64 = 0.01;
 
 pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
@@ -154,14 +154,15 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     }
     let mut parts = [part(files[0], place)?, part(files[1], place)?];
     if args.moving.is_none() {
-        // The larger one is fixed.
+        // The larger body is fixed.
         parts[0].body = Some(1);
         parts[1].body = Some(2);
     }
     settings.with = [beside(&args.with_fixed, place)?, beside(&args.with_moving, place)?];
     running.may_be_left();
     let mut result = propose(&parts, &settings, place, &running.exec);
-    // A default stands in where the files need a unit, and nowhere else: it changes no proposal that there is without it.
+    // The default unit applies only if the files need a unit: it never changes a proposal that exists without
+    // it.
     if let (Err(ProposalError::NoUnit { .. }), Some((unit, source))) = (&result, defaults::get().unit) {
         running.beside_bar(|| to_stderr(&[format!("note: unit {}, from {source}", unit.symbol())]));
         let with = std::mem::take(&mut settings.with);
@@ -169,7 +170,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         result = propose(&parts, &settings, place, &running.exec);
     }
     let result = result.map_err(refused)?;
-    // All of it is there before any of it is written.
+    // Compute everything before writing anything.
     let picture = match kind {
         Some(kind) => Some(image(&figure::pair(&result.problem)?, kind)?),
         None => None,
@@ -187,7 +188,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Done)
 }
 
-/// Refuses what cannot be written in the end; what kind of picture is asked for.
+/// Rejects unwritable outputs; returns the format of the picture, if any.
 fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     const KINDS: [&str; 2] = ["svg", "png"];
     check_apart(args.output(), args.figure.as_deref())?;
@@ -241,7 +242,7 @@ fn settings(args: &PlaceArgs, unit: Option<LengthUnit>) -> Result<ProposalSettin
     })
 }
 
-/// What was named beside a half's file: a file, or an element of a design's list of parts.
+/// Parts beside a half's file: each a file, or an element of a design's list of parts.
 fn beside(stated: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
     let one = |text: &String| {
         if is_file(text) {
@@ -263,12 +264,12 @@ fn beside(stated: &[String], place: &Path) -> Result<Vec<PartDetail>, Failure> {
     stated.iter().map(one).collect()
 }
 
-/// Whether it names a file, and is no part by itself.
+/// Whether the text names a file rather than a part.
 fn is_file(stated: &str) -> bool {
     !stated.trim_start().starts_with('{') && (!stated.contains('=') || Path::new(stated).exists())
 }
 
-/// What was chosen, what came next, and what to look at.
+/// The choice, the runners-up and points to check.
 fn summary(result: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let design = result.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
@@ -292,7 +293,7 @@ fn summary(result: &Proposal, moving: Option<&Path>) -> Vec<String> {
     [head, halves].into_iter().chain(ranking).chain(lines(&notes)).collect()
 }
 
-/// A refusal in the words of the command line.
+/// The error, with the advice of the command line.
 fn refused(error: ProposalError) -> Failure {
     let help = match &error {
         ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
@@ -305,14 +306,14 @@ fn refused(error: ProposalError) -> Failure {
         ProposalError::Problem(_) | ProposalError::Cancelled(_) => return error_of(error),
     };
     let failure = Failure::with_help(error.to_string(), Some(help));
-    // A missing unit is an option that is missing.
+    // A missing unit is a missing option.
     let is_usage = matches!(error, ProposalError::NoUnit { .. });
     failure.ends(if is_usage { ExitStatus::Usage } else { ExitStatus::NotComputed })
 }
 
 fn error_of(error: ProposalError) -> Failure {
     match error {
-        // There is no design yet in which the key could be written.
+        // No design exists yet that could hold the key.
         ProposalError::Problem(ProblemError::Diagnostics(mut diagnostics)) => {
             for diagnostic in &mut diagnostics.list {
                 diagnostic.message =
@@ -325,10 +326,10 @@ fn error_of(error: ProposalError) -> Failure {
     }
 }
 
-/// What a design would say of a file with too many triangles.
+/// The design's advice for a file with too many triangles; replaced here.
 const IN_THE_DESIGN: &str = "write simplify = \"0.01 mm\" beside the file, which";
 
-/// A part, as a design at `place` names it.
+/// A part with its path relative to a design at `place`.
 fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {
     let real = std::fs::canonicalize::<&Path>;
     let folder =
@@ -348,12 +349,12 @@ fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {
     })
 }
 
-/// The way from a folder to a file.
+/// The relative path from a folder to a file.
 fn relative(file: &Path, folder: &Path) -> PathBuf {
     let (file, folder): (Vec<_>, Vec<_>) = (file.components().collect(), folder.components().collect());
     let same = file.iter().zip(&folder).take_while(|(a, b)| a == b).count();
     if same == 0 {
-        // Another drive.
+        // On another drive.
         return file.iter().collect();
     }
     let up = std::iter::repeat_n(Component::ParentDir, folder.len() - same);
@@ -367,7 +368,7 @@ pub(crate) fn unit(text: &str) -> Result<LengthUnit, String> {
         .ok_or_else(|| format!("a unit is one of {}", LengthUnit::ALL.map(LengthUnit::symbol).join(", ")))
 }
 
-/// How far a surface may move, in the unit of the files.
+/// Parses the largest surface displacement, in the unit of the files.
 fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
     let scale = LengthScale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
     let refusal =

@@ -1,4 +1,4 @@
-//! `catchment plan`: at which poses to try a connector.
+//! `catchment plan`: the poses of a robot trial.
 
 use super::outcome::Point;
 use crate::args::DesignArgs;
@@ -159,12 +159,12 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     output.finish(&report, || Ok(figure::plan(&report, &slices)))
 }
 
-/// Sizes of errors, as an option gives them.
+/// Parses the sizes of errors from an option.
 pub(super) fn sizes(option: &str, text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
     parse_sizes(text, problem.design()).map_err(|refusal| Failure::of_option(option, text, refusal))
 }
 
-/// A repeatability (ISO 9283: accuracy is a bias); errors that are not named are exact.
+/// Parses a repeatability (ISO 9283: accuracy is a bias); errors that are not named are exact.
 pub(super) fn repeatability(text: &str, problem: &Problem) -> Result<PoseError, Failure> {
     Ok(PoseError::from_array(sizes("--repeatability", text, problem)?.map(Option::unwrap_or_default)))
 }
@@ -243,7 +243,7 @@ impl PatternArgs {
         }
     }
 
-    /// Options of other patterns would have no effect.
+    /// Rejects options of other patterns, which would have no effect.
     fn refuse_others(&self) -> Result<(), Failure> {
         use Kind::{Arc, Bracket, Grid, Lattice};
         let given: [(&str, bool, &[Kind]); 10] = [
@@ -279,7 +279,7 @@ impl Kind {
     }
 }
 
-/// One length for every free offset, or sizes by name.
+/// Parses one length for every free offset, or sizes by name.
 fn step(text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
     if text.contains('=') {
         return sizes("--step", text, problem);
@@ -293,7 +293,7 @@ fn step(text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
     Ok(Dof::ALL.map(|axis| (free.contains(axis) && !axis.is_rotation()).then_some(length)))
 }
 
-/// Why there is no plan, with what helps.
+/// The error of the plan, with advice.
 fn refused(error: TrialPlanError) -> Failure {
     let help = match &error {
         TrialPlanError::NotDocked => Some("catchment check says where it settles instead"),

@@ -1,4 +1,4 @@
-//! `catchment report`: a result as one page to click.
+//! `catchment report`: a result as one interactive page.
 
 use super::run::{refused, resolution};
 use crate::args::DesignArgs;
@@ -82,12 +82,12 @@ enum Study {
 }
 
 impl MadeArgs {
-    /// The same over other cells, where some are named.
+    /// The same settings with another resolution, if one is given.
     pub(super) fn over(&self, resolution: Option<Resolution>) -> Self {
         Self { resolution: resolution.or(self.resolution), ..self.clone() }
     }
 
-    /// Options that say how a design is decided.
+    /// The given options that determine the outcomes of a design.
     fn requested(&self) -> impl Iterator<Item = &'static str> {
         [
             ("--method", self.method.is_some()),
@@ -98,7 +98,7 @@ impl MadeArgs {
         .filter_map(|(option, given)| given.then_some(option))
     }
 
-    /// The run of a design.
+    /// The run settings for a design.
     fn run(&self) -> Result<Run, Failure> {
         let over = Over::Grid(self.resolution.unwrap_or_default());
         let change = |value| Change { option: "--friction", setting: "friction", value: Value::from(value) };
@@ -107,7 +107,8 @@ impl MadeArgs {
         Ok(Run { over, ..Run::by(method) })
     }
 
-    /// Takes from the page of a stored result what it shall not have, and notes what the result does not hold.
+    /// Removes deselected parts from the page of a stored result, and notes requested parts that the result
+    /// lacks.
     fn of_stored(&self, parts: &mut PageParts) {
         let Studies { jams, window, .. } = self.studies();
         parts.jams.take_if(|_| !jams);
@@ -124,13 +125,13 @@ impl MadeArgs {
         }
     }
 
-    /// What is studied beside it.
+    /// The studies that the page adds.
     fn studies(&self) -> Studies {
         let wanted = |study| !self.leave_out.contains(&study);
         Studies { planes: wanted(Study::Slices), jams: wanted(Study::Jams), window: wanted(Study::Window) }
     }
 
-    /// The parts of the page of a problem.
+    /// Computes the parts of a problem's page.
     pub(super) fn parts(&self, problem: &Problem, exec: &Exec) -> Result<PageParts, Failure> {
         let answer = self.run()?.on(problem, exec).map_err(|error| refused(problem, error))?;
         let mut parts = PageParts::of(&answer);
@@ -155,7 +156,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
         let running = args.exec.start()?;
         let mut parts = PageParts::stored(path, &running.exec)?;
         args.made.of_stored(&mut parts);
-        // Slices at zero are exact motions, which no result holds.
+        // Slices at zero are exact motions, which a stored result does not contain.
         let planes = args.made.studies().planes;
         parts.study(Studies { planes, jams: false, window: false }, &running.exec)?;
         args.output.write(&parts.page().html(&running.exec)?)?;

@@ -1,5 +1,5 @@
-//! `catchment reproduce`: the dissertation's tables beside what this program computes, and how often its own
-//! intervals hold.
+//! `catchment reproduce`: published tables beside recomputed values, and the coverage of the program's
+//! confidence intervals.
 
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
@@ -62,11 +62,11 @@ impl ReproduceArgs {
         file(self.output.as_deref())
     }
 
-    /// What is to be computed.
+    /// The requested tables and figures.
     fn request(&self) -> Request {
         let settings = ReproduceSettings { exact: self.exact || self.form.markdown };
         let mut request = Request::of(&self.tables, settings);
-        // The page of the documentation has everything but the study that is no table.
+        // The documentation page contains every table and the figure, but not the accuracy study.
         request.figure |= self.tables.is_empty() && self.form.markdown;
         request
     }
@@ -86,10 +86,10 @@ struct FormArgs {
     markdown: bool,
 }
 
-/// The table that no dissertation has printed.
+/// The accuracy study, which reproduces no published table.
 const ACCURACY: &str = "accuracy";
 
-/// The program's version, which its JSON and its pages name.
+/// The program's version, for JSON and pages.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 fn tables() -> PossibleValuesParser {
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Done)
 }
 
-/// How far every method is off.
+/// Computes the error of every method.
 fn accuracy(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let running = args.exec.start()?;
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use clap::FromArgMatches as _;
 
-    /// How exact values are computed and shown has tests of its own: they take half a minute per table.
+    /// Exact values have their own tests: they take half a minute per table.
     #[test]
     fn exact_values_are_computed_where_they_are_asked_for() {
         let exact = |words: &str| {

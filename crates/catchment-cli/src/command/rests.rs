@@ -1,4 +1,4 @@
-//! `catchment rests`: the equilibria of a half under its load, and with `--jams` those that are not docked.
+//! `catchment rests`: the equilibria of a half under its load; with `--jams`, those that are not docked.
 
 use super::jams;
 use super::run::resolution;
@@ -91,7 +91,7 @@ impl SearchArgs {
         self.samples.map(|samples| samples as usize)
     }
 
-    /// The number of rests that are examined.
+    /// The number of rests examined for stability and escape path.
     pub(super) const fn examined(&self) -> usize {
         self.examine as usize
     }

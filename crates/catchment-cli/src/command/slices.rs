@@ -1,4 +1,4 @@
-//! `catchment slices`: two errors at a time, finely, with everything free.
+//! `catchment slices`: two errors at a time on a fine grid, all degrees of freedom free.
 
 use super::run::resolution;
 use crate::args::DesignArgs;

@@ -48,7 +48,7 @@ pub(crate) struct SolidsArgs {
     exec: ExecArgs,
 }
 
-/// Those of figure 5.6 of the dissertation.
+/// The settings of figure 5.6 of the dissertation.
 const DEFAULT: PartitionSettings = PartitionSettings { slices: 15, strips: 1 };
 
 fn shape_parser() -> ValueParser {

@@ -1,4 +1,4 @@
-//! `catchment success`: whether a robot's errors are corrected.
+//! `catchment success`: the probability that contact corrects a robot's errors.
 
 use crate::args::DesignArgs;
 use crate::error_args::{EXPECTED, robots_of};
@@ -70,7 +70,7 @@ pub(crate) struct SuccessArgs {
     exec: ExecArgs,
 }
 
-/// A single source of errors is required.
+/// The usage line: exactly one source of errors is required.
 const USAGE: &str = "catchment success [OPTIONS] --error-sigma <AXIS=SIZE,…> <DESIGN>
        catchment success [OPTIONS] --robots <FILE> <DESIGN>";
 

@@ -1,4 +1,4 @@
-//! `catchment sweep`: one design with keys of its file replaced, every combination computed.
+//! `catchment sweep`: every combination of replaced design keys.
 
 use super::run::{SampleArgs, resolution};
 use crate::args::DesignArgs;
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     output.print(&report, &notes)
 }
 
-/// The designs, read.
+/// Reads the designs and plans the sweep.
 fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
     let Choice::One(method) = &args.how.method else {
         let help = Some("name one; `run --method all` compares them on one design".to_owned());
@@ -127,7 +127,7 @@ fn plan(args: &SweepArgs) -> Result<SweepPlan, Failure> {
     SweepPlan::new(&source, settings, |draft| args.design.change(draft)).map_err(refused)
 }
 
-/// Computes what is not kept; says what is where it stops.
+/// Computes the missing designs; reports the stored ones if it stops early.
 fn compute(plan: SweepPlan, parts: Option<&FinishedDesigns>, exec: &Exec) -> Result<Sweep, Failure> {
     let Some(parts) = parts else { return plan.run(&NoStore, exec).map_err(refused) };
     let designs = plan.len();
@@ -138,7 +138,7 @@ fn compute(plan: SweepPlan, parts: Option<&FinishedDesigns>, exec: &Exec) -> Res
     })
 }
 
-/// Says which designs are finished and kept.
+/// Reports the number of finished, stored designs.
 fn tell_kept(parts: Option<&FinishedDesigns>, designs: usize) {
     let Some((parts, finished)) = parts.map(|parts| (parts, parts.count())).filter(|(_, count)| *count > 0)
     else {
@@ -148,7 +148,7 @@ fn tell_kept(parts: Option<&FinishedDesigns>, designs: usize) {
     kept(&format!("{finished} of {designs} designs in {place}, from where the same command goes on"));
 }
 
-/// Why there is no sweep, at the option that it is about.
+/// The error of the sweep, at the responsible option.
 fn refused(error: SweepError) -> Failure {
     match error {
         SweepError::Problem(error) => error.into(),

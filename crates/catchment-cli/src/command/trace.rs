@@ -87,18 +87,18 @@ enum By {
     Drop,
 }
 
-/// What shows motions.
+/// File formats for motions.
 const MOTIONS: [&str; 2] = ["vtp", "glb"];
 
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     match &args.poses {
         Some(poses) => table(args, poses),
-        // One of the two is required.
+        // clap requires one of the two.
         None => one(args, args.pose.as_deref().unwrap_or_default()),
     }
 }
 
-/// The outcomes of a table of poses.
+/// Computes the outcomes of a table of poses.
 fn table(args: &TraceArgs, poses: &Path) -> Result<ExitStatus, Failure> {
     if args.method == By::Kinematic {
         let help = "--method descent follows every pose of a table, --method drop simulates it".to_owned();
@@ -111,10 +111,10 @@ fn table(args: &TraceArgs, poses: &Path) -> Result<ExitStatus, Failure> {
     Batch { design: &args.design, poses, method, offsets_at, json, output: &output, exec: &args.exec }.run()
 }
 
-/// The path of one pose.
+/// Computes the path of one pose.
 fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
     let (kind, own): (_, &[&'static str]) = match args.method {
-        // A first contact is no motion.
+        // A first contact has no trajectory.
         By::Kinematic => (FirstContact::KIND, &[]),
         By::Descent | By::Drop => (TraceBody::KIND, &MOTIONS),
     };
@@ -146,7 +146,7 @@ fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
         }
         By::Descent => {
             let settings = DescentSettings::with_friction(args.drop.friction())?;
-            // Other settings are of drop tests.
+            // Rejects settings that belong to drop tests.
             args.drop.of("descent")?;
             let (path, reason) = problem.trace(&error, &settings);
             let report = TraceReport::new(&problem, &settings, error, &path, reason);
@@ -155,7 +155,7 @@ fn one(args: &TraceArgs, pose: &str) -> Result<ExitStatus, Failure> {
     }
 }
 
-/// Writes and prints a path, for VTK and as an animation too.
+/// Writes and prints a path, also for VTK and as an animation.
 fn finish(
     output: Output<'_>,
     report: &TraceReport,

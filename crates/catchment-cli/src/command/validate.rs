@@ -1,4 +1,4 @@
-//! `catchment validate`: a prediction beside the trials of a robot.
+//! `catchment validate`: a prediction beside robot trials.
 
 use super::outcome::Point;
 use super::plan::repeatability;

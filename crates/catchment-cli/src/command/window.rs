@@ -1,4 +1,4 @@
-//! `catchment window`: the largest box of pose errors that all dock.
+//! `catchment window`: the largest box of pose errors in which every pose docks.
 
 use crate::args::DesignArgs;
 use crate::command::run::{LONG, time};
@@ -103,7 +103,7 @@ impl WindowArgs {
     }
 }
 
-/// Why there is no window, with what helps.
+/// The error of the study, with advice.
 fn refused(error: WindowError) -> Failure {
     let help = match &error {
         WindowError::NotDocked { .. } => Some("catchment check says where it settles instead"),

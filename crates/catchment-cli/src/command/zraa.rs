@@ -1,4 +1,4 @@
-//! `catchment zraa`: which offsets contact corrects without any rotation.
+//! `catchment zraa`: the offsets that contact corrects without rotation.
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     }
     let kind = if args.more.is_empty() { AcceptedOffsets::KIND } else { FacesBody::KIND };
     let output = args.result.check(kind, true)?;
-    // Rotations play no part, so whether the mated pose holds against them is of no interest here.
+    // Rotations are locked, so the stability of the mated pose against them is irrelevant here.
     let mut problems = vec![args.design.halves()?];
     for path in &args.more {
         problems.push(args.design.change(Draft::read(read_design(path)?)?)?.build()?);
@@ -159,7 +159,7 @@ impl Correction {
     }
 }
 
-/// Trials beside the exact region, all rotations locked.
+/// Compares trials with the exact region, all rotations locked.
 fn beside(args: &ZraaArgs, method: Method) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let output = args.result.check(Trials::KIND, true)?;

@@ -1,4 +1,4 @@
-//! `catchment run`: what it prints, what it writes, what it refuses.
+//! `catchment run`: printed output, written files, refusals.
 
 use super::{catchment, entries, home, run, written};
 use serde_json::Value;
@@ -38,7 +38,8 @@ fn json_is_the_same_for_any_number_of_threads() {
     assert_eq!(acceptance["cells"], 81);
     assert_eq!(acceptance["sample"]["descents"], 50);
     let [lo, hi] = [0, 1].map(|k| acceptance["sum_ci95"][k].as_f64().unwrap());
-    // The exact Sum is 2.39; the interval of fifty poses is wide, and that of this seed holds it.
+    // The exact Sum is 2.39; the interval of fifty poses is wide, and for this seed it contains the exact
+    // value.
     assert!(lo < 2.39 && 2.39 < hi && hi - lo > 0.5, "{lo} {hi}");
     let of_strata = |key: &str| {
         let strata = acceptance["sample"]["strata"].as_array().unwrap();
@@ -48,7 +49,7 @@ fn json_is_the_same_for_any_number_of_threads() {
     assert!(acceptance["sum"] != acceptance["sum_grid"] && acceptance["sum_grid"].is_f64());
 }
 
-/// A time is a number of descents that depends on the machine, and nothing else.
+/// A time budget sets only the number of descents, which depends on the machine.
 #[test]
 fn a_budget_or_a_tolerance_gives_what_as_many_samples_give() {
     let home = home();
@@ -223,7 +224,7 @@ fn one_error_has_no_maps_but_the_halves() {
     );
 }
 
-/// A run of hours is interrupted; when the signal comes does not matter.
+/// An interrupt of a run that takes hours; the test holds whenever the signal arrives.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupt_ends_the_run_and_leaves_nothing() {
@@ -235,7 +236,8 @@ fn an_interrupt_ends_the_run_and_leaves_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Until the handler stands the signal ends the process without a code: SIGINT, the second bit, among those that are caught.
+    // Before the handler is installed, the signal ends the process without a code: SIGINT is the second bit of the mask of
+    // caught signals.
     let status = format!("/proc/{}/status", child.id());
     let is_caught = || {
         let text = fs::read_to_string(&status).unwrap();
@@ -275,7 +277,8 @@ fn a_certificate_tells_three_parts_of_the_error_box_and_how_well_the_seat_holds(
     let part = |name: &str| report["certificate"][name].as_f64().unwrap();
     assert!((part("yes") + part("no") + part("undecided") - 1.0).abs() < 1e-9, "{report}");
     assert!(part("no") > 0.1 && part("retention_at_least") <= part("retention_at_most"), "{report}");
-    // Cells are told only where all of their poses are certain; the Sum is at least what docks, at most that and what is undecided.
+    // Only cells whose poses are all certain are reported; the Sum lies between the docking share and the docking plus the
+    // undecided share.
     let (result, measures) = (&report["acceptance"], &report["certificate"]["measures"]);
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!(number(&result["sum_grid"]) <= number(&result["sum"]) + 1e-9, "{result}");
@@ -307,7 +310,7 @@ fn slices_and_strips_belong_to_the_partition() {
     assert!(printout.starts_with("exit 2") && printout.contains("strips must be at least 1"), "{printout}");
 }
 
-/// Halves whose motions take long: random poses in the place of a grid, with pictures of them, and the next command.
+/// Halves whose motions take long: random poses instead of a grid, with pictures of them, and the next command.
 #[test]
 fn a_first_run_on_many_facets_answers_without_a_grid() {
     let home = home();
@@ -322,7 +325,7 @@ fn a_first_run_on_many_facets_answers_without_a_grid() {
     ] {
         assert!(printout.contains(words), "{words} is missing in\n{printout}");
     }
-    // The window stands above the Sum, and the next command last.
+    // The window stands above the Sum, and the next command comes last.
     assert!(printout.find("tolerance window") < printout.find("AA (Sum)"), "{printout}");
     assert!(printout.trim_end().ends_with("next: catchment report out -o page.html"), "{printout}");
     let written = entries(&home.path().join("out"));

@@ -1,15 +1,16 @@
-//! The catalogue of bad inputs, `../bad_inputs.jsonl`, a line each:
+//! The catalogue of bad inputs, `../bad_inputs.jsonl`, one case per line:
 //!
 //! ```text
-//!   name    what is wrong
+//!   name    the defect
 //!   files   name and content, beside v.toml, p.toml, good.csv and the stored result a.zarr, or in place of one of its files
-//!   edits   name of a file, and what in it is replaced by what, once
-//!   args    of the program
-//!   says    a piece of what it says; line breaks and frames count as spaces
+//!   edits   name of a file, the text to replace in it once, and the replacement
+//!   args    arguments of the program
+//!   says    a piece of its message; line breaks and frames count as spaces
 //!   exit    its exit code
 //! ```
 //!
-//! Each must end within seconds with that message and that code, with nothing on stdout and nothing written.
+//! Each case must end within seconds with that message and that code, with an empty stdout and no written
+//! files.
 
 use crate::{V_FACE, catchment, run};
 use serde::Deserialize;
@@ -31,11 +32,12 @@ struct Case {
     exit: i32,
 }
 
-/// Time that a refusal may take on a busy machine, and all together: a quarter of a second each there.
+/// Time limits on a busy machine, for one refusal and for all together; an idle machine takes a quarter of a
+/// second each.
 const EACH: Duration = Duration::from_secs(10);
 const ALL: Duration = Duration::from_mins(3);
 
-/// At least as many as were promised.
+/// Minimum number of cases in the catalogue.
 const CASES: usize = 120;
 
 const PYRAMID: &str = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n";
@@ -57,7 +59,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     result
 }
 
-/// A folder with what every case may use, and its own files.
+/// A folder with the common files of all cases and the case's own files.
 fn home(stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path, case: &Case) -> tempfile::TempDir {
     let home = tempfile::tempdir().unwrap();
     let put = |path: &Path, bytes: &[u8]| {
@@ -82,7 +84,7 @@ fn home(stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path, case: &Case) -> tempfi
     home
 }
 
-/// What is wrong with how the program took a case.
+/// The deviations of the program's response from the case.
 fn faults(case: &Case, stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path) -> Vec<String> {
     let home = home(stored, from, case);
     let (before, started) = (contents(home.path()), Instant::now());
@@ -109,7 +111,7 @@ fn faults(case: &Case, stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path) -> Vec<
     faults
 }
 
-/// Whether `check --json` prints every error with severity and code; nothing where there is no design to check.
+/// Whether `check --json` prints every error with severity and code; `None` where there is no design to check.
 fn has_codes(home: &Path, args: &[String]) -> bool {
     let output = catchment(home).args(args).arg("--json").output().unwrap();
     let report: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();

@@ -88,7 +88,7 @@ fn written_designs_have_the_published_areas() {
     let x_face = zraa("x-face-3d.toml");
     assert!((x_face["area_d2"].as_f64().unwrap() - 2.0).abs() < 1e-9, "{x_face}");
     assert!((x_face["onaa_d"].as_f64().unwrap() - 1.0).abs() < 1e-8, "{x_face}");
-    // The cone's face is √2 wide in units of the square that it goes around: 1.57 and 1.0.
+    // The cone's face is √2 wide in units of the square that it circumscribes: 1.57 and 1.0.
     let cone = zraa("cone.toml");
     let bounds = |name: &str, factor: f64| [0, 1].map(|k| factor * cone[name][k].as_f64().unwrap());
     let [low, high] = bounds("circle_area_d2", 2.0);
@@ -130,7 +130,7 @@ fn a_design_is_classified_and_appended() {
     let home = home();
     let printout = stdout(home.path(), &["classify", "v.toml"]);
     assert!(printout.contains("length has no ratio") && printout.contains("Gendered"), "{printout}");
-    // One translation is locked: what is corrected is an interval, and no square.
+    // One translation is locked: the corrected set is an interval, not a square.
     assert!(printout.contains("ONAA           1 D, length of the corrected interval\n"), "{printout}");
     assert!(!printout.contains("square"), "{printout}");
     let appended = json(&designs, &["catalog", "--append", "x-face-3d.toml", "--json"]);

@@ -1,4 +1,4 @@
-//! `catchment chain`: the published table, the published sequence, what is refused.
+//! `catchment chain`: the published table, the published sequence, the refused inputs.
 
 use super::{catchment, designs, entries, home, json, run};
 use serde_json::Value;
@@ -50,7 +50,7 @@ fn the_p_latches_as_table_6_2_says() {
     let near = |[x, y]: [f64; 2], [a, b]: [f64; 2]| (x - 190.0 - a).abs() < 0.01 && (y - b).abs() < 0.01;
     assert!(near(commanded(2, 5), [85.59, -94.53]) && near(commanded(2, 6), [-6.01, -69.34]));
     assert!(near(commanded(4, 5), [95.0, -95.0]) && near(commanded(4, 6), [1.36, -79.0]));
-    // The chain's centre of rotation replaces the design's, and that is said.
+    // The chain's centre of rotation replaces the design's, and a message reports it.
     assert!((number(&report["connector"]["center_of_rotation_d"]) + 0.725).abs() < 2e-4);
     assert!(report["warnings"][0]["message"].as_str().unwrap().contains("does not count"));
 }

@@ -1,4 +1,4 @@
-//! Dynamics as a probability, through the real binary.
+//! Probability of docking under dynamics, through the real binary.
 
 use super::{catchment, designs, json, run};
 use serde_json::Value;
@@ -17,7 +17,7 @@ fn json_of(folder: &Path, args: &[&str]) -> Value {
     json(folder, &[&["chance", "v.toml", "--free", "x", "--json"], args].concat())
 }
 
-/// Of drifts even within 0 and 200 mm/s those below 100 mm/s leave 15 mm below 25 mm, where the half falls for long: u/γ at γ = 10/s.
+/// With drifts uniform in 0 to 200 mm/s, those below 100 mm/s leave 15 mm below 25 mm, if the half falls for long: u/γ at γ = 10/s.
 #[test]
 fn it_tells_the_closed_form_in_millimetres() {
     let home = home();
@@ -128,7 +128,7 @@ fn the_way_of_a_trial_is_reported_and_drawn() {
     assert!(table.starts_with("waypoint,travelled,time,x,"), "{table}");
 }
 
-/// The file that comes with the program.
+/// The file that ships with the program.
 #[test]
 fn the_laws_that_come_with_the_program_are_sound() {
     let report = json(

@@ -1,4 +1,4 @@
-//! `catchment check` on designs that are not.
+//! `catchment check` on invalid designs.
 
 use super::{designs, json, run};
 use std::fs;
@@ -54,7 +54,7 @@ fn own_halves_are_checked() {
     insta::assert_snapshot!("own_halves", check(text.as_bytes(), &[]));
 }
 
-/// Two parts drawn docked in one frame, one as OBJ and one as PLY: what was understood, in their own coordinates, and a picture of it.
+/// Two parts drawn docked in one frame, one as OBJ and one as PLY: the interpretation, in their own coordinates, and a picture of it.
 #[test]
 fn an_assembly_is_shown_as_it_was_understood() {
     insta::assert_snapshot!("assembled", run(&designs(), &["check", "pyramid-assembled.toml"]));
@@ -74,7 +74,7 @@ fn an_assembly_is_shown_as_it_was_understood() {
     assert!(fs::read(dir.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
-/// What cannot be understood is not drawn.
+/// An unreadable design has no picture.
 #[test]
 fn a_design_with_problems_has_no_picture() {
     let dir = tempfile::tempdir().unwrap();
@@ -84,7 +84,7 @@ fn a_design_with_problems_has_no_picture() {
     assert!(!dir.path().join("a.svg").exists());
 }
 
-/// Halves that are refused for how they meet are drawn where they first touch, and told in their unit.
+/// Halves that are refused for their contact are drawn at first contact and reported in their own unit.
 #[test]
 fn halves_that_do_not_mate_are_drawn() {
     let dir = tempfile::tempdir().unwrap();
@@ -138,7 +138,7 @@ fn changes_obey_the_rules_of_the_file() {
     insta::assert_snapshot!("free_misspelt", check(planar, &["--free", "x,pich"]));
 }
 
-/// The example of a kinematic coupling, by its closed form: a hexagon of area 2 √3 h², h = 5 mm.
+/// The example of a kinematic coupling against its closed form: a hexagon of area 2 √3 h², h = 5 mm.
 #[test]
 fn balls_in_grooves_are_checked_and_answered() {
     let printed = run(&designs(), &["check", "kelvin-balls.toml"]);
@@ -150,7 +150,7 @@ fn balls_in_grooves_are_checked_and_answered() {
     assert!(printed.contains("= 86.602540 mm²"), "{printed}");
 }
 
-/// A drawing, a file of two bodies that overlap, and a primitive: one half.
+/// A drawing, a file of two overlapping bodies, and a primitive: one half.
 #[test]
 fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
     let dir = tempfile::tempdir().unwrap();

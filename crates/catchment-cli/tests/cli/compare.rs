@@ -1,4 +1,4 @@
-//! `catchment compare` and `run --method all`: acceptances beside each other.
+//! `catchment compare` and `run --method all`: acceptances side by side.
 
 use super::{V_FACE, designs, home, json, run, written};
 use std::fs;
@@ -129,7 +129,7 @@ fn every_method_that_applies_stands_beside_the_others() {
         written(&home.path().join("out")),
         ["methods.csv", "methods.png", "methods.svg", "report.json"]
     );
-    // What does not apply, and what takes too long, is named with the reason.
+    // A method that does not apply or takes too long is listed with the reason.
     let hardly = ["run", "v.toml", "--method", "all", "--time-limit", "0.001 ms", "--cor", "0.5"];
     let printed = run(home.path(), &hardly);
     assert!(

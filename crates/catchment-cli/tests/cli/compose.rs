@@ -19,14 +19,15 @@ fn closed_forms_come_out_of_the_program() {
     let result = json(home.path(), &["compose", "ring.svg", "square.csv", "--json", "--frames", "world"]);
     assert_eq!(result["acceptance"]["area"], serde_json::json!([12.0, 12.0]));
     assert_eq!((&result["acceptance"]["holes"], &result["kind"]), (&1.into(), &"compose".into()));
-    // Own frames need no reflection: the sum of the two as they are drawn.
+    // Parts in their own frames need no reflection: the result is the sum of the two as drawn.
     let own = json(home.path(), &["compose", "corner.csv", "square.csv", "--json"]);
     assert_eq!(own["acceptance"]["bounds"], serde_json::json!([[0.0, 0.0], [2.5, 2.5]]));
     let world = json(home.path(), &["compose", "corner.csv", "square.csv", "--json", "--frames", "world"]);
     assert_eq!(world["acceptance"]["bounds"], serde_json::json!([[-0.5, -0.5], [2.0, 2.0]]));
 }
 
-/// Two discs of 50 mm: they overlap most at one place, where no grid of places has a point, and they meet up to 100 mm.
+/// Two discs of 50 mm: their overlap is largest at a single offset that is not a grid point, and they meet up to 100
+/// mm.
 #[test]
 fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
     let home = home();
@@ -100,7 +101,7 @@ fn two_connectors_add_up() {
     let alone = json(home.path(), &["zraa", "p.toml", "--json"]);
     let area = alone["area_d2"].as_f64().unwrap() * 1600.0;
     let both = json(home.path(), &["compose", "p.toml", "p.toml", "--json"]);
-    // A convex region and itself: four times as much.
+    // A convex region composed with itself has four times its area.
     let sum = both["acceptance"]["area"][0].as_f64().unwrap();
     assert!((sum - 4.0 * area).abs() < 1e-5, "{sum} {area}");
     // A square of side 1 D and a diamond of half diagonal 1 D: 1 + 2 + 2·(1 + 1).

@@ -1,11 +1,11 @@
-//! Defaults of the user's own, by the environment and by a file in a home of their own.
+//! User defaults, from the environment and from a file in the home folder.
 
 use super::{catchment, designs, home, run};
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-/// A folder with a design, which is a home, too, with this file of defaults.
+/// A folder with a design and this file of defaults, which also serves as home.
 fn home_with(config: &str) -> tempfile::TempDir {
     let home = home();
     fs::create_dir_all(home.path().join(".config/catchment")).unwrap();
@@ -13,7 +13,7 @@ fn home_with(config: &str) -> tempfile::TempDir {
     home
 }
 
-/// What the binary does with these variables, besides a home.
+/// Runs the binary with these variables and with a home.
 fn with(home: &Path, variables: &[(&str, &str)], args: &[&str]) -> Output {
     let mut command = catchment(home);
     command.env_remove("NO_COLOR").env("HOME", home).envs(variables.iter().copied());
@@ -38,7 +38,7 @@ fn the_command_line_precedes_the_environment_and_that_the_file() {
     assert_eq!(threads("threads = 2", &[], &[]), 2);
     assert_eq!(threads("threads = 2", &variable, &[]), 3);
     assert_eq!(threads("threads = 2", &variable, &["--threads", "5"]), 5);
-    // An empty variable is none.
+    // An empty variable counts as unset.
     assert_eq!(threads("threads = \"2\"", &[("CATCHMENT_THREADS", "")], &[]), 2);
 }
 
@@ -51,7 +51,7 @@ fn the_folder_of_the_specification_precedes_that_of_the_home() {
     let xdg = [("XDG_CONFIG_HOME", other.path().to_str().unwrap())];
     let (code, _, stderr) = printout(&with(home.path(), &xdg, &["check", "v.toml"]));
     assert!(code == Some(2) && stderr.contains("catchment/config.toml:1:"), "{stderr}");
-    // A file that is not there sets nothing.
+    // A missing file sets nothing.
     fs::remove_file(other.path().join("catchment/config.toml")).unwrap();
     assert_eq!(printout(&with(home.path(), &xdg, &["check", "v.toml"])).0, Some(0));
 }
@@ -77,7 +77,7 @@ fn colours_have_a_default() {
     let (good, bad) = (["check", "v.toml"], ["check", "none.toml"]);
     assert_eq!((coloured(&[], &good).0, coloured(&[], &bad).1), (true, true));
     assert!(coloured(&[], &["--help"]).0 && coloured(&[], &["check"]).1);
-    // NO_COLOR precedes the file, the variable of its own precedes NO_COLOR, the option everything.
+    // Precedence, rising: the file, NO_COLOR, the program's own variable, the option.
     assert!(!coloured(&[("NO_COLOR", "1")], &good).0);
     assert!(coloured(&[("NO_COLOR", "1"), ("CATCHMENT_COLOR", "always")], &good).0);
     let never = ["check", "v.toml", "--color", "never"];
@@ -86,7 +86,7 @@ fn colours_have_a_default() {
     assert!(!coloured(&[("CATCHMENT_COLOR", "never")], &bad).1);
 }
 
-/// It stands in where the files need it, says so, and changes nothing else.
+/// The default unit applies where the files need it, is reported, and changes nothing else.
 #[test]
 fn raw_files_have_a_default_unit() {
     let home = home_with("unit = \"mm\"");
@@ -120,7 +120,7 @@ fn a_bad_default_is_refused_with_its_source() {
         ("CATCHMENT_UNIT", "furlong", "a unit is one of"),
         ("CATCHMENT_COLOR", "pink", "auto, always or never"),
     ] {
-        // Whatever the command does with it.
+        // Even a command that does not use the setting refuses it.
         let (code, stdout, stderr) = printout(&with(plain.path(), &[(name, value)], &["schema"]));
         assert!(code == Some(2) && stdout.is_empty(), "{name}");
         assert!(stderr.contains(&format!("{name}=\"{value}\"")) && stderr.contains(why), "{stderr}");
@@ -131,16 +131,16 @@ fn a_bad_default_is_refused_with_its_source() {
     for part in ["config.toml:2:1", "did you mean `threads`?", "config.toml:3:10", "2 problems in"] {
         assert!(stderr.contains(part), "{part}: {stderr}");
     }
-    // Help is there all the same.
+    // Help works nevertheless.
     let (code, stdout, _) = printout(&with(wrong.path(), &[], &["--help"]));
     assert!(code == Some(0) && stdout.contains("CATCHMENT_THREADS"));
-    // No terminal is steered.
+    // The message contains no terminal control characters.
     let steering = home_with("\"a\\u001b[2J\" = 1\n");
     let (_, _, stderr) = printout(&with(steering.path(), &[("CATCHMENT_COLOR", "never")], &["schema"]));
     assert!(!stderr.contains('\u{1b}'), "{stderr:?}");
 }
 
-/// What changes a result has no default but its own.
+/// Settings that change a result have only their built-in defaults.
 #[test]
 fn no_default_changes_a_result() {
     let wrong = home_with("samples = 10\nbudget = \"1s\"\nseed = 2\nmethod = \"flood\"\n");

@@ -3,7 +3,7 @@
 use super::{catchment, home, run};
 use std::fs;
 
-/// What each code is for; 130 and 143 are held where signals are (`kills`, `poses`, `sweep`).
+/// The meaning of each code; 130 and 143 are tested where signals are (`kills`, `poses`, `sweep`).
 #[test]
 fn every_way_to_end_has_a_code_of_its_own() {
     let home = home();
@@ -14,7 +14,7 @@ fn every_way_to_end_has_a_code_of_its_own() {
         (0, format!("run v.toml {fast}")),
         (0, "--help".to_owned()),
         (1, format!("run v.toml {fast} --require onaa.edge>=1")),
-        // The command line cannot be followed, whatever the files hold.
+        // The command line is invalid, whatever the files contain.
         (2, "chekc v.toml".to_owned()),
         (2, "run v.toml --paint".to_owned()),
         (2, format!("run v.toml {fast} --require nothing>=1")),
@@ -25,18 +25,18 @@ fn every_way_to_end_has_a_code_of_its_own() {
         (2, "new pyramid -o v.toml".to_owned()),
         (2, "run v.toml -o no/such/folder".to_owned()),
         (2, "catalog show Voyager".to_owned()),
-        // A file that is named is not there.
+        // A named file does not exist.
         (3, "run none.toml".to_owned()),
         (3, "check .".to_owned()),
         (3, "trace v.toml --poses none.csv".to_owned()),
         (3, "compare v.toml none.toml".to_owned()),
         (3, "place none.stl nor.stl".to_owned()),
-        // A file is there, and something in it is wrong.
+        // A file exists but has invalid content.
         (4, "run bad.toml".to_owned()),
         (4, "check bad.toml --json".to_owned()),
         (4, "trace v.toml --poses bad.csv".to_owned()),
         (4, "export . -o set.csv".to_owned()),
-        // All of that is as it should be, and still there is no result.
+        // All inputs are valid, yet there is no result.
         (5, "run v.toml --resolution 200 --memory 1kB".to_owned()),
         (5, "hold v.toml --pose x=0.999".to_owned()),
         (5, "trace v.toml --pose x=5 -o t.glb".to_owned()),
@@ -60,7 +60,7 @@ fn every_way_to_end_has_a_code_of_its_own() {
     }
 }
 
-/// Stdout that cannot be written is no matter of the command line.
+/// A write error on stdout is not a command-line error.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_stdout_is_a_result_that_cannot_be_written() {

@@ -1,4 +1,4 @@
-//! What the real binary does to files that others need: nothing.
+//! The real binary never damages files of other owners.
 
 use super::{entries, home, run};
 use std::fs;
@@ -91,7 +91,8 @@ fn devices_pipes_and_links_stay_what_they_are() {
     assert_eq!(entries(&at("far")), ["file"]);
 }
 
-/// The design is wrong, too: what is said first was looked at first.
+/// The design has an error as well: the message about the output comes first because the output is checked
+/// first.
 #[test]
 fn a_place_that_cannot_work_is_refused_before_anything_is_read() {
     let home = home();
@@ -116,7 +117,7 @@ fn a_place_that_cannot_work_is_refused_before_anything_is_read() {
     assert!(entries(&home.path().join("q")).is_empty());
 }
 
-/// Nothing can be exchanged with it, and this is said before anything is computed.
+/// The system cannot exchange the folder, and the message comes before any computation.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_mount_point_is_no_place_for_a_result() {
@@ -144,7 +145,7 @@ fn a_name_that_is_not_utf8_is_refused_where_grids_are_stored() {
     assert_eq!(output.status.code(), Some(0));
 }
 
-/// What a killed run left is put in order by the next one.
+/// The next run cleans up the leftovers of a killed run.
 #[test]
 fn left_overs_of_a_killed_run_go() {
     let home = home();
@@ -152,12 +153,12 @@ fn left_overs_of_a_killed_run_go() {
     does(home.path(), &whole);
     fs::rename(home.path().join("out"), home.path().join(".out.1.old")).unwrap();
     fs::create_dir(home.path().join(".out.1.tmp")).unwrap();
-    // Restored before anything is computed, so that a run that fails finds it, too.
+    // The program restores it before any computation, so that a failing run finds it as well.
     assert!(run(home.path(), &["run", "nowhere.toml", "-o", "out"]).starts_with("exit 3\n"));
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
     does(home.path(), &whole);
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
-    // What only looks like one is another's.
+    // A folder that only resembles a leftover belongs to someone else.
     fs::create_dir(home.path().join(".out.123.tmp")).unwrap();
     fs::write(home.path().join(".out.123.tmp/notes"), "mine").unwrap();
     fs::write(home.path().join(".s.json.77.tmp"), "mine").unwrap();

@@ -1,4 +1,4 @@
-//! What friction takes, through the real binary.
+//! Loss of acceptance by friction, through the real binary.
 
 use super::{catchment, json, run};
 use serde_json::Value;
@@ -22,7 +22,7 @@ fn a_facet_holds_everything_from_its_slope_on() {
     );
     assert!(printed.contains("contacts of the first 20 poses lost as μ rises"), "{printed}");
     assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
-    // A little above the slope all that is lost is hardly held, and that is said.
+    // Just above the slope, friction barely holds every lost pose, and a message reports it.
     assert!(!printed.contains("dock at 0.9 of it"), "{printed}");
     let printed = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
     assert!(
@@ -59,7 +59,7 @@ fn a_requirement_decides_the_exit_code() {
     assert_eq!(code("kept.p95.friction>=0.21"), Some(1));
 }
 
-/// No friction changes not one bit of any answer.
+/// A friction coefficient of zero leaves every result bit-identical.
 #[test]
 fn friction_of_nothing_is_none() {
     let home = home();

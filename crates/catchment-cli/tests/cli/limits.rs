@@ -1,4 +1,4 @@
-//! Under the limits of the system and with bombs for input: a message and exit code 2, never an abort.
+//! System limits and oversized or recursive input: a message and exit code 2, never an abort.
 
 #![cfg(target_os = "linux")]
 
@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs the program under a limit; it must end with exit code 2 and say all of this.
+/// Runs the program under a limit; it must end with exit code 2 and print all these pieces of text.
 fn is_refused(home: &Path, limit: &str, args: &str, says: &[&str]) {
     let output = limited(home, limit, args);
     let printout = printed(&output);
@@ -83,7 +83,8 @@ fn a_limit_on_files_is_a_failure_that_leaves_nothing() {
     assert_eq!(crate::entries(home.path()), ["v.toml"]);
 }
 
-/// The maps of a grid of 4 million cells take more than the grid; refused before anything is computed.
+/// The maps of a grid of 4 million cells take more memory than the grid; the program refuses before any
+/// computation.
 #[test]
 fn the_budget_counts_pictures() {
     let home = home();
@@ -113,7 +114,7 @@ fn a_process_limit_takes_threads_and_changes_no_result() {
         report["timing"].take();
         report
     };
-    // Limits do not bind the superuser: the program runs as nobody then.
+    // Limits do not bind the superuser: the program then runs as the user `nobody`.
     let is_root = Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout == b"0\n");
     fs::set_permissions(dir, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
     for processes in 1..8 {
@@ -131,7 +132,7 @@ fn a_process_limit_takes_threads_and_changes_no_result() {
         let printout = printed(&bound);
         match bound.status.code() {
             Some(0) => assert_eq!(body(&bound), body(&free)),
-            // Nobody may be forbidden to run what lies here.
+            // The user `nobody` may lack the permission to run this binary.
             Some(126) => assert!(!printout.is_empty(), "{printout}"),
             _ => panic!("{processes} processes: {}: {printout}", bound.status),
         }
@@ -147,7 +148,7 @@ fn threads_that_cannot_be_had_are_named() {
     assert!(printout.contains("the system does not start 1024 threads"), "{printout}");
 }
 
-/// A thousand million threads are what a typing error asks for.
+/// A thousand million threads, as a typing error may request.
 #[test]
 fn threads_that_the_environment_asks_for_in_vain_are_refused() {
     let home = home();
@@ -170,7 +171,7 @@ fn threads_that_the_environment_asks_for_in_vain_are_refused() {
     assert_eq!(code, Some(0), "{printout}");
 }
 
-/// What cannot be opened any more is removed all the same.
+/// Files that can no longer be opened are removed nevertheless.
 #[test]
 fn a_process_without_descriptors_leaves_nothing_behind() {
     let home = home();
@@ -209,7 +210,7 @@ fn help_that_cannot_be_written_says_so() {
     }
 }
 
-/// A text STL of tetrahedra that all cross each other.
+/// A text STL of tetrahedra that all intersect each other.
 fn tangle(tetrahedra: usize) -> String {
     let mut text = String::from("solid tangle\n");
     for k in 0..tetrahedra {
@@ -263,7 +264,7 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
 }
 
-/// What is told of a text costs no more than what is shown of it.
+/// The cost of a message about a text is bounded by the excerpt it shows.
 #[test]
 fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory() {
     let home = home();
@@ -316,7 +317,7 @@ fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory()
     }
 }
 
-/// A pipe in the place of a file may be what somebody wants (`<(…)`), and nobody may ever write into it.
+/// A pipe in place of a file may be intended (`<(…)`), and it may never receive a writer.
 #[test]
 fn who_waits_for_a_pipe_listens() {
     let home = home();
@@ -354,7 +355,7 @@ fn who_waits_for_a_pipe_listens() {
             }
             std::thread::sleep(Duration::from_millis(20));
         }
-        // Without a handler the signal itself is the answer.
+        // Without a handler the signal itself ends the process.
         let code = child.wait().unwrap().code();
         assert!(matches!(code, None | Some(143)), "{args:?}: {code:?}");
     }
@@ -392,7 +393,7 @@ fn what_is_no_file_is_not_waited_for() {
     let printout = printed(&output);
     assert_eq!(output.status.code(), Some(4), "{printout}");
     assert!(printout.contains("it is no regular file"), "{printout}");
-    // Longer than any report: not one byte of it is on the disk.
+    // Longer than any report, and without a single byte on the disk.
     fs::remove_file(dir.join("e.zarr/zarr.json")).unwrap();
     fs::File::create(dir.join("e.zarr/zarr.json")).unwrap().set_len(3 << 30).unwrap();
     let output = limited(dir, "ulimit -v 1000000", "compare e.zarr v.toml");

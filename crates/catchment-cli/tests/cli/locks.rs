@@ -1,5 +1,5 @@
-//! A folder that another process keeps locked: refused after a while with the process that keeps it, at once where that process waits for
-//! the program, and left as soon as a signal says so.
+//! A folder that another process keeps locked: the program refuses it after a while and names the process, refuses at once if that
+//! process waits for the program, and gives up as soon as it receives a signal.
 
 #![cfg(target_os = "linux")]
 
@@ -10,20 +10,20 @@ use std::process::{Child, Command, Output, Stdio};
 
 const EXPORT: [&str; 6] = ["export", "v.toml", "--pose", "x=0.1", "-o", "out"];
 
-/// A folder in which a trial is written.
+/// A folder for the output of a trial.
 fn exported() -> tempfile::TempDir {
     let home = home();
     assert_eq!(catchment(home.path()).args(EXPORT).status().unwrap().code(), Some(0));
     home
 }
 
-/// What was said on stderr, without its frames.
+/// The text of stderr, without its frames.
 fn printout(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr);
     text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
 }
 
-/// Waits until the program has a thread that listens to signals; `false` where it has ended before.
+/// Waits until the program has a thread that listens for signals; `false` if it has ended before.
 fn listens(child: &mut Child) -> bool {
     let tasks = format!("/proc/{}/task", child.id());
     while child.try_wait().unwrap().is_none() {
@@ -37,7 +37,7 @@ fn listens(child: &mut Child) -> bool {
     false
 }
 
-/// Another process that keeps the folder locked, until it is killed.
+/// Another process that keeps the folder locked until it is killed.
 struct Keeper(Child);
 
 impl Keeper {
@@ -75,7 +75,7 @@ fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
 }
 
-/// `flock` hands its lock down, or keeps it for itself with -o: in both cases it waits for the program.
+/// `flock` hands its lock down, or keeps it with -o: in both cases it waits for the program.
 #[test]
 fn a_program_that_was_started_with_the_lock_says_so() {
     let home = exported();
@@ -99,7 +99,7 @@ fn a_program_that_was_started_with_the_lock_says_so() {
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
 }
 
-/// Says how the program ended that waits for a lock and hears a signal.
+/// The exit of a program that waits for a lock and receives a signal.
 fn ended_by(home: &Path, signal: &str) -> Option<i32> {
     let _keeper = Keeper::of(home);
     let mut child =
@@ -108,7 +108,7 @@ fn ended_by(home: &Path, signal: &str) -> Option<i32> {
         Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     }
     let output = child.wait_with_output().unwrap();
-    // Where the machine stood still for longer than a lock is waited for, the program was faster than the signal.
+    // If the machine stalled for longer than the lock timeout, the program ended before the signal.
     let code = output.status.code().filter(|code| *code != 2)?;
     assert!(printout(&output).contains("interrupted; nothing was written"), "{}", printout(&output));
     Some(code)

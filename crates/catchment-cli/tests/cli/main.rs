@@ -1,4 +1,4 @@
-//! The real binary: exit code, stdout and stderr together.
+//! Tests of the real binary: exit code, stdout and stderr together.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
 
@@ -52,7 +52,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// Runs the binary on what stdin holds.
+/// Runs the binary with this text on stdin.
 fn piped(folder: &Path, stdin: &[u8], args: &[&str]) -> Output {
     let mut child = catchment(folder)
         .args(args)
@@ -61,12 +61,12 @@ fn piped(folder: &Path, stdin: &[u8], args: &[&str]) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A command that does not read it may end before.
+    // A command that does not read stdin may end before.
     let _ = child.stdin.take().unwrap().write_all(stdin);
     child.wait_with_output().unwrap()
 }
 
-/// The binary in a folder, with nothing of the tester's terminal and no defaults of theirs: without HOME there is no file of them.
+/// Runs the binary in a folder, without the tester's terminal settings or defaults: without HOME there is no file of defaults.
 fn catchment(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_catchment"));
     command
@@ -76,12 +76,12 @@ fn catchment(folder: &Path) -> Command {
         .env("NO_COLOR", "1")
         .env("LC_ALL", "C.UTF-8")
         .env("TERM", "xterm")
-        // STEP files are meshed by nobody, whatever is installed here.
+        // No STEP mesher runs, whatever is installed on this machine.
         .env("CATCHMENT_PYTHON", "no/python3");
     command
 }
 
-/// A program of the system that starts the binary: nothing of the tester's own defaults reaches it.
+/// A system program that starts the binary, without the tester's own defaults.
 fn starter(program: &str) -> Command {
     const OF_THE_TESTER: [&str; 6] = [
         "HOME",
@@ -98,7 +98,7 @@ fn starter(program: &str) -> Command {
     command
 }
 
-/// What a run of the binary did.
+/// Exit code and output of a run of the binary.
 fn run(folder: &Path, args: &[&str]) -> String {
     let output = catchment(folder).args(args).output().unwrap();
     format!(
@@ -114,7 +114,7 @@ fn designs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs")
 }
 
-/// What a run of the binary prints, as JSON.
+/// The printed output of a run, as JSON.
 fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
     let output = catchment(folder).args(args).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -140,7 +140,8 @@ fn entries(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Names in a folder that the program has written, sorted: what its manifest lists, which is there too.
+/// Names in a folder that the program has written, sorted: the entries of its manifest, and the manifest
+/// itself.
 fn written(folder: &Path) -> Vec<String> {
     let mut names = entries(folder);
     assert_eq!(names.remove(0), ".catchment.json", "{names:?}");

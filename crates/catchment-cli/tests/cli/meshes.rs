@@ -1,4 +1,4 @@
-//! Bad geometry is refused with one clear message by every command, good meshes give the family's numbers.
+//! Every command refuses bad geometry with one clear message; good meshes give the numbers of the family.
 
 use super::{catchment, designs, run};
 use std::fs::{self, File};
@@ -9,7 +9,7 @@ const DESIGN: &str = "[connector]\nwidth = 50\nunit = \"mm\"\nface_height = 12.5
                       fixed = { mesh = \"socket.stl\", unit = \"mm\" }\n\
                       moving = { mesh = \"plug.stl\", unit = \"mm\" }\n";
 
-/// A folder with the committed pyramid pair, one of whose files `spoil` changes.
+/// A folder with the committed pyramid pair; `spoil` changes one of its files.
 fn folder(spoil: impl Fn(&Path)) -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("design.toml"), DESIGN).unwrap();
@@ -20,7 +20,7 @@ fn folder(spoil: impl Fn(&Path)) -> tempfile::TempDir {
     dir
 }
 
-/// The committed plug, binary, with its bytes changed.
+/// The committed plug as a binary STL with modified bytes.
 fn plug(change: impl Fn(&mut Vec<u8>)) -> impl Fn(&Path) {
     move |dir| {
         let path = dir.join("plug.stl");
@@ -30,11 +30,12 @@ fn plug(change: impl Fn(&mut Vec<u8>)) -> impl Fn(&Path) {
     }
 }
 
-/// Bytes before the first triangle of a binary file, and of each triangle.
+/// Byte lengths in a binary file: the header before the first triangle, and each triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Asserts that checking and computing refuse the folder with `said`, once, and leave nothing behind.
+/// Asserts that `check` and the computing commands refuse the folder with the message `printout`, once, and leave
+/// no files behind.
 fn refused(name: &str, spoil: impl Fn(&Path), printout: &str) {
     let dir = folder(spoil);
     fs::write(dir.path().join("poses.csv"), "x\n0.1\n").unwrap();
@@ -48,7 +49,7 @@ fn refused(name: &str, spoil: impl Fn(&Path), printout: &str) {
     let reports = commands.map(|args| run(dir.path(), args));
     for report in &reports {
         assert_eq!(*report, reports[0], "{name}");
-        // Long lines are broken between words.
+        // The program breaks long lines between words.
         let words = report.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
         assert!(report.starts_with("exit 4\n--- stdout\n--- stderr\n"), "{name}: {report}");
         assert_eq!(words.matches(printout).count(), 1, "{name}: {words}");
@@ -59,7 +60,7 @@ fn refused(name: &str, spoil: impl Fn(&Path), printout: &str) {
 
 #[test]
 fn an_open_mesh() {
-    // Without its last triangle three edges are open: one hole, one message.
+    // Without its last triangle the mesh has three open edges: one hole, one message.
     let open = |bytes: &mut Vec<u8>| {
         bytes.truncate(bytes.len() - TRIANGLE);
         bytes[80] -= 1;
@@ -141,14 +142,16 @@ fn meshes_and_pieces_give_the_familys_outcomes() {
             assert!((x - y).abs() < 1e-6, "pose {k}: {a:?} {b:?}");
         }
     }
-    // Pieces have corners where they meet, so the motion takes other steps and stops elsewhere within its tolerance.
+    // The pieces have corners where they meet, so the motion takes different steps and stops elsewhere within its
+    // tolerance.
     let pieces = finals(dir.path(), &designs().join("pyramid-pieces.toml"));
     for (k, (a, b)) in family.iter().zip(&pieces).enumerate() {
         assert_eq!(a.0, b.0, "pose {k}");
     }
 }
 
-/// A triangle turned over, one twice, one without area: everything that is repaired without moving anything.
+/// A flipped triangle, a duplicate and a degenerate one: every defect that can be repaired without moving a
+/// vertex.
 fn spoil(bytes: &mut Vec<u8>) {
     let at = |k: usize| HEADER + TRIANGLE * k;
     let doubled = bytes[at(1)..at(2)].to_vec();
@@ -183,7 +186,7 @@ fn a_spoilt_mesh_is_repaired_and_reported() {
     let quick = ["run", "design.toml", "--free", "x,y", "--resolution", "5", "-v"];
     let words = run(spoilt.path(), &quick).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains(&format!("moving half {done}")), "{words}");
-    // Taken as it is, it is refused.
+    // Without repair the file is refused.
     fs::write(
         spoilt.path().join("design.toml"),
         DESIGN.replace("plug.stl\",", "plug.stl\", repair = false,"),

@@ -1,4 +1,4 @@
-//! `catchment new` and back.
+//! `catchment new`: the round trip from a template to a design and back.
 
 use super::{catchment, run};
 

@@ -1,4 +1,4 @@
-//! `catchment place`: from two files to a design, to what it forgives.
+//! `catchment place`: from two part files to a design and its tolerances.
 
 use crate::prisms::{Prism, TWO, Unbroken, arc, deep, flat, obj, on_a_plate, plug, socket, two_parts};
 use crate::{catchment, designs, entries, run};
@@ -18,7 +18,7 @@ fn home() -> tempfile::TempDir {
 
 const PARTS: [&str; 4] = ["place", "parts/socket.stl", "parts/plug.stl", "--unit=mm"];
 
-/// The heights of the proposed design, from the outcomes of one list of errors.
+/// The heights of the proposed design, from `outcome` on one list of errors.
 fn outcomes(folder: &Path, design: &str) -> String {
     fs::write(folder.join("poses.csv"), "x_mm,y_mm,pitch_deg\n3,1,0\n-5,4,0\n0,0,8\n40,0,0\n").unwrap();
     let printed = run(folder, &["outcome", design, "--poses", "poses.csv"]);
@@ -39,7 +39,7 @@ fn two_files_become_a_design_that_answers() {
     let checked = run(home.path(), &["check", "design.toml"]);
     assert!(checked.starts_with("exit 0") && checked.contains("width D           50 mm"), "{checked}");
     let answered = outcomes(home.path(), "design.toml");
-    // The committed design with its centre of rotation in the face centre.
+    // The committed design with its centre of rotation at the face centre.
     fs::copy(designs().join("pyramid-stl.toml"), home.path().join("true.toml")).unwrap();
     let text = fs::read_to_string(home.path().join("true.toml")).unwrap();
     let text =
@@ -68,7 +68,7 @@ fn an_assembly_is_recognised_and_paths_lead_from_the_design() {
     assert!(text.contains("mesh = \"../parts/assembled-socket.obj\""), "{text}");
     assert!(text.contains("approach = \"+y\"") && text.contains("drawn = \"assembled\""), "{text}");
     assert!(run(home.path(), &["check", "designs/pair.toml"]).starts_with("exit 0"));
-    // The same parts, as if each were in a frame of its own.
+    // The same parts, each in a frame of its own.
     let apart = run(home.path(), &[&parts[..], &["--drawn", "facing"]].concat());
     assert!(apart.starts_with("exit 0") && apart.contains("facing = \"-y\""), "{apart}");
 }
@@ -104,7 +104,8 @@ fn parts_that_do_not_dock_are_reported_and_nothing_is_written() {
 const ASSEMBLED: [&str; 8] =
     ["place", "fixed.obj", "moving.obj", "--unit=mm", "--drawn=assembled", "--approach=-z", "-o", "d.toml"];
 
-/// A bar laid level across a V of 54 degrees balances: no seat where it may tip, and none is proposed in which it does.
+/// A bar laid level across a V of 54 degrees balances: it has no seat where it may tip, and `place` proposes none in
+/// which it tips.
 #[test]
 fn a_bar_that_balances_is_not_proposed_to_tip() {
     let v = [[-40., 0.], [40., 0.], [40., 60.], [30., 60.], [0., 2.], [-30., 60.], [-40., 60.]];
@@ -125,7 +126,7 @@ fn a_bar_that_balances_is_not_proposed_to_tip() {
     }
 }
 
-/// Two keys between two walls turn by 48 degrees either way, and not all round: their yaw is locked, and does matter.
+/// Two keys between two walls can turn by 48 degrees either way but not all round: their yaw is locked and matters.
 #[test]
 fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
     let wall = |from: f64| [arc(16.0, from, from + 60.0, 6), arc(10.3, from + 60.0, from, 6)].concat();
@@ -145,7 +146,7 @@ fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(text.contains("\nfree = [\"x\", \"y\", ") && !text.contains("yaw"), "{text}");
     assert!(text.contains("all others are locked at 0."), "{text}");
-    // A disc without keys lies as deep all round.
+    // A disc without keys seats at the same depth at every yaw.
     fs::write(home.path().join("moving.obj"), obj(&[(&arc(10.0, 0.0, 350.0, 35), [1.0, 12.0], flat)]))
         .unwrap();
     let printed = run(home.path(), &[&ASSEMBLED[..], &["--force"]].concat());
@@ -154,7 +155,8 @@ fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
     assert!(text.contains("dont_care = [\"yaw\"]") && text.contains("seated at any angle"), "{text}");
 }
 
-/// A wedge that was drawn turned by 2.5 degrees in its groove: what settles says how far, and to look.
+/// A wedge drawn turned by 2.5 degrees in its groove: the report on settling gives the angle and advises a
+/// check.
 #[test]
 fn what_settles_says_how_far() {
     let groove = [[-40., 0.], [40., 0.], [40., 36.], [30., 32.], [0., 2.], [-30., 32.], [-40., 36.]];
@@ -169,7 +171,7 @@ fn what_settles_says_how_far() {
     assert!(printed.contains("note: the drawn pose is not a rest"), "{printed}");
 }
 
-/// What is read is not written over, by whatever option it was named.
+/// An input file is never overwritten, whichever option names it.
 #[test]
 fn what_belongs_to_a_half_is_not_written_over() {
     let home = home();
@@ -184,7 +186,8 @@ fn what_belongs_to_a_half_is_not_written_over() {
     assert!(printed.contains("there is no file parts/none.stl") && printed.contains("help: "), "{printed}");
 }
 
-/// Files of more triangles than a half may have are placed with fewer, which the design says.
+/// A file with more triangles than the limit of a half is placed with fewer, and the design records the
+/// reduction.
 #[test]
 fn files_are_placed_with_fewer_triangles() {
     let home = home();
@@ -202,7 +205,8 @@ fn files_are_placed_with_fewer_triangles() {
             "{printed}"
         );
     }
-    // Too many: the option is named, and not a key of a design that nobody wrote.
+    // For too many triangles the message names the command-line option, not a key of a design that the user
+    // did not write.
     let mut many = vec![0; 84 + 50 * 200_001];
     many[80..84].copy_from_slice(&200_001u32.to_le_bytes());
     fs::write(home.path().join("many.stl"), many).unwrap();
@@ -218,7 +222,8 @@ fn files_are_placed_with_fewer_triangles() {
     assert!(printed.starts_with("exit 2") && printed.contains("--with-fixed"), "{printed}");
 }
 
-/// What is drawn on its axis but not sunk slides along the approach; a few millimetres are no doubt, more are.
+/// A part drawn on its axis but above its seat slides along the approach; a few millimetres cause no
+/// diagnostic, more do.
 #[test]
 fn what_is_drawn_apart_slides_to_first_contact() {
     let fixed = on_a_plate(&socket(10.2));
@@ -231,7 +236,7 @@ fn what_is_drawn_apart_slides_to_first_contact() {
     }
 }
 
-/// Ways of approach that are blocked say by how much in the unit of the parts.
+/// The message on a blocked approach gives the overlap in the unit of the parts.
 #[test]
 fn a_blocked_approach_is_reported_in_millimetres() {
     let home = home();

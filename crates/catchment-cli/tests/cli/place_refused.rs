@@ -1,4 +1,4 @@
-//! `catchment place`: parts that do not dock, and mistakes in their files, each with its cause.
+//! `catchment place`: parts that do not dock, and defects of their files, each reported with its cause.
 
 use crate::prisms::{
     Prism, TWO, Unbroken, flat, obj, on_a_plate, plug, rectangle, scaled, socket, two_parts,
@@ -6,11 +6,11 @@ use crate::prisms::{
 use crate::{catchment, run};
 use std::fs;
 
-/// An L and its recess, one of them exported mirrored: no turn brings them together.
+/// An L and its recess, one of them exported mirrored: no rotation makes them fit.
 #[test]
 fn a_mirrored_part_is_reported_as_one() {
     let l = [rectangle([-8.0, -2.0], [-10.0, 10.0]), rectangle([-2.0, 8.0], [-10.0, -4.0])];
-    // Faces up in its own file, so that it is turned over about x to dock.
+    // The part faces up in its own file and has to be turned over about x to dock.
     let recess = [
         rectangle([-15.0, -9.0], [-15.0, 15.0]),
         rectangle([9.0, 15.0], [-15.0, 15.0]),
@@ -22,7 +22,7 @@ fn a_mirrored_part_is_reported_as_one() {
     let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
     let printout = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
     assert!(printout.starts_with("exit 0") && !printout.contains("mirror"), "{printout}");
-    // Where it tolerates a few millimetres, the error box does not reach to 30.
+    // With tolerances of a few millimetres, the error box does not reach 30 mm.
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert!(
         text.contains("About four times the single-axis limits (") && text.contains("\nx = 0.18 # D"),
@@ -38,7 +38,7 @@ fn a_mirrored_part_is_reported_as_one() {
     assert!(!home.path().join("m.toml").exists());
 }
 
-/// A web across a socket keeps its plug out: where it is, on which part, and what it costs.
+/// A web across a socket keeps its plug out: the message gives its place, its part and the lost depth.
 #[test]
 fn a_web_in_the_way_is_pointed_at() {
     let walls = [
@@ -57,7 +57,7 @@ fn a_web_in_the_way_is_pointed_at() {
     {
         assert!(printout.starts_with("exit 5") && printout.contains(words), "{words}\n{printout}");
     }
-    // A design that somebody wrote says the same, on the moving half as well.
+    // A design written by hand gives the same message, on the moving half as well.
     for (fixed, moving, whose) in [("fixed", "moving", "fixed"), ("moving", "fixed", "moving")] {
         let half = |name: &str| format!("{{ mesh = \"{name}.obj\", unit = \"mm\" }}");
         let text = format!(
@@ -75,13 +75,14 @@ fn a_web_in_the_way_is_pointed_at() {
             "{printout}"
         );
     }
-    // Without the web it docks.
+    // Without the web the plug docks.
     fs::write(home.path().join("fixed.obj"), on_a_plate(&walls)).unwrap();
     let printout = run(home.path(), &[&parts[..], &["-o", "e.toml"]].concat());
     assert!(printout.starts_with("exit 0") && !printout.contains("in the way"), "{printout}");
 }
 
-/// Parts that are drawn together and do not hold are refused with the cause, not put somewhere else.
+/// Parts that are drawn together and do not hold are refused with the cause; `place` does not search for
+/// another pose.
 #[test]
 fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
     let ring = socket(10.2);
@@ -105,7 +106,8 @@ fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
     }
 }
 
-/// A lid exactly as large as its recess has no play: so much is said. A tenth of a millimetre lets it in.
+/// A lid exactly as large as its recess has no play, and the message names the lack of play. A tenth of a
+/// millimetre of play is sufficient.
 #[test]
 fn a_lid_as_large_as_its_recess_is_reported() {
     let parts = [
@@ -118,7 +120,7 @@ fn a_lid_as_large_as_its_recess_is_reported() {
         "--facing-moving=-z",
     ];
     let home = two_parts(&on_a_plate(&socket(10.0)), &plug(10.000_01, [40.0, 60.0]));
-    // Also where no facing is pinned, before all that is flat.
+    // The same holds when no facing is pinned; the message precedes every note about flat faces.
     for args in [&parts[..], &TWO[..]] {
         let printed = run(home.path(), args).unbroken();
         let cause = printed.split("no play: ").nth(1).unwrap_or_default();
@@ -133,7 +135,7 @@ fn a_lid_as_large_as_its_recess_is_reported() {
     assert!(printout.starts_with("exit 0"), "{printout}");
 }
 
-/// Mistakes in the files that leave no seat: each is named, with what to do.
+/// Defects of the files that leave no seat: each is named, with advice.
 #[test]
 fn mistakes_in_the_files_are_named() {
     let refused = |fixed: &str, moving: &str, more: &[&str]| {
@@ -143,7 +145,7 @@ fn mistakes_in_the_files_are_named() {
         printout
     };
     let plate = on_a_plate(&[]);
-    // The same part twice, in a file and in a copy of it.
+    // The same part twice, in a file and in its copy.
     let printout = refused(&plate, &plate, &[]);
     assert!(
         printout.contains("both files hold the same part: name the file of the other half"),
@@ -165,7 +167,7 @@ fn mistakes_in_the_files_are_named() {
         printout.contains("the file of the fixed half holds 2 separate bodies: if both halves are in it, give that file alone"),
         "{printout}"
     );
-    // Alone it must hold two.
+    // A single file must contain two bodies.
     let home = two_parts(&plug(7.0, [0.0, 8.0]), "");
     let printout = run(home.path(), &["place", "fixed.obj", "--unit=mm"]).unbroken();
     assert!(
@@ -174,7 +176,7 @@ fn mistakes_in_the_files_are_named() {
     );
 }
 
-/// Inches that are read as millimetres make parts of a few millimetres.
+/// Files in inches that are read as millimetres give parts of a few millimetres.
 #[test]
 fn parts_of_a_few_millimetres_may_be_in_inches() {
     let home = two_parts(
@@ -194,7 +196,7 @@ fn parts_of_a_few_hundredths_of_a_millimetre_may_be_in_metres() {
     assert!(printout.contains("in m? Then it is "), "{printout}");
 }
 
-/// Lengths of parts of millimetres are told in mm where their files are in metres.
+/// Lengths of millimetre-sized parts are reported in mm even if their files are in metres.
 #[test]
 fn metres_are_reported_in_millimetres() {
     let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
@@ -207,7 +209,7 @@ fn metres_are_reported_in_millimetres() {
     );
 }
 
-/// What is wrong with both files alike is said once.
+/// A defect that both files share is reported once.
 #[test]
 fn step_without_a_python_is_reported_once() {
     let home = tempfile::tempdir().unwrap();

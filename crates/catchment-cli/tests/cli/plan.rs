@@ -1,4 +1,4 @@
-//! Plans of bench tests and verdicts on them, through the real binary.
+//! Plans of robot trials and their verdicts, through the real binary.
 
 use super::{catchment, designs, json, run};
 use serde_json::Value;
@@ -19,7 +19,7 @@ fn home() -> tempfile::TempDir {
 const BRACKET: [&str; 8] =
     ["plan", "v.toml", "--pattern", "bracket", "--trials", "12", "--accuracy", "x=0.5 mm"];
 
-/// The plan with what a robot saw of every trial: docked up to so many millimetres.
+/// The plan with a robot's outcome for every trial: docked up to this many millimetres.
 fn filled(plan: &str, docks_to: f64) -> String {
     let mut rows = plan.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let head = rows.next().unwrap();
@@ -41,7 +41,7 @@ fn plan(folder: &Path, args: &[&str], file: &str) -> String {
     fs::read_to_string(folder.join(file)).unwrap()
 }
 
-/// A result is planned for as its design is, with the friction that it was decided with.
+/// The plan of a stored result equals that of its design, with the result's friction coefficient.
 #[test]
 fn a_result_is_planned_for_as_its_design_is() {
     let home = home();
@@ -86,15 +86,15 @@ fn a_plan_comes_back_with_outcomes_and_gets_its_verdict() {
     );
     assert_eq!(good["agreement"]["trials"], good["agreement"]["agreed"]);
     assert_eq!(good["disagreements"], Value::Array(Vec::new()));
-    // Docked only up to 15 mm: every trial between is wrong, and early.
+    // Docked only up to 15 mm: the prediction is wrong for every trial in between, and on the early side.
     let bad = verdict(15.0, &[]);
     assert_eq!((&bad["verdict"], &bad["consistent"]), (&"inconsistent".into(), &(-1).into()));
     assert!(bad["early"]["p_value"].as_f64().unwrap() < 1e-3);
     let first = &bad["disagreements"][0];
     assert_eq!((&first["observed"], &first["predicted"]), (&"missed".into(), &"aligned".into()));
-    // From 23 mm inside that is 4 accuracies.
+    // At 23 mm the margin to the border at 25 mm is 4 σ.
     assert!(first["margin_in_sigma"].as_f64().unwrap() > 2.0);
-    // Without friction along a slope nothing explains it, and the report says so.
+    // Without friction along a slope no known cause explains it, and the report states that.
     let friction = verdict(15.0, &["--estimate-friction"]);
     assert!(friction["friction"]["tried"].as_array().unwrap().len() >= 21);
 }
@@ -123,7 +123,7 @@ fn threads_and_the_point_of_offsets_change_no_verdict() {
     };
     let printed = quiet(&[&arc[..], &["--threads", "1"]].concat());
     assert_eq!(printed, quiet(&[&arc[..], &["--threads", "2"]].concat()));
-    // At the face centre y is locked and yet not 0; at the joint both offsets are 0.
+    // At the face centre y is locked and yet nonzero; at the joint both offsets are 0.
     let face = plan(home.path(), &arc, "face.csv");
     assert!(face.starts_with("trial,block,line,x_mm,y_mm,pitch_deg,yaw_deg,predicted,"), "{face}");
     let joint = plan(home.path(), &[&arc[..], &["--offsets-at", "cor"]].concat(), "joint.csv");
@@ -162,7 +162,7 @@ fn requirements_files_and_pictures() {
     assert_eq!(with(&["--require", "plan.deciding>=100", "-o", "p.csv"]).status.code(), Some(1));
     assert_eq!(with(&["--require", "plan.of>=1", "-o", "q.csv"]).status.code(), Some(2));
     assert_eq!(with(&["--figure", "p.svg"]).status.code(), Some(0));
-    // --force is for pictures, too.
+    // --force applies to pictures as well.
     let again = with(&["--figure", "p.svg"]);
     let printout = String::from_utf8(again.stderr).unwrap();
     assert!(again.status.code() == Some(2) && printout.contains("--force replaces it"), "{printout}");

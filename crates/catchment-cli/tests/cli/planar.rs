@@ -3,7 +3,7 @@
 use super::{designs, json, run};
 use std::fs;
 
-/// A committed design by its whole path.
+/// The absolute path of a committed design.
 fn design(name: &str) -> String {
     designs().join(name).display().to_string()
 }
@@ -19,7 +19,7 @@ fn nilssons_bound_stands_beside_the_exact_answer() {
         }
     }
     assert!(json(&designs(), &["zraa", "x-face.toml", "--json"])["nilsson"].is_null());
-    // Lines break anywhere.
+    // Lines may break anywhere.
     let printed = run(&designs(), &["zraa", "v-face.toml"]).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         printed.contains("nilsson D/2 to both sides is the most for one profile, halves of two kinds"),
@@ -31,7 +31,7 @@ fn nilssons_bound_stands_beside_the_exact_answer() {
     );
 }
 
-/// An own profile: a polyline cut into columns, its minimum off the middle.
+/// A custom profile: a polyline cut into columns, its minimum off the middle.
 #[test]
 fn an_own_profile_is_measured_by_its_extrema() {
     let dir = tempfile::tempdir().unwrap();
@@ -85,7 +85,7 @@ fn faces_stand_side_by_side() {
     let report = json(dir.path(), &["zraa", &three[0], &three[2], "--json"]);
     assert_eq!(report["faces"].as_array().unwrap().len(), 2);
     assert!((report["faces"][1]["to_d"].as_f64().unwrap() - 1.0).abs() < 1e-9);
-    // What is changed is changed in all.
+    // A changed setting applies to every design.
     let spatial = [design("pyramid.toml"), design("cone.toml")];
     let along_x = json(dir.path(), &["zraa", &spatial[0], &spatial[1], "--free", "x", "--json"]);
     assert_eq!(along_x["faces"][1]["axis"], "x");

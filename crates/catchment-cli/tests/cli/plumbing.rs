@@ -1,4 +1,4 @@
-//! Help, completions, manual pages, schema, and a reader that goes away.
+//! Help, completions, manual pages, schema, and a reader that closes the pipe.
 
 use super::{catchment, run};
 use std::path::Path;

@@ -12,12 +12,12 @@ A2,10,5,-0.1
 A4,0,90,0
 ";
 
-/// Runs `outcome` on a table that stdin holds.
+/// Runs `outcome` on a table from stdin.
 fn outcome(table: &str, args: &[&str]) -> std::process::Output {
     piped(&designs(), table.as_bytes(), &[&["outcome", "pyramid-stl.toml", "--poses", "-"], args].concat())
 }
 
-/// A table's cells.
+/// The cells of a table.
 fn cells(csv: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(csv);
     reader.records().map(|r| r.unwrap().iter().map(ToOwned::to_owned).collect()).collect()
@@ -47,15 +47,15 @@ fn poses_with_units_come_back_with_their_outcomes() {
     assert_eq!([outcomes[0], outcomes[1], outcomes[3]], ["aligned", "aligned", "missed"]);
     // Aligned means within 0.02 D = 1 mm.
     assert!(table[2][5].parse::<f64>().unwrap().abs() < 1.0);
-    // The COR of an aligned pyramid is D/2 below the middle of its face, which lies on all four sides; what is missed lies on nothing.
+    // The COR of an aligned pyramid is D/2 below the middle of its face, which lies on all four sides; a missed pose has no contact.
     assert!((table[2][10].parse::<f64>().unwrap() + 0.5).abs() < 0.01, "{table:?}");
     assert_eq!(table[2][11], "slope of 45° on slope of 45°");
     assert_eq!(table[4][10..], ["", ""]);
-    // What never meets stays where it was.
+    // A half that never makes contact keeps its place.
     assert!((table[4][5].parse::<f64>().unwrap() - 90.0).abs() < 1e-9);
 }
 
-/// In the valley of a pyramid of AR ½ Coulomb's law leaves open from 0.577 to 0.612 whether a half sticks.
+/// In the valley of a pyramid of AR ½, Coulomb's law leaves stiction undetermined from 0.577 to 0.612.
 #[test]
 fn with_friction_a_column_says_what_may_have_stuck() {
     let home = tempfile::tempdir().unwrap();
@@ -122,7 +122,7 @@ fn everything_that_is_wrong_with_a_table_at_once() {
             "{report}"
         );
     }
-    // A file of holes takes no room; it is refused after the limit, not after its end.
+    // A sparse file takes no disk space; the program refuses it at the limit, without reading to its end.
     fs::File::create(dir.path().join("poses.csv")).unwrap().set_len(8 << 30).unwrap();
     assert!(report(&[]).contains("poses.csv is larger than 64 MiB"));
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
@@ -144,7 +144,7 @@ fn a_trace_tells_the_whole_way() {
     assert!(text.starts_with("exit 0\n") && text.contains("x [mm]"), "{text}");
     assert!(text.contains("  outcome        docked\n"), "{text}");
     assert!(text.ends_with("--- stderr\nnext: catchment rests pyramid-stl.toml --jams\n"), "{text}");
-    // Each printed line is one of the waypoints; there are at most a screenful.
+    // Each printed line is one of the waypoints; at most a screenful is printed.
     assert!(text.lines().count() < 40, "{text}");
 }
 
@@ -227,7 +227,7 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
     };
     assert!(export("trial").starts_with("exit 0\n"), "{}", export("trial"));
     let mjcf = fs::read_to_string(path("trial/trial.xml")).unwrap();
-    // x and pitch are free, and the approach; two pieces make the notch, one the tip.
+    // x, pitch and the approach are free; two pieces make the notch, one the tip.
     assert_eq!(mjcf.matches("<joint").count(), 3);
     assert_eq!(mjcf.matches("<mesh").count(), 3);
     assert!(mjcf.contains("friction=\"0.2 0 0\"") && mjcf.contains("biasprm=\"-5000 0 0\""));
@@ -236,7 +236,7 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
     for mesh in ["fixed-0.stl", "fixed-1.stl", "moving-0.stl"] {
         assert!(sdf.contains(mesh) && path("trial/meshes").join(mesh).is_file(), "{mesh}");
     }
-    // Again over its own files, but not over others.
+    // It overwrites its own files, but no others.
     assert!(export("trial").starts_with("exit 0\n"));
     fs::create_dir(path("other")).unwrap();
     fs::write(path("other/holiday.png"), "").unwrap();
@@ -245,7 +245,7 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
 
 #[test]
 fn equal_rows_meet_the_same_end_in_drop_tests() {
-    // On the border of the accepted set, where the perturbation decides.
+    // On the border of the accepted set, where the perturbation determines the outcome.
     let table = "x_mm,yaw_deg\n".to_owned() + &"25,30\n".repeat(12);
     let output = outcome(&table, &["--method", "drop"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -261,7 +261,7 @@ fn near_names_are_refused_and_carried_columns_named() {
         assert_eq!(output.status.code(), Some(4), "{name}: {stderr}");
         assert!(!stderr.contains(['\0', '\u{1b}']), "{stderr:?}");
     }
-    // A byte order mark that does not begin the file is part of a name.
+    // A byte order mark elsewhere than at the start of the file is part of a name.
     let output = outcome("yaw,\u{feff}x_mm\n0,90\n", &[]);
     assert_eq!(output.status.code(), Some(4));
     let ends = ["x_mm", "x [mm]", "x (mm)"].map(|name| {
@@ -286,7 +286,8 @@ fn offsets_are_measured_where_it_is_said() {
     assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(4)]);
 }
 
-/// What `outcome` leaves that is interrupted soon after it began, on more poses than it decides until then.
+/// The output of `outcome` when interrupted shortly after its start, with more poses than it can follow by
+/// then.
 #[cfg(target_os = "linux")]
 fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::process::Output {
     let child = catchment(folder)
@@ -296,7 +297,8 @@ fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::pr
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Until the handler stands the signal ends the process without a code: there is a thread that waits for it then.
+    // Before the handler is installed, the signal ends the process without a code; the handler waits in a thread of
+    // its own.
     let tasks = format!("/proc/{}/task", child.id());
     let listens = || {
         let names = fs::read_dir(&tasks)
@@ -327,7 +329,7 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
     fs::write(home.path().join("poses.csv"), &table).unwrap();
     let printout = |output: &std::process::Output| String::from_utf8(output.stderr.clone()).unwrap();
 
-    // Into a file: not at its place, but beside it.
+    // Into a file: not at its final place, but beside it.
     let output = interrupted(home.path(), &["-o", "out.csv"], "-INT");
     let stderr = printout(&output);
     assert_eq!(output.status.code(), Some(130), "{stderr}");
@@ -341,18 +343,18 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
         format!("partial: {finished} of {POSES} poses are decided, {} are missing", POSES - finished);
     assert!(stderr.contains(&counted), "{stderr}");
 
-    // The rows are those that the whole has: some of them, alone.
+    // The rows are a subset of those of the complete output.
     let few: Vec<&Vec<String>> = rows[1..].iter().step_by(finished.div_ceil(20)).collect();
     let again: Vec<String> = few.iter().map(|row| row[..3].join(",")).collect();
     fs::write(home.path().join("few.csv"), format!("name,x,pitch\n{}\n", again.join("\n"))).unwrap();
     let whole = catchment(home.path()).args(["outcome", "v.toml", "--poses", "few.csv"]).output().unwrap();
     assert_eq!(cells(&whole.stdout)[1..].iter().collect::<Vec<_>>(), few);
 
-    // What an interrupt left is not written over unasked.
+    // The output of an interrupted run is overwritten only with `--force`.
     let refused = run(home.path(), &["outcome", "v.toml", "--poses", "few.csv", "-o", "out.csv"]);
     assert!(refused.starts_with("exit 2\n") && refused.contains("out.csv.partial"), "{refused}");
 
-    // Printed, as JSON: it says so itself.
+    // The JSON printed to stdout states the interruption itself.
     let output = interrupted(home.path(), &["--json"], "-TERM");
     assert_eq!(output.status.code(), Some(143), "{}", printout(&output));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -364,7 +366,7 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
     assert_eq!(last["carried"]["name"], format!("p{row}"));
 }
 
-/// Rows come while others are still followed; a reader that has seen enough ends the command quietly.
+/// The command prints rows while it follows other poses; a reader that closes the pipe ends it quietly.
 #[test]
 fn rows_are_printed_as_they_are_decided() {
     use std::fmt::Write;

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::fs;
 
-/// An OBJ of prisms: their outlines, from where to where they reach, and where a corner is put.
+/// An OBJ of prisms: their outlines, their extents along the extrusion axis, and the map of a corner to its
+/// coordinates.
 pub(crate) type Prism<'a> = (&'a [[f64; 2]], [f64; 2], fn([f64; 2], f64) -> [f64; 3]);
 
 pub(crate) fn obj(prisms: &[Prism<'_>]) -> String {
@@ -49,7 +50,7 @@ pub(crate) fn arc(radius: f64, from: f64, to: f64, count: u32) -> Vec<[f64; 2]> 
     (0..=count).map(|k| [radius * at(k).cos(), radius * at(k).sin()]).collect()
 }
 
-/// A box from where to where along x and y, z.
+/// A box by its extents along x and y, and along z.
 pub(crate) fn rectangle([x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> [[f64; 2]; 4] {
     [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 }
@@ -62,7 +63,7 @@ pub(crate) fn on_a_plate(raised: &[[[f64; 2]; 4]]) -> String {
     obj(&prisms)
 }
 
-/// What was printed, without the breaks of its lines.
+/// The printed text without line breaks.
 pub(crate) trait Unbroken {
     fn unbroken(self) -> String;
 }
@@ -73,7 +74,7 @@ impl Unbroken for String {
     }
 }
 
-/// Walls around a square hole, 6 mm high on a plate of 30 mm; its inner half width.
+/// Walls around a square hole, 6 mm high on a plate of 30 mm; the argument is the hole's half width.
 pub(crate) fn socket(half: f64) -> [[[f64; 2]; 4]; 4] {
     [
         rectangle([-15.0, -half], [-15.0, 15.0]),
@@ -88,7 +89,7 @@ pub(crate) fn plug(half: f64, ends: [f64; 2]) -> String {
     obj(&[(&rectangle([-half, half], [-half, half]), ends, flat)])
 }
 
-/// An OBJ with every coordinate times a factor.
+/// An OBJ with every coordinate scaled by a factor.
 pub(crate) fn scaled(text: &str, factor: f64) -> String {
     let line = |line: &str| match line.strip_prefix("v ") {
         Some(rest) => {
@@ -100,5 +101,5 @@ pub(crate) fn scaled(text: &str, factor: f64) -> String {
     text.lines().map(line).collect()
 }
 
-/// Both parts of a folder of [`two_parts`], placed.
+/// Runs `place` on both parts of a folder of [`two_parts`].
 pub(crate) const TWO: [&str; 6] = ["place", "fixed.obj", "moving.obj", "--unit=mm", "-o", "d.toml"];

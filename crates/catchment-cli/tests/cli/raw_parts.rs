@@ -1,4 +1,4 @@
-//! From raw files to the errors that two parts forgive: parts of a modular grid, rebuilt from its published dimensions, and parts drawn at 45°.
+//! From raw files to tolerances: parts of a modular grid, rebuilt from its published dimensions, and parts drawn at 45°.
 //!
 //! ```text
 //!   ╲                     ╱    the foot of the cup, half widths 17.8, 18.6 (0.8 up), 18.6 (2.6), 20.75 mm (4.75)
@@ -6,7 +6,7 @@
 //!   ╲_╲_________________╱_╱    the socket, half widths 18.15, 18.85 (0.7 up), 18.85 (2.5), 21 mm (4.65)
 //! ```
 //!
-//! Alone, x may be off by 21 − 17.8 = 3.2 mm: then the flat underside of the foot meets the rim.
+//! The single-axis limit of x is 21 − 17.8 = 3.2 mm: there the flat underside of the foot meets the rim.
 
 use crate::prisms::Unbroken;
 use crate::{designs, json, run};
@@ -26,7 +26,7 @@ fn placed(more: &[&str]) -> tempfile::TempDir {
     home
 }
 
-/// With x, y and yaw free: the limits of x, and a Sum that is none of zero.
+/// With x, y and yaw free: the limits of x, and a nonzero Sum.
 #[test]
 fn a_grid_cup_docks_within_its_closed_form() {
     let home = placed(&["--free=x,y,yaw"]);
@@ -43,7 +43,8 @@ fn a_grid_cup_docks_within_its_closed_form() {
     assert!(!result.to_string().contains("too coarse"), "{result}");
 }
 
-/// In the error box of five free errors what docks with three is smaller than a cell: random poses answer, and it is said how to see more.
+/// In the error box of five free errors, the region that docks with three is smaller than a cell: the program uses random poses and
+/// advises how to resolve more.
 #[test]
 fn a_grid_that_sees_nothing_is_not_taken() {
     let home = placed(&[]);
@@ -56,7 +57,7 @@ fn a_grid_that_sees_nothing_is_not_taken() {
 }
 
 /// A tapered hole of 10.6 to 12 mm in a block, and a tapered plug with a tip of 10 mm, both turned by 45° about x, the plug placed elsewhere and turned by 90° more.
-/// The tip enters within (12 − 10)/2 = 1 mm, and turned by ψ as long as 5 (cos ψ + sin ψ) ≤ 6.
+/// The tip enters within (12 − 10)/2 = 1 mm, and at a rotation ψ as long as 5 (cos ψ + sin ψ) ≤ 6.
 #[test]
 fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
     const SIGNS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -71,7 +72,7 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
         }
         text + faces
     };
-    // Rings of four corners each, from the outside in or from the tip up; the sides between them.
+    // Rings of four corners each, from the outside in or from the tip up; the sides connect them.
     let sides = |from: usize, to: usize| -> String {
         let side = |k: usize| {
             let next = (k + 1) % 4;
@@ -106,7 +107,7 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
     assert!((limit("yaw").to_degrees() - 13.05).abs() < 0.1, "{result}");
 }
 
-/// Files in metres: the design and every answer are in millimetres. The grid cup again, a thousandth as large in its files.
+/// Files in metres: the design and every result are in millimetres. The grid cup again, a thousandth as large in its files.
 #[test]
 fn what_is_drawn_in_metres_is_answered_in_millimetres() {
     let home = tempfile::tempdir().unwrap();
@@ -133,7 +134,8 @@ fn what_is_drawn_in_metres_is_answered_in_millimetres() {
     assert!(printout.contains("41.5 mm"), "{printout}");
 }
 
-/// Both halves in one file, as an assembly is exported: the body with the larger box is the fixed half, and the design takes each by its number.
+/// Both halves in one file, as exported from an assembly: the body with the larger box is the fixed half, and the design selects each by its
+/// number.
 #[test]
 fn one_file_may_hold_both_halves() {
     let home = tempfile::tempdir().unwrap();
@@ -149,7 +151,7 @@ fn one_file_may_hold_both_halves() {
     let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
     let halves: Vec<&str> = design.split("\n[connector.").collect();
     assert!(halves[1].contains("\nbody = 1\n") && halves[2].contains("\nbody = 2\n"), "{design}");
-    // The baseplate is the smaller one: it comes to the cup as the cup comes to it.
+    // The baseplate is the smaller one: it approaches the cup as the cup approaches it.
     let two = ["place", "cup.stl", "plate.stl", "--unit=mm", "--free=x,y,yaw", "-o", "two.toml"];
     for (from, to) in [("grid-cup.stl", "cup.stl"), ("grid-baseplate.stl", "plate.stl")] {
         fs::copy(designs().join("meshes").join(from), home.path().join(to)).unwrap();
@@ -160,7 +162,7 @@ fn one_file_may_hold_both_halves() {
     let of_two = ends("two.toml");
     assert!(of_two.starts_with("exit 0") && of_two.contains("aligned"), "{of_two}");
     assert_eq!(ends("d.toml"), of_two);
-    // Of one of them there is no third.
+    // The file has no third body.
     let third = design.replace("body = 2", "body = 3");
     fs::write(home.path().join("third.toml"), third).unwrap();
     let refused = run(home.path(), &["check", "third.toml"]).unbroken();

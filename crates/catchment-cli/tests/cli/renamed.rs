@@ -1,4 +1,4 @@
-//! Old names of commands and options give what the new ones give.
+//! Old names of commands and options give the same results as the new ones.
 
 use super::{V_FACE, catchment, entries, run};
 use serde_json::Value;
@@ -14,7 +14,7 @@ fn home() -> tempfile::TempDir {
     home
 }
 
-/// What a command prints, as JSON without the time that it took where it is JSON.
+/// The printed output of a command; JSON without its computing time.
 fn printed(home: &Path, line: &str) -> (Option<i32>, String, String) {
     let words = line.split(' ').map(|word| word.replace('_', " "));
     let output = catchment(home).args(words).output().unwrap();
@@ -29,7 +29,7 @@ fn printed(home: &Path, line: &str) -> (Option<i32>, String, String) {
     (output.status.code(), stdout, String::from_utf8(output.stderr).unwrap())
 }
 
-/// In a word, `_` stands for a space.
+/// Within a word, `_` stands for a space.
 fn same(old: &str, new: &str) {
     let home = home();
     let (code, stdout, stderr) = printed(home.path(), old);
@@ -46,7 +46,7 @@ fn outcome_is_trace_of_a_table() {
         let [old, new] = ["outcome", "trace"].map(|verb| format!("{verb} v.toml --poses p.csv{more}"));
         same(&old, &new);
     }
-    // Both write the table into the file of -o, and print nothing then.
+    // Both write the table into the file of -o and print nothing.
     let home = home();
     for (verb, file) in [("outcome", "a.csv"), ("trace", "b.csv")] {
         let printout = run(home.path(), &[verb, "v.toml", "--poses", "p.csv", "-o", file]);
@@ -157,7 +157,7 @@ fn old_names_have_help_and_pages() {
         assert!(help.starts_with("exit 0") && help.contains(new), "{help}");
         let page = run(home.path(), &["man", old]).replace("\\-", "-");
         assert!(page.starts_with("exit 0") && page.contains(new), "{page}");
-        // Nobody is led to them.
+        // Help does not list them.
         assert!(!run(home.path(), &["--help"]).contains(&format!("\n  {old} ")), "{old}");
     }
 }

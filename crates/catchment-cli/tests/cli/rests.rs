@@ -4,7 +4,7 @@ use super::{catchment, json, run};
 use serde_json::Value;
 use std::fs;
 
-/// A cube of 50 mm on a plane, its centre of rotation in its middle, with pitch alone free.
+/// A cube of 50 mm on a plane, its centre of rotation in its middle, with pitch as the only free error.
 fn home() -> tempfile::TempDir {
     let home = tempfile::tempdir().unwrap();
     let text = "[connector]\nwidth = 50.0\nunit = \"mm\"\n[[connector.fixed.parts]]\nbox = [300, 300, 20]\n\
@@ -18,7 +18,7 @@ fn home() -> tempfile::TempDir {
 fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
     let home = home();
     let report = json(home.path(), &["rests", "cube.toml", "--motions", "300", "--json"]);
-    // (√2 − 1)/2; the way is looked at every thousandth of its radius.
+    // (√2 − 1)/2; the search samples the path at every thousandth of its radius.
     let depth = report["rests"][0]["depth_at_most_d"].as_f64().unwrap();
     assert!((depth - 0.5 * (2f64.sqrt() - 1.0)).abs() < 1e-4, "{depth}");
     assert_eq!(report["rests"][0]["examined"]["immobility"]["order"], "first");

@@ -1,4 +1,4 @@
-//! What went wrong while the run lived in the command line, through the real binary.
+//! Regression tests of `run`, from the time when the command line implemented it, through the real binary.
 
 use super::{catchment, designs, home, json, run};
 use serde_json::json;
@@ -27,7 +27,7 @@ fn the_dissertations_flooding_runs_on_any_design() {
     let home = home();
     let report = json(home.path(), &["run", "v.toml", "--method", "meyer", "--resolution", "31", "--json"]);
     assert_eq!(report["method"], "meyer");
-    // A tenth of H, as the text has it.
+    // A tenth of H, as the text of the dissertation states.
     assert_eq!(report["settings"]["depth_tolerance"], 0.1);
     let cone = designs().join("cone.toml");
     let cone = cone.to_str().unwrap();
@@ -60,7 +60,8 @@ fn the_picture_of_five_dimensions_shows_the_sum_of_its_table() {
     let args = ["run", pyramid.to_str().unwrap(), "--resolution", "6", "--samples", "300", "-o", "out"];
     let printout = run(home.path(), &args);
     assert!(printout.starts_with("exit 0"), "{printout}");
-    // `  AA (Sum)       12.59 D²·rad³ (95 % CI 12.36 … 12.82)`; the picture has half of the interval: `12.59 ± 0.23`.
+    // `  AA (Sum)       12.59 D²·rad³ (95 % CI 12.36 … 12.82)`; the picture shows half of the interval: `12.59 ±
+    // 0.23`.
     let line = printout.lines().find(|line| line.trim_start().starts_with("AA (Sum) ")).unwrap();
     let sum = line.trim_start().trim_start_matches("AA (Sum)").trim_start();
     assert!(sum.contains(" (95 % CI "), "{line}");

@@ -1,4 +1,4 @@
-//! Docked is about depth: the designs on which the program was wrong, through the real binary.
+//! Docking is a matter of depth: the designs on which the program was once wrong, through the real binary.
 
 use super::{catchment, json, run};
 use std::fmt::Write;
@@ -51,7 +51,7 @@ fn holds(report: &serde_json::Value, sum: f64) {
 
 #[test]
 fn a_peg_on_the_rim_of_its_hole_is_not_docked() {
-    // Ø10 in Ø10.1, 12 mm deep, D = 30 mm: ±0.05 mm and no more.
+    // Ø10 in Ø10.1, 12 mm deep, D = 30 mm: exactly ±0.05 mm.
     let home = home(&peg(30.0, 5.05, 5.0, 0.0, 12.0).replace("4 mm", "0.6 mm"));
     let outcome = |x: &str| {
         fs::write(home.path().join("poses.csv"), format!("x_mm,y_mm\n{x},0\n")).unwrap();
@@ -71,7 +71,7 @@ fn a_peg_on_the_rim_of_its_hole_is_not_docked() {
 
 #[test]
 fn a_seated_peg_with_play_is_docked_and_says_how_far_off_it_rests() {
-    // 0.5 mm of play, 1.47 mm of chamfer: what the tip finds is 1.97 mm around the axis.
+    // 0.5 mm of play, 1.47 mm of chamfer: the tip enters from within 1.97 mm of the axis.
     let home = home(&peg(12.0, 6.0, 5.5, 1.47, 5.0).replace("4 mm", "2.5 mm"));
     let report = json(home.path(), &["run", "peg.toml", "--json"]);
     holds(&report, mouth(1.97, 12.0));
@@ -121,7 +121,8 @@ fn a_limit_below_the_play_is_a_warning_and_one_above_is_none() {
     assert!(!printout("0.6 mm").contains("is less than the play"));
 }
 
-/// A bar laid level across a V of 54 degrees: it balances on its two lower edges, and tips at the least error.
+/// A bar laid level across a V of 54 degrees: it balances on its two lower edges and tips at the smallest
+/// error.
 const BALANCING: &str = r#"
 [connector]
 unit = "mm"
@@ -157,7 +158,7 @@ fn a_bar_that_balances_is_not_mated() {
         assert!(printed.contains("comes to rest 26.8") && printed.contains("mm deeper, at x "), "{printed}");
         assert!(printed.contains("pitch -62.6") || printed.contains("pitch 62.6"), "{printed}");
     }
-    // Nor does any command that follows motions answer about it.
+    // The commands that follow motions give no answer for it either.
     fs::write(home.path().join("peg.toml"), BALANCING).unwrap();
     fs::write(home.path().join("poses.csv"), "x_mm,pitch_deg\n0,0\n0.1,0\n").unwrap();
     let outcome = ["outcome", "peg.toml", "--poses", "poses.csv"];
@@ -174,7 +175,7 @@ fn a_bar_that_balances_is_not_mated() {
     ] {
         let printed = run(home.path(), args);
         let words = printed.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
-        // Of a sweep every design is sound by itself; none can be computed.
+        // Each design of the sweep is sound in itself, but its computation fails.
         let code = if args[0] == "sweep" { "exit 5" } else { "exit 4" };
         assert!(words.starts_with(code) && words.contains("does not hold"), "{args:?}: {printed}");
     }

@@ -1,10 +1,10 @@
-//! Shapes as files, watersheds before merging, and trials beside the exact region.
+//! Solids as files, watersheds before merging, and trials compared with the exact region.
 
 use crate::{catchment, home, json, run, written};
 use std::fs;
 use std::path::Path;
 
-/// Files are whole or not there: a second run needs `--force`, and writes the same bytes.
+/// Files are complete or absent: a second run needs `--force` and writes the same bytes.
 #[test]
 fn shapes_are_written_as_the_end_of_the_name_says() {
     let home = home();
@@ -41,12 +41,13 @@ fn a_shape_is_reported_as_json() {
     let report = json(home.path(), &["solids", "v.toml", "--free", "x", "--json"]);
     assert_eq!((&report["kind"], &report["shape"]), (&"solids".into(), &"collision".into()));
     assert_eq!((&report["bodies"], &report["dimension"]), (&2.into(), &2.into()));
-    // From tip beside notch to the other side, and from under it to on top: 2 D by 2 H about the mated place.
+    // From the tip beside the notch to its other side, and from below to above: 2 D by 2 H about the mated
+    // pose.
     assert_eq!((&report["low"][0], &report["high"][0]), (&(-1.0).into(), &1.0.into()));
     assert_eq!((&report["low"][2], &report["high"][2]), (&(-1.0).into(), &1.0.into()));
 }
 
-/// The first labels of a V-Face at 60 × 60 cells, 7 that become 3 by either kind of flooding: counted in the report, stored, drawn, and asked for by a requirement.
+/// The initial labels of a V-Face at 60 × 60 cells, 7 that become 3 by either kind of flooding: counted in the report, stored, drawn, and used by a requirement.
 #[test]
 fn watersheds_are_counted_before_merging_and_after() {
     let home = home();
@@ -103,7 +104,7 @@ fn drop_trials_stand_beside_the_exact_region() {
     assert_eq!((table.lines().next(), table.lines().count()), (Some("x,outcome,inside"), 51));
 }
 
-/// All settings of the preset, and one of them replaced.
+/// All settings of the preset, with one of them replaced.
 #[test]
 fn a_preset_sets_what_is_not_said_beside_it() {
     let home = home();
@@ -126,7 +127,7 @@ fn a_preset_sets_what_is_not_said_beside_it() {
     assert!(!Path::new(&home.path().join("trial")).exists());
 }
 
-/// The run writes what `export` writes of its folder, to the byte; a second time only with `--force`.
+/// The run writes the same bytes as `export` does from its folder; a second run needs `--force`.
 #[test]
 fn a_set_is_the_same_from_the_run_and_from_its_folder() {
     let home = home();

@@ -1,6 +1,7 @@
-//! STEP files: refused with what to install where no Python meshes them, and taken from whatever does.
+//! STEP files: refused with advice on packages to install if Python cannot mesh them, and accepted from any
+//! program that can.
 //!
-//! The conversion itself is held by `tests/step_meshes.py`, where the package is there.
+//! `tests/step_meshes.py` tests the conversion itself, where the package is installed.
 
 use super::{catchment, designs, run};
 use std::fs;
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::process::Command;
 
-/// A real part, which `tests/step/make.py` drew.
+/// A real part, drawn by `tests/step/make.py`.
 fn peg() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/step/peg.step")
 }
@@ -26,7 +27,7 @@ fn folder() -> tempfile::TempDir {
     dir
 }
 
-/// What is said, line breaks and frames as spaces.
+/// The printed text, with line breaks and frames as spaces.
 fn words(report: &str) -> String {
     report.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
 }
@@ -51,7 +52,7 @@ fn without_python_it_is_said_what_to_install() {
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
 }
 
-/// The answer to a STEP file that holds what an STL file does.
+/// The mesher's answer for a STEP file with the content of an STL file.
 #[cfg(unix)]
 fn answer(stl: &Path) -> Vec<u8> {
     const HEADER: usize = 84;
@@ -76,7 +77,7 @@ fn answer(stl: &Path) -> Vec<u8> {
     [head.into_bytes(), corners, triangles].concat()
 }
 
-/// A program in place of Python, which answers with a file beside the design, whatever it reads.
+/// A program in place of Python, which answers with a file beside the design, whatever its input.
 #[cfg(unix)]
 fn python(folder: &Path, script: &str) -> PathBuf {
     use std::os::unix::fs::PermissionsExt;
@@ -94,7 +95,7 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
     for (name, stl) in [("socket", "socket.stl"), ("plug", "plug.stl")] {
         fs::write(dir.path().join(name), answer(&meshes.join(stl))).unwrap();
     }
-    // The one that a deflection is written for is the socket: 0 is the size of the part.
+    // The design sets a deflection for the socket; 0 stands for the default from the size of the part.
     let script =
         "cat > /dev/null\ncd \"$(dirname \"$0\")\"\nif [ \"$4\" = 0 ]; then cat plug; else cat socket; fi";
     let path = python(dir.path(), script);
@@ -112,7 +113,7 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
         stdout.contains("off by at most 0.02 mm (deflection, 0.0002 of its size), by OCP of a test"),
         "{stdout}"
     );
-    // The same numbers as of the meshes themselves.
+    // The same numbers as for the meshes themselves.
     let run = |design: &str, python: &Path| {
         let output = catchment(dir.path())
             .env("CATCHMENT_PYTHON", python)
@@ -131,7 +132,7 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
     let (step, mesh) = (run("design.toml", &path), run("meshes.toml", Path::new("no/python3")));
     assert_eq!(step["area_d2"], mesh["area_d2"]);
     assert!(mesh["area_d2"].as_f64().unwrap() > 0.0);
-    // What meshed it is told with the design.
+    // The output names the mesher with the design.
     let printed = &step["design"]["connector"]["own"]["moving"]["mesh"]["content"]["meshed"];
     assert_eq!((&printed["by"], &printed["reached"]), (&"OCP of a test".into(), &(0.0125 / 50.0).into()));
 }
@@ -214,15 +215,15 @@ fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 4);
 }
 
-/// A real Python, if there is one; what follows is about how it starts.
+/// A real Python, if installed; the tests below concern how it starts.
 #[cfg(unix)]
 fn real_python() -> Option<PathBuf> {
     let folders = std::env::var_os("PATH")?;
     std::env::split_paths(&folders).map(|folder| folder.join("python3")).find(|path| path.is_file())
 }
 
-/// Code that a folder of someone else's brings along is not run: not by the folder at hand, not by relative entries of `PYTHONPATH`, which an empty
-/// entry is too.
+/// Python does not run code in a folder of another owner: neither from the current folder nor from relative entries of `PYTHONPATH`; an empty entry
+/// is relative as well.
 #[cfg(unix)]
 #[test]
 fn what_lies_beside_a_design_is_never_run() {
@@ -256,13 +257,13 @@ fn what_lies_beside_a_design_is_never_run() {
     }
 }
 
-/// What the person has put where Python finds it in every folder is found: an absolute entry of `PYTHONPATH`, and packages of the user.
+/// Python finds modules that the user installed for every folder: an absolute entry of `PYTHONPATH`, and packages of the user.
 #[cfg(unix)]
 #[test]
 fn packages_of_the_person_are_found() {
     let Some(python) = real_python() else { return };
     let dir = folder();
-    // Stands for OpenCASCADE: says that it was imported.
+    // A stand-in for OpenCASCADE that reports its import.
     let package = |folder: &Path, says: &str| {
         fs::create_dir_all(folder.join("OCP")).unwrap();
         fs::write(folder.join("OCP/__init__.py"), format!("raise ImportError('{says}')\n")).unwrap();
@@ -289,7 +290,7 @@ fn packages_of_the_person_are_found() {
         words(&String::from_utf8_lossy(&output.stderr))
     };
     let mine = dir.path().join("mine");
-    // Where OpenCASCADE itself is installed, that comes first.
+    // An installed OpenCASCADE takes precedence.
     let is_installed =
         Command::new(&python).args(["-I", "-c", "import OCP"]).output().unwrap().status.success();
     if is_installed {
@@ -304,7 +305,7 @@ fn packages_of_the_person_are_found() {
     }
 }
 
-/// A path of an interpreter is relative to the folder of the person, although it starts in another.
+/// A path of an interpreter is relative to the user's folder, although the interpreter starts in another.
 #[cfg(unix)]
 #[test]
 fn an_interpreter_may_have_a_relative_path() {

@@ -1,4 +1,4 @@
-//! Stdin in place of a design, stdout in place of a file, and one rule for what may be replaced.
+//! Stdin in place of a design, stdout in place of a file, and one rule for replacing existing files.
 
 use super::{catchment, designs, entries, home, piped, run};
 use serde_json::Value;
@@ -9,7 +9,7 @@ fn words(line: &str) -> Vec<&str> {
     line.split(' ').collect()
 }
 
-/// What a command prints, without the time that it took where it is JSON.
+/// The printed output of a command; JSON without its computing time.
 fn printed(folder: &Path, line: &str) -> String {
     let output = catchment(folder).args(words(line)).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
@@ -23,7 +23,7 @@ fn printed(folder: &Path, line: &str) -> String {
     }
 }
 
-/// Every command that has a result, quickly.
+/// Every command that has a result, with short computations.
 const COMMANDS: [&str; 24] = [
     "new pyramid",
     "check v.toml",
@@ -64,7 +64,7 @@ fn a_minus_after_o_is_stdout() {
         }
     }
     assert_eq!(entries(folder), ["p.csv", "v.toml"]);
-    // Files of that name have a folder.
+    // A file with the name `-` needs a folder before it.
     assert!(run(folder, &["schema", "-o", "./-"]).starts_with("exit 0"));
     assert_eq!(entries(folder)[0], "-");
 }
@@ -88,7 +88,7 @@ fn files_that_are_text_go_to_stdout() {
     let [socket, plug] = ["socket.stl", "plug.stl"].map(|name| meshes.join(name).display().to_string());
     let place = format!("place {socket} {plug} --unit mm --facing-fixed +z --facing-moving +z");
     assert_eq!(printed(folder, &place), printed(folder, &format!("{place} -o -")));
-    // No command can read again what went there.
+    // Commands cannot read stdout back.
     assert!(!run(folder, &words(&format!("{place} -o -"))).contains("next:"));
 }
 
@@ -128,7 +128,7 @@ fn a_minus_in_place_of_a_design_is_stdin() {
             [output.stdout, by_file.stdout].map(|bytes| of(&String::from_utf8(bytes).unwrap()));
         assert_eq!(piped, by_file, "{command}");
     }
-    // Nothing is left to read for a next command.
+    // Stdin is consumed: a next command could not read the design.
     let output = piped(folder, design.as_bytes(), &["check", "-"]);
     assert!(!String::from_utf8_lossy(&output.stderr).contains("next:"));
 }
@@ -159,7 +159,7 @@ fn what_is_wrong_with_stdin_is_said_of_stdin() {
     assert!(output.status.code() == Some(2) && message.contains("stdin is read once"), "{message}");
 }
 
-/// A file is replaced with --force, by every command; a folder that catchment wrote without it, and no other folder.
+/// With --force every command replaces a file; without it a command replaces only a folder that catchment wrote.
 #[test]
 fn what_exists_is_replaced_by_one_rule() {
     let home = home();

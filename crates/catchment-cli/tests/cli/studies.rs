@@ -1,4 +1,4 @@
-//! `catchment slices`, `run --converge`, `run --sensitivity`: many computations of one design.
+//! `catchment slices`, `run --converge`, `run --sensitivity`: several computations of one design.
 
 use super::{catchment, designs, entries, home, json, run, written};
 use serde_json::Value;
@@ -16,7 +16,7 @@ fn slices_of_a_planar_design_are_its_run() {
     let slice = &slices["slices"][0];
     assert_eq!(slice["acceptance"]["outcomes"], whole["acceptance"]["outcomes"]);
     assert_eq!(slice["axes"], whole["axes"]);
-    // That of the slice is made of cells, that of the run of motions.
+    // The Sum of the slice comes from cells, that of the run from motions.
     assert_eq!((&slice["onaa"]["followed"], &whole["onaa"]["followed"]), (&false.into(), &true.into()));
     let edge = |of: &Value| of["onaa"]["edge"].as_f64().unwrap();
     assert!((edge(slice) - edge(&whole)).abs() < 1.0 / 21.0);
@@ -131,7 +131,7 @@ fn slopes_and_spread_are_reported_and_written() {
         written(&home.path().join("out")),
         ["report.json", "sensitivity.csv", "sensitivity.png", "sensitivity.svg"]
     );
-    // What a run wrote there is not replaced by a study.
+    // A study does not replace the output of a run.
     fs::create_dir(home.path().join("thesis")).unwrap();
     fs::write(home.path().join("thesis/overview.png"), "").unwrap();
     let printed = run(home.path(), &["run", "v.toml", "--sensitivity", "-o", "thesis"]);
@@ -171,7 +171,7 @@ fn slices_and_runs_by_drop_tests_say_so() {
     assert_eq!(slices["settings"]["drop"]["trials"], 1);
     let whole = json(home.path(), &[&["run", "v.toml", "--json", "--samples", "20"], &args[..]].concat());
     assert_eq!(whole["method"], "drop");
-    // The same poses, and the random ones dropped as well.
+    // The same poses; the random ones are dropped as well.
     assert_eq!(whole["acceptance"]["outcomes"], slices["slices"][0]["acceptance"]["outcomes"]);
     assert_eq!(whole["acceptance"]["sample"]["settings"], whole["settings"]);
 }

@@ -1,4 +1,4 @@
-//! Whether robots dock, through the real binary.
+//! The probability that robots dock, through the real binary.
 
 use super::{catchment, designs, json, run};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! `catchment sweep`: what it prints and writes, and that a sweep that was stopped goes on where it was.
+//! `catchment sweep`: printed output, written files, and resumption of an interrupted sweep.
 
 use super::{catchment, designs, entries, home, json, run, written};
 use std::collections::BTreeMap;
@@ -54,11 +54,11 @@ fn every_key_can_be_swept_and_every_figure_is_written() {
     assert_eq!(arrays["sum"]["dimension_names"], serde_json::json!(["family", "errors_x"]));
     assert_eq!(arrays["family"]["attributes"]["values"], serde_json::json!(["pyramid", "cone"]));
     assert!(arrays.get("outcome").is_none(), "the error boxes differ: there are no common cells");
-    // The same in place of the old.
+    // A second run replaces the same folder.
     assert!(run(home.path(), &[&args[..], &quick].concat()).starts_with("exit 0\n"));
 }
 
-/// Every file below a folder; of a report all but how long it took.
+/// Every file below a folder; reports without their computing time.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let (mut result, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
@@ -119,7 +119,7 @@ fn stopped_and_resumed_it_writes_what_it_would_have_written() {
             );
         }
     }
-    // A part that is spoilt is computed again.
+    // A damaged part is computed again.
     let one = fs::read_dir(&parts)
         .unwrap()
         .map(|entry| entry.unwrap().path())

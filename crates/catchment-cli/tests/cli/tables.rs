@@ -1,4 +1,4 @@
-//! `catchment zraa` and `catchment reproduce`: numbers that are known.
+//! `catchment zraa` and `catchment reproduce` against known numbers.
 
 use super::{catchment, designs, json, run, written};
 use std::fs;
@@ -94,7 +94,7 @@ fn tables_are_written_with_pictures_and_exact_values() {
         names,
         ["report.json", "table-2.1.png", "table-2.1.svg", "table-3.3.png", "table-3.3.svg", "tables.csv"]
     );
-    // Its own folder is replaced, another is not.
+    // A reproduction replaces its own folder and refuses any other.
     assert!(run(dir.path(), &["reproduce", "2.1", "-o", "out"]).starts_with("exit 0\n"));
     fs::write(dir.path().join("out/holiday.png"), "").unwrap();
     assert!(run(dir.path(), &["reproduce", "2.1", "-o", "out"]).contains("cannot write"));

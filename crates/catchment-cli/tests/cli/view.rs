@@ -1,4 +1,5 @@
-//! Pages, through the real binary: the file of `report`, and the server of `view`, asked over plain sockets.
+//! Pages, through the real binary: the file of `report`, and the server of `view`, queried over plain
+//! sockets.
 
 use super::{catchment, run};
 use std::fs;
@@ -34,12 +35,12 @@ fn a_page_of_a_result_is_that_of_its_design() {
     assert!(
         stored.len() < 5_000_000 && stored.contains("id=\"motions\"") && !stored.contains("a </script> V")
     );
-    // It is not replaced unasked.
+    // An existing file is replaced only with `--force`.
     let printed = run(home.path(), &["report", "out", "-o", "stored.html"]);
     assert!(printed.starts_with("exit 2\n") && printed.contains("--force replaces it"), "{printed}");
 }
 
-/// What is changed for a page is changed for everything in it.
+/// A setting that is changed for a page applies to everything in it.
 #[test]
 fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
     let home = home();
@@ -49,7 +50,7 @@ fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
     let fresh = [&["report", "v.toml", "-o", "fresh.html", "--leave-out", "window"], &changes[..]].concat();
     let printed = run(home.path(), &fresh);
     assert!(printed.starts_with("exit 0\n"), "{printed}");
-    // A stored result has what it holds, and says what it could.
+    // A page of a stored result shows the data it holds and lists the data it lacks.
     let printed = run(home.path(), &["report", "out", "-o", "stored.html"]);
     assert!(
         printed.starts_with("exit 0\n") && printed.contains("`catchment run` with --window stores more"),
@@ -68,7 +69,7 @@ fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
     }
 }
 
-/// A server, and where it is; ended with the test.
+/// A server and its address; it ends with the test.
 struct Server {
     child: Child,
     port: u16,
@@ -94,11 +95,11 @@ impl Server {
         Self { child, port: port.parse().unwrap(), token: token.trim_end_matches('/').to_owned() }
     }
 
-    /// Sends bytes as they are; what comes back.
+    /// Sends bytes unchanged and returns the response.
     fn raw(&self, bytes: &[u8]) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
         stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
-        // It may refuse before it has read all.
+        // The server may refuse before it has read the whole request.
         let _ = stream.write_all(bytes);
         let mut text = Vec::new();
         let _ = stream.read_to_end(&mut text);
@@ -147,7 +148,7 @@ fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
     server.wait();
     let page = server.ask("GET", "", "", "");
     assert!(page.contains("<title>changed ·") && page.contains("\"cells\":7"));
-    // What is wrong with the design is said, and the page that was there stays.
+    // A defect of the design is reported, and the previous page stays.
     fs::write(home.path().join("v.toml"), "[connector]\nfamily = \"w-face\"\n").unwrap();
     assert!(server.ask("POST", "run", "", "").starts_with("HTTP/1.1 202"));
     server.wait();
@@ -157,7 +158,7 @@ fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
     assert!(server.ask("POST", "run", "", "many").starts_with("HTTP/1.1 400"));
 }
 
-/// Whether the older ones have ended by themselves or not: the newest request is what is served.
+/// The server serves the newest request, whether the older ones have ended or not.
 #[test]
 fn a_running_computation_is_replaced_by_a_newer_one() {
     let home = home();
@@ -171,7 +172,7 @@ fn a_running_computation_is_replaced_by_a_newer_one() {
     assert!(page.contains("\"cells\":7"), "{}", &page[..300]);
 }
 
-/// Their requests never end, they read nothing, and they stay to the end of the test.
+/// Clients whose requests never end, that read nothing, and that stay to the end of the test.
 #[test]
 fn two_hundred_slow_clients_hold_up_nobody() {
     let home = home();
@@ -180,7 +181,7 @@ fn two_hundred_slow_clients_hold_up_nobody() {
     let mut slow = Vec::new();
     for k in 0..200 {
         let mut stream = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
-        // Some send nothing, some a part of a request, some ask for the page and do not read it.
+        // Some clients send nothing, some send part of a request, some request the page and do not read it.
         let own = format!("GET /{}/ HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", server.token, server.port);
         let part = ["", &own[..9], &own[..own.len() - 2], &own][k % 4];
         let _ = stream.write_all(part.as_bytes());
@@ -206,23 +207,23 @@ fn whoever_should_not_ask_is_refused() {
     let own = format!("/{token}/");
     assert_eq!(get(&own, &here, ""), "200");
     assert_eq!(get(&own, &here, &format!("Origin: http://{here}\r\n")), "200");
-    // No token, another token, a name that leads here, another page.
+    // No token, a wrong token, another host name that resolves to this address, another origin.
     assert_eq!(get("/", &here, ""), "404");
     assert_eq!(get(&format!("/{}/", "0".repeat(32)), &here, ""), "404");
     assert_eq!(get(&own, &format!("example.org:{port}"), ""), "403");
     assert_eq!(get(&own, &here, "Origin: http://example.org\r\n"), "403");
     assert_eq!(get(&own, &here, "Origin: null\r\n"), "403");
-    // Names are compared, never opened.
+    // The server compares a path with its known names and never opens it as a file.
     for path in ["../v.toml", "../../../../etc/passwd", "%2e%2e/v.toml", "v.toml", "..\\v.toml"] {
         assert_eq!(get(&format!("{own}{path}"), &here, ""), "404", "{path}");
     }
     assert_eq!(get(&format!("/{token}/../v.toml"), &here, ""), "404");
-    // Too long a head, too long a body, no request at all.
+    // A head that is too long, a body that is too long, bytes that are not a request.
     assert_eq!(get(&own, &here, &format!("X: {}\r\n", "x".repeat(20_000))), "413");
     assert_eq!(status(&server.ask("POST", "run", "", &"1".repeat(300))), "413");
     assert_eq!(status(&server.raw(b"\x16\x03\x01\x00\r\n\r\n")), "400");
     assert_eq!(status(&server.ask("DELETE", "run", "", "")), "405");
-    // It serves on.
+    // The server still responds.
     assert_eq!(get(&own, &here, ""), "200");
 }
 

@@ -66,7 +66,7 @@ fn a_requirement_decides_the_exit_code_and_files_are_whole() {
     assert_eq!(kept["kind"], "window");
 }
 
-/// What `run` says of the window is what `window` says, by the same names.
+/// `run` and `window` report the same window under the same names.
 #[test]
 fn a_run_tells_of_the_window_what_the_command_does() {
     let home = home();
@@ -89,6 +89,6 @@ fn a_run_tells_of_the_window_what_the_command_does() {
     for (key, value) in printed.iter().filter(|(key, _)| *key != "x") {
         assert_eq!(*value, alone[key], "{key}");
     }
-    // Read back, it is the same.
+    // Reading it back gives the same window.
     assert!(run(home.path(), &["compare", "out", "out"]).starts_with("exit 0\n"));
 }

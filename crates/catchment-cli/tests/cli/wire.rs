@@ -1,4 +1,4 @@
-//! The JSON that is printed, and its schema: programs rely on them.
+//! The printed JSON and its schema, on which other programs rely.
 
 use super::{home, json};
 use catchment::report::json_schema;
@@ -73,7 +73,7 @@ fn every_json_has_one_head_and_its_fields() {
     }
 }
 
-/// Every field has a place in the schema, and a value of one of the types that stand there.
+/// Every field has an entry in the schema, and a value of one of the types listed there.
 fn matches(
     schema: &catchment::run::ReportSchema<'static>,
     here: &[&'static Value],
@@ -103,7 +103,7 @@ fn matches(
     }
 }
 
-/// What is derived from the types is what the repository holds.
+/// The schema derived from the types equals the committed one.
 #[cfg(feature = "schema")]
 #[test]
 fn the_schema_is_up_to_date() {
@@ -151,7 +151,7 @@ fn names_do_not_steer_the_terminal() {
         "-o",
         "out.zarr",
     ]);
-    // A stored result comes from anywhere.
+    // A stored result is untrusted input.
     let root = place("out.zarr/zarr.json");
     let text = std::fs::read_to_string(&root).unwrap();
     assert!(text.contains("a\u{202e}<&"));

@@ -1,21 +1,21 @@
 //! The conventions behind the dissertation's printed tables 5.4 to 5.11.
 //!
 //! They were recovered from the printed numbers; several contradict the text, and most were fitted on these very
-//! tables, with no independent check. They reproduce; they are not physics, and never the default.
+//! tables, without an independent check. They reproduce the numbers; they are not physics, and never the default.
 //!
 //! - **Rotation point**: on the axis behind the mated apex plane, `lever·(1 − COR)` away. The planar bodies have a block
 //!   half a width thick behind the face, and their lever is the total height H + D/2; the pyramid's is D where
 //!   (x, y, pitch) is sampled and H where two rotations are. (The text: from the centre, in units of D.)
-//!   No one convention explains the four tables of the pyramid: of 96 that were tried (levers D, H, H + D/2 and (H + D)/2, either order of the
+//!   No single convention explains the four tables of the pyramid: of 96 tested (levers D, H, H + D/2 and (H + D)/2, either order of the
 //!   rotations, flat cells minima or not, dams passed on or not, counted by three rules) this one is the best for each of 5.9, 5.10 and 5.11
-//!   (mean |ln ratio| 0.43, 0.05, 0.14), and 5.8 is off by 0.93 with it, by 0.06 with its own lever.
+//!   (mean |ln ratio| 0.43, 0.05, 0.14), whereas 5.8 has 0.93 with it and 0.06 with its own lever.
 //! - **Samples** are on the rotation point's own coordinates: x, y in [−2, 2] with both ends, 101 in the plane and 31
 //!   in space; angles over [−π/2, π/2] with both ends in the plane (101), without the lower end in space (30). A
 //!   sample counts range/100 per axis in the plane and range/31 in space.
 //! - **Pyramid angles**: pitch turns about x, roll about y, yaw about z, the last named first: `R = Rx(pitch)·Ry(roll)`,
 //!   `Rx(pitch)·Rz(yaw)`, `Ry(roll)·Rz(yaw)`.
-//! - **Flooding**: basins below a depth of 0.1·AR are merged; dam cells pass water on (as the text says). In space each
-//!   cell without a lower neighbour is a minimum (as the text says); in the plane plateaus that drain are not, which
+//! - **Flooding**: basins below a depth of 0.1·AR are merged; dam cells pass water on (as in the text). In space each
+//!   cell without a lower neighbour is a minimum (as in the text); in the plane plateaus that drain are not, which
 //!   reproduces one entry more.
 //! - **Dams**: in the plane a dam cell goes to the neighbouring basin whose labelled cell is lowest, but never to one
 //!   that reaches below the docking height; in space dam cells count for no basin. (The text: steepest descent.)
@@ -31,7 +31,7 @@ use glam::DMat3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Which errors a table samples.
+/// The errors that a table samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SampledErrors {
@@ -51,7 +51,7 @@ pub enum SampledErrors {
 type Turn = fn(f64) -> DMat3;
 
 impl SampledErrors {
-    /// What turns a half by the first and by the second of two rotations; `None` where there is only one.
+    /// The first and the second of two rotations of a half; `None` if there are fewer.
     fn turns(self) -> Option<[Turn; 2]> {
         match self {
             Self::XTheta | Self::XYPitch => None,
@@ -62,7 +62,7 @@ impl SampledErrors {
     }
 }
 
-/// One entry of a table: the connector and all that the answer depends on.
+/// One entry of a table: the connector and all settings that affect the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DissertationSettings {
     /// The connector: a planar family for [`SampledErrors::XTheta`], the pyramid for the others.
@@ -71,7 +71,7 @@ pub struct DissertationSettings {
     pub aspect_ratio: f64,
     /// The dissertation's COR: 1 is the apex plane, 0 one lever behind it.
     pub cor: f64,
-    /// Which errors are sampled.
+    /// The sampled errors.
     pub errors: SampledErrors,
     /// Depth below which basins are merged, in D.
     pub depth_tolerance: f64,
@@ -79,14 +79,14 @@ pub struct DissertationSettings {
     pub planar_samples: usize,
 }
 
-/// The samples and which of them the target basin holds.
+/// The samples, and which of them belong to the target basin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasinSamples {
     /// Samples per axis; the first axis runs fastest.
     pub shape: Vec<usize>,
     /// Whether each sample is accepted.
     pub accepted: Vec<bool>,
-    /// What a sample counts, Dᵃ·radᵇ.
+    /// Measure of a sample, Dᵃ·radᵇ.
     pub cell_measure: f64,
 }
 
@@ -105,20 +105,20 @@ impl BasinSamples {
 /// Why an entry cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DissertationError {
-    /// The family cannot be drawn with this aspect ratio.
+    /// The family does not exist at this aspect ratio.
     #[error("a {} of aspect ratio {aspect_ratio} cannot be drawn: {}", .family.name(), list(problems))]
     Geometry {
-        /// Which family.
+        /// The family.
         family: Family,
         /// Its aspect ratio.
         aspect_ratio: f64,
-        /// What is wrong with it.
+        /// The defect.
         problems: Vec<GeometryDefect>,
     },
     /// The samples cannot be flooded.
     #[error(transparent)]
     Flood(#[from] FloodError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -132,7 +132,7 @@ const LATERAL: f64 = 2.0;
 /// Samples of x and y in space, both ends included.
 const SPATIAL: usize = 31;
 /// Heights are rounded to this, in D, so that heights that are equal in exact arithmetic are equal here: flat cells
-/// count as minima, and rounding errors of 1e-16 must not decide which do.
+/// count as minima, and rounding errors of 1e-16 must not create or remove minima.
 const HEIGHT_STEP: f64 = 1e-9;
 
 impl DissertationSettings {
@@ -141,7 +141,7 @@ impl DissertationSettings {
     /// Samples per axis of the planar tables, both ends included.
     pub const PLANAR_SAMPLES: usize = 101;
 
-    /// An entry with the tolerance that the text names.
+    /// An entry with the tolerance of the text.
     pub fn new(family: Family, errors: SampledErrors, aspect_ratio: f64, cor: f64) -> Self {
         let depth_tolerance = Self::DEPTH_PER_FACE_HEIGHT * aspect_ratio;
         Self { family, aspect_ratio, cor, errors, depth_tolerance, planar_samples: Self::PLANAR_SAMPLES }
@@ -193,7 +193,7 @@ impl DissertationSettings {
     }
 }
 
-/// Where the heights are taken: a lattice of rotation points at each of a list of rotations.
+/// The sampling points of the heights: a lattice of rotation points at each of a list of rotations.
 struct Samples {
     x: Lattice,
     y: Lattice,
@@ -211,7 +211,7 @@ impl Samples {
             |count: usize| Lattice { first: -LATERAL, step: 2.0 * LATERAL / (count - 1) as f64, count };
         let locked = Lattice { first: 0.0, step: 0.0, count: 1 };
         let middle = |lattice: &Lattice| lattice.count / 2;
-        // Both ends in the plane; in space the lower end is left out.
+        // The plane includes both ends; space omits the lower end.
         let planar: Vec<f64> =
             (0..in_plane).map(|k| PI * k as f64 / (in_plane - 1) as f64 - FRAC_PI_2).collect();
         let spatial: Vec<f64> =
@@ -268,7 +268,7 @@ impl Samples {
 /// Computes one entry.
 ///
 /// # Errors
-/// When the family cannot be drawn with this aspect ratio, or the computation is cancelled.
+/// When the family does not exist at this aspect ratio, or the computation is cancelled.
 pub fn accept(settings: &DissertationSettings, exec: &Exec) -> Result<BasinSamples, DissertationError> {
     let pair = settings.pair()?;
     let samples = Samples::of(settings.errors, settings.planar_samples.max(2));
@@ -282,7 +282,7 @@ pub fn accept(settings: &DissertationSettings, exec: &Exec) -> Result<BasinSampl
     Ok(BasinSamples { shape, accepted, cell_measure: samples.cell_measure })
 }
 
-/// Whether each sample belongs to the basin of the mated one; dam cells only if `dams_count`.
+/// Whether each sample belongs to the basin of the mated sample; dam cells count only if `dams_count`.
 fn accepted(heights: &[f64], mated: usize, division: &Division, dams_count: bool) -> Vec<bool> {
     let Some(target) = division.basin(mated) else { return vec![false; heights.len()] };
     let docking = heights[mated];

@@ -1,4 +1,4 @@
-//! How an entry is computed: by the method that the table was made with, and exactly.
+//! Computation of an entry: by the method of its table, and exactly.
 //!
 //! ```text
 //!   by the same method   kinematic starts · flooded samples of the preset · closed forms
@@ -6,7 +6,8 @@
 //!                        whose Sum random descents make unbiased, with its 95 % interval
 //! ```
 //!
-//! Exact means frictionless, quasi-static and overdamped with ρ = [`RHO`], which the dissertation leaves open.
+//! Exact means frictionless, quasi-static and overdamped with ρ = [`RHO`], which the dissertation does not
+//! specify.
 
 pub mod dissertation;
 
@@ -33,10 +34,10 @@ use std::f64::consts::PI;
 /// ρ of the exact values, in D.
 pub const RHO: f64 = 0.5;
 
-/// What to compute.
+/// The quantity to compute.
 #[derive(Debug, Clone, Copy)]
 pub enum Recipe {
-    /// Starts that slide home, by the kinematic method.
+    /// Starts that slide into the seat, by the kinematic method.
     Kinematic(PlanarFace),
     /// Sum by the polyhedral partition.
     Partition(Family),
@@ -44,28 +45,28 @@ pub enum Recipe {
     Sum(Family, SampledErrors),
     /// Area of the largest square in the flooded target basin.
     Onaa(Family),
-    /// Zero-rotation area of a system: of those whose geometry is known.
+    /// Zero-rotation area of a system, where its geometry is known.
     Zraa,
     /// Slices of the 3-D X-Face by drop tests: the first column is the Sum, the second the ONAA edge.
     Slices,
 }
 
-/// An entry's value by the same method, and its exact one.
+/// An entry's value by the table's method, and its exact value.
 pub type RecipeEntry = (Option<f64>, Option<ExactValue>);
 
 /// Why an entry cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecipeError {
-    /// The preset cannot.
+    /// The dissertation preset failed.
     #[error(transparent)]
     Dissertation(#[from] DissertationError),
     /// There is no exact value.
     #[error("no exact value: {reason}")]
     Exact {
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -75,7 +76,7 @@ pub enum RecipeError {
 pub struct ExactValue {
     /// The value, in the table's unit.
     pub value: f64,
-    /// Its 95 % interval where random poses gave it; else the doubt is that of the samples' spacing.
+    /// Its 95 % interval if it comes from random poses; else its uncertainty is the spacing of the samples.
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -83,11 +84,11 @@ pub struct ExactValue {
 const ASPECT_RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 /// COR of the columns of chapter 5.
 const CORS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
-/// What one planar sample counts, D·rad.
+/// Measure of one planar sample, D·rad.
 const PLANAR_CELL: f64 = 4.0 * PI / 1e4;
 /// Planar samples per axis, on the rotation point's own coordinates, both ends included.
 const PLANAR: usize = 101;
-/// Cells per axis of the grids whose Sums are corrected, and the random descents that correct them.
+/// Cells per axis of the grids with corrected Sums, and the number of random descents for the correction.
 const SPATIAL: usize = 24;
 const DESCENTS: usize = 4000;
 const SEED: u64 = 1;
@@ -106,7 +107,7 @@ impl Recipe {
         }
     }
 
-    /// What the rows are.
+    /// Meaning of the rows.
     pub const fn row_name(self) -> &'static str {
         match self {
             Self::Zraa => "system",
@@ -115,7 +116,7 @@ impl Recipe {
         }
     }
 
-    /// Our values and, if asked for, the exact ones of a row of entries.
+    /// Our values and, if requested, the exact ones of a row of entries.
     ///
     /// # Errors
     /// See [`RecipeError`].
@@ -144,8 +145,7 @@ impl Recipe {
             .collect()
     }
 
-    /// Our value of one entry by the method that the table was made with; `None` where that method, or the geometry, is
-    /// not there.
+    /// Our value of one entry by the method of its table; `None` if that method or the geometry is not available.
     fn compute(self, row: usize, column: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
         exec.check()?;
         Ok(match self {
@@ -166,13 +166,13 @@ impl Recipe {
             }
             Self::Partition(family) => Some(partitioned(family, row, column, exec)?),
             Self::Zraa => zero_rotation(row, exec)?,
-            // Made a row at a time.
+            // Computed a row at a time.
             Self::Slices => None,
         })
     }
 
-    /// The exact value of one entry; `None` where there is no such thing: the rotation point of the kinematic method keeps
-    /// its x, which is another problem, and zero-rotation areas are exact already.
+    /// The exact value of one entry; `None` where it does not exist: the rotation point of the kinematic method keeps its
+    /// x, which is a different problem, and zero-rotation areas are exact already.
     ///
     /// # Errors
     /// See [`RecipeError`].
@@ -193,7 +193,7 @@ impl Recipe {
         })
     }
 
-    /// Whether two values agree as the integers they stand for, or to the three printed digits.
+    /// Whether two values agree as the integers they represent, or to the three printed digits.
     pub fn agree(self, published: f64, ours: f64) -> bool {
         let count = |value: f64| match self {
             Self::Kinematic(_) => (value / kinematic::START_MEASURE).round(),
@@ -208,9 +208,9 @@ impl Recipe {
         }
     }
 
-    /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is its own image with x and y exchanged, which turns
-    /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x). With yaw the axes are the same, but here yaw
-    /// turns last and there first: the same rotations in another measure.
+    /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is invariant under the exchange of x and y, which turns the
+    /// dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x). With yaw the axes are the same, but here yaw
+    /// turns last and in the dissertation first: the same rotations in another measure.
     fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<ExactValue, RecipeError> {
         let Self::Sum(family, errors) = self else {
             return Err(RecipeError::Exact { reason: "no such table".to_owned() });
@@ -234,7 +234,7 @@ impl Recipe {
     }
 }
 
-/// The area that a square of this many samples stands for.
+/// The area that a square of this many samples represents.
 fn square(edge: usize) -> f64 {
     (edge * edge) as f64 * PLANAR_CELL
 }
@@ -252,7 +252,7 @@ fn failed<E: std::error::Error>(error: E) -> RecipeError {
     RecipeError::Exact { reason: error.to_string() }
 }
 
-/// A family with the x and y of its error box large enough for the tables.
+/// A family with an error box that is large enough in x and y for the tables.
 pub(crate) fn design(
     family: Family,
     aspect_ratio: f64,
@@ -293,7 +293,7 @@ fn pair(
 /// Thickness of the block behind both planar faces of chapter 5, in D.
 pub(crate) const PLANAR_BASE: f64 = 0.5;
 
-/// Whether each of a planar table's own samples docks, followed exactly; x of the rotation point runs fastest.
+/// Whether each of a planar table's own samples docks, by exact descent; x of the rotation point runs fastest.
 fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Vec<bool>, RecipeError> {
     let settings = settings(family, SampledErrors::XTheta, row, column);
     let cor = settings.center_of_rotation();
@@ -303,7 +303,7 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
     let pose = |k: usize| {
         let x = 4.0 * (k % PLANAR) as f64 / last - 2.0;
         let pitch = PI * (k / PLANAR) as f64 / last - PI / 2.0;
-        // The samples are places of the rotation point, an error is the place of the face centre.
+        // A sample is the place of the rotation point, a pose error that of the face centre.
         PoseError { x: x + cor * pitch.sin(), pitch, ..PoseError::default() }
     };
     let poses = Domain::Poses((0..PLANAR * PLANAR).map(pose).collect());
@@ -311,7 +311,7 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
     Ok(acceptance.accepted().collect())
 }
 
-/// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, and no strips.
+/// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, without strips.
 fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, RecipeError> {
     const AS_PUBLISHED: partition::PartitionSettings = partition::PartitionSettings { slices: 12, strips: 1 };
     let settings = settings(family, SampledErrors::XTheta, row, column);
@@ -323,16 +323,16 @@ fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result
 
 /// Zero-rotation areas of the systems of table 2.1 whose geometry is known, by row; widths are 1.
 fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
-    /// A pin of radius 2 mm on a face of 50 mm finds its hole from that far.
+    /// A pin of radius 2 mm on a face of 50 mm reaches its hole from this distance.
     const POLYBOT: f64 = 2.0 / 50.0;
-    /// The lateral reach that the text states: a fifth of the face. (A radius of 0.335 gives the printed area because it is calculated
+    /// The lateral reach stated in the text: a fifth of the face. (A radius of 0.335 gives the printed area because it is calculated
     /// back from it.)
     const DRAGON: f64 = 0.2;
     Ok(match row {
         1 => Some(PI * POLYBOT * POLYBOT),
         9 => Some(PI * DRAGON * DRAGON),
         10 => {
-            // The cone has width 1; the one that circumscribes a square of width 1 is √2 as wide.
+            // The cone has width 1; the cone that circumscribes a square of width 1 is √2 as wide.
             let free = [Dof::X, Dof::Y].into_iter().collect();
             let pair = pair(Family::Cone, FamilySpec::new(Family::Cone).aspect_ratio(), None, 0.0, free)?;
             match zraa::run(&pair, &zraa::ZraaSettings::default(), exec).map_err(failed)? {
@@ -369,8 +369,8 @@ fn dropped(_: usize, exec: &Exec) -> Result<Option<[f64; 2]>, RecipeError> {
     Ok(None)
 }
 
-/// A slice of the 3-D X-Face over ± D and ± 90°, all free: its Sum as a share of the plane, and its ONAA edge. The centre of mass of
-/// the published model is not stated: the rotation point is the face centre here.
+/// A slice of the 3-D X-Face over ± D and ± 90°, with all errors free: its Sum as a share of the plane, and its ONAA edge. The
+/// source does not state the centre of mass of the published model: the rotation point is the face centre here.
 fn slice(row: usize, decide: Decide, exec: &Exec) -> Result<[f64; 2], RecipeError> {
     const SECOND: [Dof; 4] = [Dof::Y, Dof::Roll, Dof::Pitch, Dof::Yaw];
     let family = Family::XFace3d;

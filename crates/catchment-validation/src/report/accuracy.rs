@@ -1,4 +1,4 @@
-//! The table for people: as text, as a page of the documentation, as records.
+//! The accuracy table as text, as a page of the documentation, and as records.
 
 use crate::study::accuracy::{Accuracy, AccuracyEntry, AccuracyRow, SumSource};
 use std::fmt::{self, Write};
@@ -9,7 +9,7 @@ impl AccuracyRow {
         self.entries.chunk_by(|a, b| a.resolution == b.resolution)
     }
 
-    /// Half the exact Sum's interval, as a share of it.
+    /// Half-width of the exact Sum's interval, as a share of the Sum.
     fn doubt(&self) -> f64 {
         let [lo, hi] = self.exact.ci95;
         0.5 * (hi - lo) / self.exact.sum
@@ -45,10 +45,10 @@ impl fmt::Display for Accuracy {
 }
 
 impl Accuracy {
-    /// The page of the documentation; `how` says what it took to compute it.
+    /// The page of the documentation; `how` states the computing effort.
     ///
     /// # Errors
-    /// None: writing to a string.
+    /// Never fails: it writes to a string.
     pub fn markdown(&self, how: &str) -> Result<String, fmt::Error> {
         let mut page = String::from(
             "# Accuracy\n\n\
@@ -127,7 +127,7 @@ impl Accuracy {
         Ok(page)
     }
 
-    /// Every entry as a record for programs, the names of the columns first.
+    /// Every entry as a record for programs, after a header record.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head =
             "design free unit exact exact_from exact_to method resolution cells sum error doubt seconds";
@@ -149,7 +149,7 @@ impl Accuracy {
     }
 }
 
-/// ` (± 0.5)`, of a Sum with an interval of its own.
+/// ` (± 0.5)`, for a Sum with an interval of its own.
 fn doubt(entry: &AccuracyEntry) -> String {
     entry.doubt.map_or_else(String::new, |half| format!(" (± {:.1})", 100.0 * half))
 }
@@ -190,7 +190,7 @@ mod tests {
         };
         let table = run(&[case], &[(case, 9)], 100, &Exec::new()).unwrap();
         let labels = &table.labels[0];
-        // None jams, so that they are drawn as often as they may be.
+        // No cell jams, so that the number of draws reaches its maximum.
         assert_eq!((labels.drawn, labels.jams, labels.wrong, labels.resolution), (800, 0, 0, 9));
         let ways = SumSource::all().len();
         assert_eq!(table.rows[0].entries.len(), 3 * ways);

@@ -1,4 +1,4 @@
-//! Pictures: published tables in colours, and figure 5.13 drawn again.
+//! Pictures: published tables in colours, and figure 5.13 recomputed.
 
 use crate::study::reproduce::{ReproducedEntry, TableComparison};
 use crate::study::resolution::{self, ResolutionFigure};
@@ -8,7 +8,7 @@ use catchment::report::figure::{
     Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, Picture, curves, number_maps,
 };
 
-/// Every picture with the name of its file, without ending.
+/// Every picture with its file name, without extension.
 ///
 /// # Errors
 /// If a table has no entry.
@@ -21,12 +21,12 @@ pub fn pictures(result: &Reproduction) -> Result<Vec<(String, Picture)>, FigureE
     Ok(drawn)
 }
 
-/// Name of the figure's files, without ending.
+/// File name of the figure, without extension.
 pub fn figure_name() -> String {
     format!("figure-{FIGURE}")
 }
 
-/// Draws a published table, ours, and the ratio of the two: the first two in the same colours.
+/// Draws a published table, ours, and the ratio of the two; the first two share a colour scale.
 ///
 /// # Errors
 /// If there is no entry.
@@ -43,7 +43,7 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
         return Err(FigureError::Empty { what: "the table has no entry" });
     }
     let height = Colouring::Sequential([low, high]);
-    // A factor of two is full colour.
+    // A factor of two has the full colour.
     let beside = Colouring::Ratio { full: 2.0 };
     let ratio = |of: &[Vec<f64>]| -> Vec<Vec<f64>> {
         let divided = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a / b).collect();
@@ -75,7 +75,7 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
     Ok(number_maps(head, cell, &maps))
 }
 
-/// Draws the Sums of every method over N with the exact one and its interval, and beside them the time that each took.
+/// Draws the Sums of every method over N with the exact Sum and its interval, and beside them the computing times.
 pub fn resolution(result: &ResolutionFigure) -> Picture {
     let [lo, hi] = result.exact_ci95;
     let story = format!(

@@ -15,18 +15,18 @@ const KIND: &str = "reproduction";
 /// The table of all entries.
 const CSV: &str = "tables.csv";
 
-/// Refuses a place that cannot be written, before anything is computed.
+/// Refuses a folder that cannot be written, before any computation.
 ///
 /// # Errors
-/// Something else is there, another process keeps it locked, or its parent is no folder.
+/// The path holds other content, another process keeps it locked, or its parent is no folder.
 pub fn check(path: &Path, exec: &Exec) -> Result<(), WriteError> {
     write::check_folder(path, KIND, exec)
 }
 
-/// Writes everything and says what was written; `version` is the program's.
+/// Writes all files and returns their list as a text; `version` is the program's.
 ///
 /// # Errors
-/// Whatever the system refuses; nothing is left behind.
+/// Any error of the system; no files are left behind.
 pub fn save(result: &Reproduction, path: &Path, version: &str, exec: &Exec) -> Result<String, SaveError> {
     let drawn = pictures(result)?;
     let mut files = encode(&drawn, exec)?;

@@ -23,10 +23,10 @@ a star where the two are known to differ; **exact** is what frictionless quasi-s
 with ρ = 0.5 D. A dash: not computed. `catchment reproduce --exact --csv` has every number; `-o DIR` adds pictures.
 ";
 
-/// The page; `took` says when and how it was made.
+/// The page; `took` states the date and the computing effort.
 ///
 /// # Errors
-/// None: a text takes whatever is written into it.
+/// Never fails: it writes to a string.
 pub fn page(
     tables: &[TableComparison],
     figure: Option<&resolution::ResolutionFigure>,

@@ -1,14 +1,14 @@
-//! What a person or a program reads of the studies.
+//! Output of the studies for people and programs.
 //!
 //! ```text
-//!   Reproduction ─┬─ text      aligned tables, a summary, what is left out
+//!   Reproduction ─┬─ text      aligned tables, a summary, the omissions
 //!   Accuracy      ├─ records   one line per entry, for CSV
 //!                 ├─ json      versioned
 //!                 ├─ markdown  the pages of the documentation
 //!                 └─ figure    pictures (feature `figure`)
 //! ```
 //!
-//! Numbers in records and JSON have all their digits; texts round.
+//! Numbers in records and JSON have all their digits; texts round them.
 
 mod accuracy;
 mod coverage;
@@ -50,7 +50,7 @@ const COLUMNS: [&str; 14] = [
     "known_difference",
 ];
 
-/// How a study was computed: what differs between equal runs.
+/// Computing effort of a study, which differs between otherwise equal runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Wall-clock time.
@@ -60,14 +60,14 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// The line of a page that says so; `version` is the program's.
+    /// The line of a page that states the effort; `version` is the program's.
     fn line(&self, version: &str) -> String {
         format!("It took {:.0} s on {} threads, with version {version}.", self.seconds, self.threads)
     }
 }
 
 impl Reproduction {
-    /// The JSON of a program of a version.
+    /// The JSON of the results; `version` is the program's.
     pub fn json(&self, version: &str) -> Value {
         let tables: Vec<Value> = self.tables.iter().map(table).collect();
         let mut report = json!({ "schema": JSON_SCHEMA, "catchment": version, "tables": tables });
@@ -84,7 +84,7 @@ impl Reproduction {
         report
     }
 
-    /// Every entry of the tables as a record for programs, the names of the columns first.
+    /// Every entry of the tables as a record for programs, after a header record.
     pub fn records(&self) -> Vec<Vec<String>> {
         let known = |value: Option<f64>| value.map_or_else(String::new, number);
         let mut records = vec![COLUMNS.map(str::to_owned).to_vec()];
@@ -117,12 +117,12 @@ impl Reproduction {
     /// The page of the documentation.
     ///
     /// # Errors
-    /// None: a text takes whatever is written into it.
+    /// Never fails: it writes to a string.
     pub fn markdown(&self, version: &str, effort: &Effort) -> Result<String, std::fmt::Error> {
         page(&self.tables, self.figure.as_ref(), &effort.line(version))
     }
 
-    /// What must be known before any of these numbers is used.
+    /// Warnings to read before using any of these numbers.
     pub fn warnings(&self) -> Vec<Diagnostic> {
         if self.tables.iter().any(is_fitted) {
             vec![Warning::DissertationConventions.into()]
@@ -142,13 +142,13 @@ impl Accuracy {
     /// The page of the documentation.
     ///
     /// # Errors
-    /// None: a text takes whatever is written into it.
+    /// Never fails: it writes to a string.
     pub fn page(&self, version: &str, effort: &Effort) -> Result<String, std::fmt::Error> {
         self.markdown(&effort.line(version))
     }
 }
 
-/// Whether the dissertation preset computed the table; the kinematic bounds need none.
+/// Whether the dissertation preset computed the table; the kinematic bounds do not need the preset.
 fn is_fitted(table: &TableComparison) -> bool {
     table.method.contains("preset")
 }
@@ -166,7 +166,7 @@ fn table(table: &TableComparison) -> Value {
     value
 }
 
-/// A number with all its digits, as tables for programs have it.
+/// A number with all its digits, as in tables for programs.
 fn number(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)

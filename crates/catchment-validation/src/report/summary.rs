@@ -1,4 +1,4 @@
-//! Everything that was reproduced, as one text.
+//! All reproduced results as one text.
 
 use crate::study::claims::{Claim, ClaimCheck, claims};
 use crate::study::reproduce::TableComparison;
@@ -7,7 +7,7 @@ use crate::study::{FIGURE, Reproduction};
 use crate::tables::HELD;
 use std::fmt;
 
-/// The tables, the figure, where there are several tables a line for each and what is left out, and the coverage.
+/// The tables, the figure, a line per table and the omissions if there are several tables, and the coverage.
 impl fmt::Display for Reproduction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for table in &self.tables {
@@ -37,7 +37,7 @@ fn write_claims(f: &mut fmt::Formatter<'_>, claims: &[Claim]) -> fmt::Result {
 }
 
 impl Claim {
-    /// What was found in print, in ours, and in the exact tables.
+    /// The results for the printed, our and the exact tables.
     pub(super) fn shown(&self) -> [String; 3] {
         let show = |verdict: Option<ClaimCheck>| match verdict {
             Some(ClaimCheck::Count { holds, of }) => format!("{holds} of {of}"),

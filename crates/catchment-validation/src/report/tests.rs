@@ -1,4 +1,4 @@
-//! What people and programs read of a table.
+//! Tests of the texts and records of a table.
 
 use super::*;
 use crate::study::reproduce::{ReproduceSettings, reproduce};
@@ -24,13 +24,14 @@ fn the_page_has_every_table_and_what_is_left_out() {
     }
 }
 
-/// Tables 5.8 to 5.11: the largest and the smallest value of each block have a mark, and the columns stay under their heads.
+/// Tables 5.8 to 5.11: the largest and the smallest value of each block have a mark, and the columns stay aligned with their
+/// headers.
 #[test]
 fn the_largest_and_the_smallest_value_are_marked() {
     let table = comparison("5.9");
     let text = table.to_string();
     assert!(text.contains("6.650▲") && text.matches("0.003980▼").count() == 2, "{text}");
-    // Published and ours have their own: one largest each, and the legend.
+    // The published and the computed block have marks of their own: one largest value each, and the legend.
     assert_eq!(text.matches('▲').count(), 3, "{text}");
     let end = |word: &str| {
         let line = text.lines().find(|line| line.contains(word)).unwrap();

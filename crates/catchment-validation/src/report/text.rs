@@ -6,10 +6,10 @@ use std::fmt;
 /// How a block shows an entry.
 type Show<'a> = Box<dyn Fn(&ReproducedEntry) -> String + 'a>;
 
-/// What the marks of the largest and the smallest value mean.
+/// Legend of the marks of the largest and the smallest value.
 pub(super) const MARKS: &str = "▲ largest, ▼ smallest: the source highlights those of the printed values; ours and the exact ones have their own";
 
-/// A block of a table: its name, how it shows an entry, the places that it marks.
+/// A block of a table: its name, its display of an entry, its marked places.
 struct Block<'a> {
     name: String,
     show: Show<'a>,
@@ -84,7 +84,7 @@ impl TableComparison {
         Ok(())
     }
 
-    /// Why entries are known not to match, each with its entries.
+    /// The reasons of known differences, each with its entries.
     pub(super) fn reasons(&self) -> Vec<(&'static str, Vec<String>)> {
         let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, entries) in self.rows.iter().zip(&self.entries) {
@@ -101,7 +101,7 @@ impl TableComparison {
     }
 }
 
-/// One matrix, right-aligned under its column heads; where places are marked, every number has room for a mark behind it.
+/// One matrix, right-aligned under its column headers; if places are marked, every number reserves space for a mark.
 fn write_block(f: &mut fmt::Formatter<'_>, table: &TableComparison, block: &Block<'_>) -> fmt::Result {
     let room = if block.marked.is_some() { " " } else { "" };
     let head = table.columns.iter().map(|column| format!("{column}{room}"));

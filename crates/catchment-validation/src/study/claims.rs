@@ -1,4 +1,4 @@
-//! What the dissertation's text says of its own numbers, counted in them.
+//! Statements of the dissertation's text about its own numbers, counted in them.
 //!
 //! ```text
 //!   "a more positive COR generally means a higher AA"
@@ -7,47 +7,46 @@
 //!            ↗      ↗     ↗     ↗           … in the printed tables, in ours by the same method, and in the exact ones
 //! ```
 //!
-//! A sentence becomes a count that anybody can repeat: how many neighbours rise, how many entries are larger. Where the text gives a number, the number is
-//! computed again. Every claim is counted three times, so that a reader sees whether it is a fact of docking (exact), of the method (ours), or only of
-//! what was printed.
+//! Each sentence becomes a reproducible count: how many neighbours rise, how many entries are larger. A number in the text is recomputed. Every claim is
+//! counted three times, which separates facts of docking (exact) from properties of the method (ours) and of the printed numbers alone.
 //!
-//! Not promised: that the counts say what the author meant by "often" or "generally".
+//! Not promised: that the counts express the author's meaning of "often" or "generally".
 
 use super::reproduce::{ReproducedEntry, TableComparison};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// A sentence of the dissertation, and the share of its cases that hold.
+/// A sentence of the dissertation, and the share of cases in which it holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Claim {
-    /// Where it stands.
+    /// Its section.
     pub section: &'static str,
-    /// What it says, shortened.
+    /// The statement, shortened.
     pub says: &'static str,
-    /// What is counted or computed.
+    /// The counted or computed quantity.
     pub counted: &'static str,
     /// In the printed numbers.
     pub printed: ClaimCheck,
-    /// In ours by the same method; null where one of them is not computed.
+    /// In ours by the same method; null if an entry is not computed.
     pub ours: Option<ClaimCheck>,
-    /// In the exact ones; null where one of them is not computed, or the claim is about the method.
+    /// In the exact values; null if an entry is not computed, or if the claim is about the method.
     pub exact: Option<ClaimCheck>,
 }
 
-/// What was found.
+/// Result of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ClaimCheck {
-    /// So many of so many.
+    /// A count out of a total.
     Count {
-        /// For how many it holds.
+        /// Number of cases in which it holds.
         holds: usize,
-        /// Of how many.
+        /// Number of cases.
         of: usize,
     },
     /// A number.
     Number {
-        /// Its value, in the unit that is `counted`.
+        /// Its value, in the unit of `counted`.
         value: f64,
     },
 }
@@ -55,18 +54,18 @@ pub enum ClaimCheck {
 /// Rows of numbers.
 type Rows = Vec<Vec<f64>>;
 
-/// A question to the numbers of some tables.
+/// A check of a claim on the numbers of some tables.
 struct ClaimQuestion {
     section: &'static str,
     says: &'static str,
     counted: &'static str,
     tables: &'static [&'static str],
     ask: fn(&[Rows]) -> ClaimCheck,
-    /// Whether what is exact can answer it, too.
+    /// Whether the claim applies to the exact values as well.
     of_docking: bool,
 }
 
-/// Of chapter 5: aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
+/// In chapter 5 aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
 const ASKED: &[ClaimQuestion] = &[
     ClaimQuestion {
         section: "3.1.3",
@@ -211,10 +210,10 @@ const ASKED: &[ClaimQuestion] = &[
     },
 ];
 
-/// The pyramid's tables, by three errors each.
+/// The tables of the pyramid, each over three errors.
 const PYRAMIDS: &[&str] = &["5.8", "5.9", "5.10", "5.11"];
 
-/// What the text says of the tables that were computed; of tables that were not, nothing.
+/// The claims of the text whose tables were all computed.
 pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
     let named = |name: &str| tables.iter().find(|table| table.table == name);
     ASKED
@@ -245,7 +244,8 @@ fn count(holds: impl Iterator<Item = bool>) -> ClaimCheck {
     ClaimCheck::Count { holds, of }
 }
 
-/// Counts entries of the second half of some tables beside those in the same places of the first half.
+/// Counts the entries of the second half of some tables that compare with those at the same places of the
+/// first half.
 fn each(tables: &[Rows], is: fn(f64, f64) -> bool) -> ClaimCheck {
     let (first, second) = tables.split_at(tables.len() / 2);
     let flat = |tables: &[Rows]| tables.concat().concat();
@@ -301,7 +301,8 @@ mod tests {
     fn what_the_text_says_of_the_planar_tables() {
         let claims = claims(&tables(&["5.4", "5.5", "5.6", "5.7"]));
         let onaa = found(&claims, "smaller than the Sum");
-        // AR 2, COR −1 of the V-Face: 0.061575 after 0.0339; AR 4, COR −½: 0.045239 after 0.0440: printed, and not so.
+        // AR 2, COR −1 of the V-Face: 0.061575 after 0.0339; AR 4, COR −½: 0.045239 after 0.0440: the printed numbers
+        // contradict the claim.
         assert_eq!(onaa.printed, ClaimCheck::Count { holds: 48, of: 50 });
         // X-Face, AR 1/4: 0.7854 at COR −½.
         let right = found(&claims, "right-hand column");
@@ -310,14 +311,14 @@ mod tests {
         assert_eq!(right.exact, None);
     }
 
-    /// Counted by hand in the printed tables: five entries of 3.2 are below 3.3; of 3.4 four are above, and one is the same.
+    /// Counted by hand in the printed tables: five entries of 3.2 are below 3.3; four of 3.4 are above, and one is equal.
     #[test]
     fn what_the_text_says_of_the_kinematic_tables() {
         let claims = claims(&tables(&["3.2", "3.3", "3.4"]));
         let [v, s] = ["than the V-Face in almost every", "than the S-Face"].map(|says| found(&claims, says));
         assert_eq!(v.printed, ClaimCheck::Count { holds: 116, of: 121 });
         assert_eq!(s.printed, ClaimCheck::Count { holds: 116, of: 121 });
-        // Stepped by one contact the X-Face is behind the bounds of the other two far more often.
+        // Stepped by one contact, the X-Face is below the bounds of the other two far more often.
         assert_eq!(v.ours, Some(ClaimCheck::Count { holds: 55, of: 121 }));
         assert_eq!(s.ours, Some(ClaimCheck::Count { holds: 80, of: 121 }));
         assert_eq!((v.exact, s.exact), (None, None));

@@ -1,15 +1,15 @@
-//! Do 95 % intervals hold the truth 95 times in 100, on real designs?
+//! Do 95 % intervals contain the true value 95 times in 100, on real designs?
 //!
 //! ```text
-//!   exact  ────────────┼────────────   a large plain sample of exact descents; its own error is folded in
+//!   exact  ────────────┼────────────   a large plain sample of exact descents; its own error is included
 //!   repeat 1      ├────┼──────┤        held
 //!   repeat 2  ├──────┤ │               missed
 //!   …
 //! ```
 //!
-//! Every design is tried with three partitions of its error box: none at all, which is plain sampling; by accepted
-//! cells and their neighbours; and by arrival fraction, which is what `run` uses. The same number of descents each,
-//! so the widths of the intervals compare the partitions.
+//! The study runs every design with three partitions of its error box: a single stratum, which is plain sampling;
+//! by accepted cells and their neighbours; and by arrival fraction, which `run` uses. Each uses the same number of
+//! descents, so the widths of the intervals compare the partitions.
 //!
 //! Not promised: a share of 100 repeats is itself known to ± 4 % only.
 
@@ -26,45 +26,45 @@ use catchment::method::transport::{self, TransportError};
 use catchment::pose::Dof;
 use serde::Serialize;
 
-/// What changes the answer.
+/// Settings that affect the result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CoverageSettings {
     /// Intervals per design and partition.
     pub repeats: u64,
     /// Descents per interval.
     pub descents: usize,
-    /// Descents of the plain sample that stands for the exact value.
+    /// Descents of the plain sample that gives the exact value.
     pub exact: usize,
 }
 
 impl Default for CoverageSettings {
-    /// Some minutes on two cores.
+    /// A few minutes on two cores.
     fn default() -> Self {
         Self { repeats: 100, descents: 1000, exact: 400_000 }
     }
 }
 
-/// Why the study could not be made.
+/// Reasons why the study fails.
 #[derive(Debug, thiserror::Error)]
 pub enum CoverageError {
     /// A design has no halves.
     #[error("{design}: {problem}")]
     Design {
-        /// Which.
+        /// The design.
         design: &'static str,
         /// Its first problem.
         problem: String,
     },
-    /// No grid.
+    /// The grid failed.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// No interval.
+    /// The interval failed.
     #[error(transparent)]
     Correction(#[from] CorrectionError),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -74,19 +74,19 @@ pub enum CoverageError {
 pub struct CoverageRow {
     /// The design.
     pub design: &'static str,
-    /// How its error box is parted.
+    /// The partition of its error box.
     pub strata: &'static str,
     /// The share of the error box that is accepted, from the plain sample.
     pub exact: f64,
     /// Half the 95 % interval of `exact`.
     pub exact_error: f64,
-    /// Share of the repeats whose interval, widened by `exact_error`, holds `exact`.
+    /// Share of the repeats whose interval, widened by `exact_error`, contains `exact`.
     pub held: f64,
     /// Mean of the estimates over `exact`, less 1.
     pub bias: f64,
     /// Mean half-width of the intervals over `exact`.
     pub half_width: f64,
-    /// How many plain descents one of these is worth, by the spread of the estimates.
+    /// Number of plain descents that one of these replaces, by the spread of the estimates.
     pub worth: f64,
 }
 
@@ -99,7 +99,7 @@ pub struct Coverage {
     pub rows: Vec<CoverageRow>,
 }
 
-/// A design and how finely its error box is parted.
+/// A design and the resolution of its partition.
 struct Parted {
     name: &'static str,
     case: Case,
@@ -143,7 +143,7 @@ impl Parted {
     }
 }
 
-/// Repeats the correction of every design and counts the intervals that hold the exact value.
+/// Repeats the correction of every design and counts the intervals that contain the exact value.
 ///
 /// # Errors
 /// See [`CoverageError`].
@@ -177,16 +177,16 @@ pub fn coverage(settings: &CoverageSettings, exec: &Exec) -> Result<Coverage, Co
 const STAGE: &str = "coverage";
 /// Seed of the plain samples; those of the repeats are 1, 2, 3, …
 const EXACT_SEED: u64 = 0;
-/// Poses of a plain sample that are drawn at a time: what is kept in memory.
+/// Poses of a plain sample that are drawn at a time, which bounds the memory.
 const CHUNK: usize = 10_000;
 
-/// Share of the error box that is accepted, by `count` plain random poses.
+/// Accepted share of the error box, by `count` plain random poses.
 fn plain(pair: &Pair, count: usize, exec: &Exec) -> Result<f64, Cancelled> {
     let settings = descent::DescentSettings::default();
     let chunks = count.div_ceil(CHUNK);
     let mut aligned = 0;
     for chunk in 0..chunks {
-        // Seeds that no repeat uses.
+        // Seeds that differ from those of the repeats.
         let domain = Domain::random(&pair.alignment, CHUNK, EXACT_SEED.wrapping_sub(chunk as u64));
         let span = [chunk, chunk + 1].map(|k| k as f64 / chunks as f64);
         aligned += descent::run(pair, domain, &settings, &exec.part(span, STAGE))?.0.counts()[0];

@@ -1,11 +1,11 @@
 //! Studies of published numbers and of the methods themselves.
 //!
 //! ```text
-//!   reproduce    published tables, computed again                 many designs
-//!   claims       what the text says of its tables, counted        in print, by ours, exactly
+//!   reproduce    published tables, recomputed                     many designs
+//!   claims       statements of the text on its tables, counted    in print, by ours, exactly
 //!   resolution   figure 5.13: Sum and time over the resolution    one design, every method
-//!   coverage     how often stated intervals hold                  many runs
-//!   accuracy     how far each method is off the exact Sum         many designs
+//!   coverage     coverage of stated intervals                     many runs
+//!   accuracy     error of each method against the exact Sum       many designs
 //! ```
 
 pub mod accuracy;
@@ -20,53 +20,53 @@ use catchment::exec::Exec;
 use coverage::{Coverage, CoverageError};
 use reproduce::{ReproduceError, TableComparison};
 
-/// What to compute of everything published.
+/// Selection of the published results to compute.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Request {
     /// Names of tables.
     pub tables: Vec<&'static str>,
-    /// How the tables are computed.
+    /// Settings of the tables.
     pub settings: reproduce::ReproduceSettings,
-    /// Also figure 5.13.
+    /// Whether to compute figure 5.13.
     pub figure: bool,
-    /// Also how often stated intervals hold.
+    /// Whether to compute the coverage of stated intervals.
     pub coverage: bool,
 }
 
-/// Name of the figure that is drawn again.
+/// Name of the recomputed figure.
 pub const FIGURE: &str = "5.13";
 
-/// Name of the study of this program's own intervals.
+/// Name of the coverage study of this program's own intervals.
 pub const COVERAGE: &str = "coverage";
 
-/// What was computed.
+/// The computed results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reproduction {
     /// The tables, in the order of their numbers.
     pub tables: Vec<TableComparison>,
-    /// Figure 5.13, where it was asked for.
+    /// Figure 5.13, if requested.
     pub figure: Option<resolution::ResolutionFigure>,
-    /// The coverage of intervals, where it was asked for.
+    /// The coverage of intervals, if requested.
     pub coverage: Option<Coverage>,
 }
 
-/// Why it could not be computed.
+/// Reasons why the computation fails.
 #[derive(Debug, thiserror::Error)]
 pub enum RequestError {
-    /// A table cannot.
+    /// A table failed.
     #[error(transparent)]
     Table(#[from] ReproduceError),
-    /// The figure cannot.
+    /// The figure failed.
     #[error(transparent)]
     Figure(#[from] RecipeError),
-    /// The coverage cannot.
+    /// The coverage failed.
     #[error(transparent)]
     Coverage(#[from] CoverageError),
 }
 
 impl Request {
-    /// What `names` ask for: tables, [`FIGURE`] and [`COVERAGE`]; every table where nothing is named. Names that are none of
-    /// these ask for nothing.
+    /// The selection for `names`: tables, [`FIGURE`] and [`COVERAGE`]; every table if `names` is empty. Unknown names are
+    /// ignored.
     pub fn of(names: &[String], settings: reproduce::ReproduceSettings) -> Self {
         let named = |name: &str| names.iter().any(|n| n == name);
         let tables = TABLES.iter().map(|table| table.name);
@@ -78,7 +78,7 @@ impl Request {
         }
     }
 
-    /// Computes it all: seconds to minutes.
+    /// Computes the whole selection: seconds to minutes.
     ///
     /// # Errors
     /// See [`RequestError`].

@@ -1,8 +1,8 @@
-//! Figure 5.13: how the Sum and the time of a method move with the resolution, for the V-Face at H/D ¼, COR −½.
+//! Figure 5.13: Sum and computing time of each method over the resolution, for the V-Face at H/D ¼, COR −½.
 //!
 //! ```text
 //!   Sum ▲  ○__                     the dissertation: its Sum begins larger, slowly decreases, and its time grows like N²
-//!       │     ○──○──○  preset      (its figure is lost, no point of it is held)
+//!       │     ○──○──○  preset      (its figure is lost, no point of it is stored)
 //!       │  ●──●──●──●  exact       here: its own method, and every general method of this program, at the same rotation
 //!       └────────────▶ N           point, with the exact Sum and its 95 % interval
 //! ```
@@ -21,16 +21,16 @@ use catchment::study::refinement::GridDecision;
 use serde::Serialize;
 use std::time::Instant;
 
-/// What changes the answer.
+/// Settings that affect the result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ResolutionStudySettings {
     /// Samples or cells per axis, coarse to fine; even.
     pub resolutions: Vec<usize>,
-    /// The finest resolution of descent, which takes its time.
+    /// The finest resolution of descent, which is slow.
     pub finest_descent: usize,
-    /// Random descents behind the exact Sum.
+    /// Number of random descents for the exact Sum.
     pub descents: usize,
-    /// Their seed.
+    /// Seed of the random descents.
     pub seed: u64,
 }
 
@@ -63,13 +63,13 @@ pub struct MethodPoint {
 /// The figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResolutionFigure {
-    /// What else changes the answer.
+    /// The settings that affect the result.
     pub settings: ResolutionStudySettings,
     /// The exact Sum, D·rad.
     pub exact: f64,
     /// Its 95 % interval.
     pub exact_ci95: [f64; 2],
-    /// ρ of the methods that know one, in D.
+    /// ρ of the methods that use it, in D.
     pub rotation_length: f64,
     /// One per method, the dissertation's own first.
     pub curves: Vec<MethodCurve>,
@@ -98,7 +98,7 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Resolution
     for &resolution in &settings.resolutions {
         exec.check()?;
         let started = Instant::now();
-        // Both ends are samples: one more than intervals.
+        // Both ends are samples: one sample more than intervals.
         let at = dissertation::DissertationSettings { planar_samples: resolution + 1, ..preset };
         let sum = dissertation::accept(&at, exec)?.sum();
         own.points.push(MethodPoint { resolution, sum, seconds: started.elapsed().as_secs_f64() });
@@ -132,7 +132,7 @@ pub fn run(settings: &ResolutionStudySettings, exec: &Exec) -> Result<Resolution
 }
 
 impl ResolutionFigure {
-    /// Every point as a record for programs, the names of the columns first.
+    /// Every point as a record for programs, after a header record.
     pub fn records(&self) -> Vec<Vec<String>> {
         let mut records =
             vec![["method", "resolution", "sum", "seconds", "exact"].map(str::to_owned).to_vec()];

@@ -1,4 +1,4 @@
-//! Why real-shaped docks jam: the features that a person would name from the drawing.
+//! Jam causes of docks with realistic shapes: the features that an engineer would name from the drawing.
 
 use catchment::prelude::*;
 use catchment::run::jams::{Jams, JamsSettings, Stability, run};
@@ -8,7 +8,7 @@ fn found(problem: &Problem, motions: usize) -> Jams {
     run(problem, &JamsSettings { motions: Some(motions), ..JamsSettings::default() }, &Exec::new()).unwrap()
 }
 
-/// The pair of features that touches in most of the jams, the moving half's first, and in which share of them it does.
+/// The most frequent pair of contact features in the jams, the moving half's first, and its share of the jams.
 fn foremost(found: &Jams) -> (String, f64) {
     let pair = &found.features[0];
     let names = format!("{} on {}", pair.moving.name, pair.fixed.name);
@@ -19,7 +19,7 @@ fn written(text: &str) -> Problem {
     Problem::of(catchment::design::read(text, Path::new("")).unwrap().design).unwrap()
 }
 
-/// A chamfered peg lands with its end on the plate beside the hole: everywhere there, level.
+/// A chamfered peg lands with its end on the plate beside the hole: the ground is level everywhere there.
 #[test]
 fn a_peg_stands_on_the_plate() {
     let text = "[connector]\nfamily = \"pin-hole\"\nwidth = 50.0\nunit = \"mm\"\npins = 1\ncircle_radius = 0\n\
@@ -32,7 +32,7 @@ fn a_peg_stands_on_the_plate() {
     assert_eq!(found.jams[0].examined.unwrap().stability, Stability::Level);
 }
 
-/// Three balls in three grooves: a ball that misses its groove lies on the top of a block.
+/// Three balls in three grooves: a ball that misses its groove lies on top of a block.
 #[test]
 fn a_ball_lies_on_a_block() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml");
@@ -44,16 +44,16 @@ fn a_ball_lies_on_a_block() {
     let (names, share) = foremost(&found);
     assert_eq!(names, "rounded surface on top");
     assert!(share > 0.5, "{share}");
-    // Parts are named by their numbers in the file: a block and a ball.
+    // Parts are named by their number in the file: a block and a ball.
     let jam = found.jams.iter().find(|jam| jam.contacts[0].moving.name == "rounded surface").unwrap();
     let contact = &jam.contacts[0];
     assert!(contact.fixed.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
     assert!(contact.moving.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
-    // The block's top is at z = 0 in the drawing, 1 mm the smallest length that it has.
+    // The block's top is at z = 0 in the drawing; 1 mm is the drawing's smallest length.
     assert!(contact.fixed.drawn_d[2].abs() < 1e-6, "{contact:?}");
 }
 
-/// The plate of a tool changer with two pointed pins: their tips stand on the other plate.
+/// The plate of a tool changer with two pointed pins: in a jam their tips stand on the other plate.
 #[test]
 fn pointed_pins_stand_on_the_plate() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/pin-hole.toml");

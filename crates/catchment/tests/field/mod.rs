@@ -1,5 +1,5 @@
-//! Docks in the field, rebuilt from the dimensions that are public: what is claimed, what geometry says, what the program says.
-//! `docs/field.md` tells of each.
+//! Docks in the field, rebuilt from the published dimensions: the claim, the geometric prediction, the computed result.
+//! `docs/field.md` describes each dock.
 
 #![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -25,7 +25,7 @@ fn problem(
     Problem::new(fixed, moving, alignment).unwrap_or_else(|error| panic!("{error:#?}"))
 }
 
-/// What geometry gives, by `reference/field/docks.csv`.
+/// The geometric predictions, from `reference/field/docks.csv`.
 fn geometry(dock: &str, quantity: &str) -> f64 {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../reference/field/docks.csv");
     let mut table = csv::Reader::from_path(path).unwrap();
@@ -36,7 +36,7 @@ fn geometry(dock: &str, quantity: &str) -> f64 {
 
 const LATERAL: [Dof; 2] = [Dof::X, Dof::Y];
 
-/// How far along one error a half docks, in D or radians, found to `step`.
+/// Largest error along one axis from which a half docks, in D or radians, to within `step`.
 fn reach(problem: &Problem, dof: Dof, most: f64, step: f64) -> f64 {
     let docks = |k: &u32| {
         let mut error = [0.0; 5];
@@ -47,7 +47,7 @@ fn reach(problem: &Problem, dof: Dof, most: f64, step: f64) -> f64 {
     f64::from((1..=count).take_while(docks).last().unwrap_or(0)) * step
 }
 
-/// How far in a direction of errors a half docks, found by halving; at `most` it must not.
+/// Largest error in a direction from which a half docks, by bisection; at `most` it must not dock.
 fn edge(problem: &Problem, direction: [f64; 5], most: f64) -> f64 {
     let docks = |far: f64| {
         let error = PoseError::from_array(direction.map(|d| d * far));
@@ -62,7 +62,7 @@ fn edge(problem: &Problem, direction: [f64; 5], most: f64) -> f64 {
     inside
 }
 
-/// Poses at a given lateral offset (D) with a given tilt and yaw (degrees), all round: the limit that a standard states.
+/// Poses at a given lateral offset (D) with a given tilt and yaw (degrees), in every direction: the limit of a standard.
 fn limit(count: u32, lateral: f64, tilt: f64, yaw: f64) -> impl Iterator<Item = PoseError> {
     (0..count).map(move |k| {
         let (a, b) = (TAU * f64::from(k) / f64::from(count), 2.4 * f64::from(k));
@@ -86,7 +86,7 @@ fn industreal_peg(width: f64) -> Problem {
     problem(fixed, body(&peg), width, &LATERAL, box_of)
 }
 
-/// Docked it slides in its play, at no force; once that is used a wall of the hole stands in its way.
+/// When docked it slides freely in its play; beyond the play a wall of the hole blocks it.
 #[test]
 fn the_industreal_peg_slides_until_its_play_is_used() {
     const D: f64 = 12.0;
@@ -113,14 +113,15 @@ fn the_industreal_peg_docks_within_its_mouth() {
     assert!((0.5 * (lo + hi) - area).abs() <= hi - lo, "{lo} … {hi} for {area}");
     let round = geometry("industreal-peg", "accepted area in x and y");
     assert!((answer.sum() - round).abs() < 0.01 * round + (hi - lo), "{}", answer.sum());
-    // It has 0.509 mm of play, and uses it.
+    // It has 0.509 mm of play, and uses all of it.
     for off in residual(&answer) {
         let play = geometry("industreal-peg", "play");
         assert!(off.most * D > 0.8 * play && off.most * D < 1.02 * play, "{off:?}");
     }
 }
 
-/// Sigyn's charging dock: a funnel of 220 × 180 mm narrowing to 112 × 112 over 80, a block of 100 × 100. ±80 mm is claimed.
+/// Sigyn's charging dock: a funnel of 220 × 180 mm narrowing to 112 × 112 over 80, a block of 100 × 100. The claim is ±80
+/// mm.
 #[test]
 fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
     const D: f64 = 220.0;
@@ -130,7 +131,7 @@ fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
     let block = body(&[rectangle([50.0, 50.0], -50.0), rectangle([50.0, 50.0], 0.0)]);
     let problem = problem(fixed, block, D, &LATERAL, |_| ());
     let step = 0.5 / D;
-    // The edge of the block must be over the mouth: (220 − 100)/2 and (180 − 100)/2, to a step.
+    // The edge of the block must be over the mouth: (220 − 100)/2 and (180 − 100)/2, to one step.
     for dof in LATERAL {
         let expected = geometry("sigyn-funnel", dof.name());
         let result = reach(&problem, dof, 85.0 / D, step) * D;
@@ -138,7 +139,7 @@ fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
     }
 }
 
-/// A landing pad on four cones: funnels whose mouths are 17.9 mm wider than the tips of the legs, which is what the drawing gives.
+/// A landing pad on four cones: in the drawing the mouths of the funnels are 17.9 mm wider than the tips of the legs.
 #[test]
 fn four_cones_take_what_one_takes() {
     const D: f64 = 140.0;
@@ -161,7 +162,8 @@ fn four_cones_take_what_one_takes() {
     assert!((result - geometry("landing-pad", "x")).abs() <= 0.15, "{result} mm");
 }
 
-/// Three keys in three V grooves at 120° (Maxwell): one place of rest, and everything that meets its groove goes there.
+/// Three keys in three V grooves at 120° (Maxwell): one rest, which is the outcome of every pose whose keys are over
+/// their grooves.
 #[test]
 fn three_grooves_leave_one_place_of_rest() {
     const D: f64 = 50.0;
@@ -185,7 +187,7 @@ fn three_grooves_leave_one_place_of_rest() {
     for off in residual(&answer) {
         assert!(off.most < 1e-3, "{off:?}");
     }
-    // The tip of a key must be over its groove: 4 mm to either side of it.
+    // The tip of a key must be over its groove: up to 4 mm to either side.
     let result = reach(&problem, Dof::Y, 0.12, 0.1 / D) * D;
     assert!((result - geometry("maxwell-coupling", "y")).abs() <= 0.2, "{result} mm");
 }
@@ -194,7 +196,7 @@ fn three_grooves_leave_one_place_of_rest() {
 fn kelvin() -> [Pieces; 2] {
     let (ball, deep, at) = (4.0, 3.6, [20.0, 0.0]);
     let third = |pieces: Pieces, k: f64| turned(&pieces, TAU / 3.0 * k);
-    // How high over the plate the centres of the balls stand: 2.06 mm.
+    // Height of the ball centres over the plate: 2.06 mm.
     let rise = ball * SQRT_2 - deep;
     let corner = [ring(3, at, 0.3, 0.15 - deep), ring(3, at, 2.0 * deep, 0.0)];
     let mut fixed = around(&corner, &ring(3, at, 12.0, 0.0));
@@ -212,14 +214,14 @@ fn kelvin() -> [Pieces; 2] {
     [fixed, moving]
 }
 
-/// A Kelvin coupling has one place of rest in all five errors; a ball must stand over its seat, 3.6 mm to either side.
+/// A Kelvin coupling has one rest in all five errors; a ball must stand over its seat, up to 3.6 mm to either side.
 #[test]
 fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
     const D: f64 = 60.0;
     let [fixed, moving] = kelvin();
     let lateral =
         problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.1, 0.1, 1.0, 1.0, 1.0]);
-    // The facets of the trihedral look to 0°, 120° and 240°, the walls of the V to 30° and 210°.
+    // The facets of the trihedral face 0°, 120° and 240°, the walls of the V 30° and 210°.
     let [straight, slant] = ["-x", "+x"].map(|way| geometry("kelvin-coupling", way));
     for (direction, expected) in [
         ([1.0, 0.0], slant),     // the V
@@ -242,7 +244,8 @@ fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
     }
 }
 
-/// The probe of Soyuz and Progress: a head in a cone whose mouth is the passage of 800 mm. All else is assumed.
+/// The probe of Soyuz and Progress: a head in a cone whose mouth is the passage of 800 mm. All other dimensions
+/// are assumptions.
 #[test]
 fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
     const D: f64 = 800.0;
@@ -257,7 +260,7 @@ fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
     moving.extend(body(&[circle(550.0, -60.0), circle(550.0, 0.0)]));
     let lateral =
         problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.5, 0.5, 1.0, 1.0, 1.0]);
-    // Mouth less tip: 360 mm to a corner of the polygon, 353 to its side.
+    // Mouth minus tip: 360 mm to a corner of the polygon, 353 to its side.
     let half = TAU / 32.0;
     let [corner, side] = ["to a corner", "to a side"].map(|way| geometry("probe-and-drogue", way));
     for (angle, expected) in [(0.0, corner), (half, side), (0.25 * TAU, corner)] {
@@ -269,22 +272,22 @@ fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
         a.dont_care = [Dof::Yaw].into_iter().collect();
         a.half_ranges = [0.2, 0.2, 0.1, 0.1, 1.0];
     });
-    // What ATV was to keep, 0.10 m, with 5° of tilt.
+    // The requirement for ATV: 0.10 m, with 5° of tilt.
     let lateral = geometry("probe-and-drogue", "lateral at 5° of tilt");
     for error in limit(20, lateral / D, 5.0, 0.0) {
         assert_eq!(tilted.follow(&error).outcome, Outcome::Aligned, "{error:?}");
     }
 }
 
-/// The Nikon F bayonet: three lugs of 72.21°, 60.78° and 56.39° in slots half a degree wider to either side. `lead`: how much narrower
-/// the ends of the lugs are, degrees to either side.
+/// The Nikon F bayonet: three lugs of 72.21°, 60.78° and 56.39° in slots half a degree wider to either side. `lead`: reduction of the
+/// lug ends, degrees to either side.
 fn bayonet(lead: f64) -> [Pieces; 2] {
     const CLEAR: f64 = 0.5;
     let (mut fixed, mut moving) = (Vec::new(), Vec::new());
     let mut start = -0.5 * 72.21;
     for (lug, gap) in [(72.21, 53.45), (60.78, 58.65), (56.39, 58.52)] {
         let end = start + lug;
-        // Drawn the other way round: the mount turns y over.
+        // Drawn the other way round: the mount reverses y.
         let wedge = |less: f64, z: f64| {
             [arc(23.1, -(start + less), less - end, 6, z), vec![DVec3::new(0.0, 0.0, z)]].concat()
         };
@@ -292,7 +295,7 @@ fn bayonet(lead: f64) -> [Pieces; 2] {
         let (slot, lip) = ((23.2, start - CLEAR, end + CLEAR, 4), (22.1, end + CLEAR, end + gap - CLEAR, 3));
         for (radius, from, to, steps) in [slot, lip] {
             let part = (to - from) / f64::from(steps);
-            // Chords that touch the circle: nothing stands into the hole.
+            // Chords that touch the circle: no material reaches into the hole.
             let inner = radius / (0.5 * part).to_radians().cos();
             for k in 0..steps {
                 let from = from + part * f64::from(k);
@@ -309,7 +312,7 @@ fn bayonet(lead: f64) -> [Pieces; 2] {
     [fixed, moving]
 }
 
-/// The lugs of a bayonet enter their slots as far off in yaw as they are narrower than these: by their clearance, and by their lead-in.
+/// The lugs of a bayonet enter their slots up to a yaw error equal to their clearance plus their lead-in.
 #[test]
 fn a_bayonet_enters_by_its_clearance_and_its_lead_in() {
     for (lead, quantity) in [(0.0, "yaw without a lead-in"), (3.0, "yaw with a lead-in of 3°")] {
@@ -320,7 +323,7 @@ fn a_bayonet_enters_by_its_clearance_and_its_lead_in() {
         for sign in [1.0, -1.0_f64] {
             let result = edge(&problem, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 8.0);
             assert!((result - expected).abs() < 0.02, "{lead}°: {result}°");
-            // The widest lug has a slot of its own.
+            // The widest lug fits only its own slot.
             let other = PoseError { yaw: sign * TAU / 3.0, ..PoseError::default() };
             assert_eq!(problem.follow(&other).outcome, Outcome::Jammed);
         }
@@ -333,7 +336,7 @@ fn petals() -> Pieces {
         &[ring(12, [0.0; 2], 600.0, -60.0), ring(12, [0.0; 2], 600.0, 0.0)],
         &ring(12, [0.0; 2], 680.0, 0.0),
     );
-    // Along a side of the 12-gon, at an angle off its corner.
+    // Along a side of the 12-gon, at an angle from its corner.
     let eighth = TAU / 24.0;
     let side = |radius: f64, off: f64| radius * eighth.cos() / (eighth - off).cos();
     for (middle, sign) in [90.0, 210.0, 330.0_f64].into_iter().flat_map(|m| [(m, -1.0), (m, 1.0)]) {
@@ -354,7 +357,8 @@ fn petals() -> Pieces {
     half
 }
 
-/// Three petals between three others: what turns them back is the gap between the tips. All that IDSS asks for docks.
+/// Three petals between three others: the gap between the tips limits the yaw. All initial conditions that IDSS
+/// requires dock.
 #[test]
 fn three_petals_take_the_gap_between_their_tips() {
     const D: f64 = 1200.0;

@@ -1,4 +1,4 @@
-//! Solids of docks as convex pieces, from the dimensions that their makers give.
+//! Solids of docks as convex pieces, from the makers' dimensions.
 
 use catchment::prelude::DVec3;
 use std::f64::consts::TAU;
@@ -23,19 +23,19 @@ pub(crate) fn arc(radius: f64, from: f64, to: f64, steps: u32, z: f64) -> Vec<DV
     (0..=steps).map(corner).collect()
 }
 
-/// Corners of a rectangle about the approach axis, half as long and wide as this.
+/// Corners of a rectangle about the approach axis, with these half sides.
 pub(crate) fn rectangle(half: [f64; 2], z: f64) -> Vec<DVec3> {
     [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
         .map(|[x, y]| DVec3::new(x * half[0], y * half[1], z))
         .into()
 }
 
-/// What lies between outlines from one to the next: a peg, a block, a cone.
+/// The solid between consecutive outlines: a peg, a block, a cone.
 pub(crate) fn body(outlines: &[Vec<DVec3>]) -> Pieces {
     outlines.windows(2).map(<[Vec<DVec3>]>::concat).collect()
 }
 
-/// What lies around a hole with these outlines, out to `outer`, side by side.
+/// The solid around a hole with these outlines, out to `outer`, side by side.
 pub(crate) fn around(outlines: &[Vec<DVec3>], outer: &[DVec3]) -> Pieces {
     let mut pieces = Vec::new();
     for level in outlines.windows(2) {

@@ -1,5 +1,5 @@
-//! Every reader on the corpora of the fuzzer and thousands of spoilt copies of them, the same ones in every run: no panic, no
-//! hang, and no more memory than is named here. The fuzzer itself, for hours: `just fuzz`.
+//! Every reader on the corpora of the fuzzer and thousands of mutated copies of them, the same ones in every run: no panic,
+//! no hang, and no more memory than the limit below. The fuzzer itself, for hours: `just fuzz`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -14,14 +14,14 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Spoilt copies per reader; more by the environment variable `READER_RUNS`.
+/// Mutated copies per reader; the environment variable `READER_RUNS` raises the number.
 const RUNS: usize = 6000;
 
-/// Bytes that a reader may take for an input of at most a megabyte, and as long as it may take on a busy machine.
+/// Memory limit of a reader for an input of at most a megabyte, and its time limit on a busy machine.
 const MOST_BYTES: usize = 64 << 20;
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// What lies in the corpus of a reader.
+/// The corpus of a reader.
 fn corpus(name: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(name);
     let mut paths: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -30,7 +30,7 @@ fn corpus(name: &str) -> Vec<Vec<u8>> {
     paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
 }
 
-/// Runs a reader on its corpus and on spoilt copies.
+/// Runs a reader on its corpus and on mutated copies.
 fn replay(name: &str, reader: fn(&[u8])) {
     let seeds = corpus(name);
     let runs = std::env::var("READER_RUNS").ok().and_then(|runs| runs.parse().ok()).unwrap_or(RUNS);
@@ -58,7 +58,7 @@ fn what_is_spoilt_is_read_or_refused() {
     }
 }
 
-/// The fuzzer runs these, and three of other crates: their tests stand there.
+/// The fuzzer runs these, and three targets of other crates, which have their own tests.
 #[test]
 fn every_corpus_has_its_reader() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");

@@ -1,4 +1,4 @@
-//! Spoilt copies of good input, the same ones in every run.
+//! Mutated copies of valid input, the same ones in every run.
 
 /// Random numbers: a counter, scrambled (`splitmix64`).
 pub(crate) struct Dice(u64);
@@ -16,19 +16,19 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// Below `n`; 0 for `n` = 0.
+    /// Uniform below `n`; 0 for `n` = 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 
-    /// One of them.
+    /// One element at random.
     pub(crate) fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
         let at = self.below(of.len());
         &of[at]
     }
 }
 
-/// Numbers at which readers break.
+/// Numbers that often break readers.
 const NUMBERS: [&str; 16] = [
     "0",
     "-0",
@@ -48,7 +48,7 @@ const NUMBERS: [&str; 16] = [
     "1.7976931348623157e308",
 ];
 
-/// Pieces that mean something to a reader.
+/// Tokens that have a meaning for a reader.
 const PIECES: [&[u8]; 18] = [
     b"\0",
     b"\x1b[2J",
@@ -70,9 +70,9 @@ const PIECES: [&[u8]; 18] = [
     b"////////",
 ];
 
-/// A copy of `seed` with one to four faults; `others` lend pieces.
+/// A copy of `seed` with one to four mutations; `others` supply pieces.
 pub(crate) fn spoilt(dice: &mut Dice, seed: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
-    // Longest piece that is copied or left out, and longest input.
+    // Longest piece to copy or delete, and longest input.
     const PIECE: usize = 200;
     const LONGEST: usize = 1 << 20;
     let mut bytes = seed.to_vec();
@@ -110,7 +110,7 @@ pub(crate) fn spoilt(dice: &mut Dice, seed: &[u8], others: &[Vec<u8>]) -> Vec<u8
     bytes
 }
 
-/// Puts another number in the place of the next one.
+/// Replaces the next number by another one.
 fn number(dice: &mut Dice, bytes: &mut Vec<u8>, at: usize) {
     let is_digit = |byte: &u8| byte.is_ascii_digit() || *byte == b'.';
     let Some(start) = bytes[at..].iter().position(is_digit).map(|k| at + k) else { return };

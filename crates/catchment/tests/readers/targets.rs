@@ -1,5 +1,5 @@
-//! What must hold of every reader on any bytes: no panic, bounded memory, and what is accepted obeys its own rules. The fuzzer
-//! runs these functions as well as the test beside this file.
+//! Properties of every reader on arbitrary bytes: no panic, bounded memory, and accepted input obeys its own rules. The fuzzer
+//! and the test beside this file run the same functions.
 
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
@@ -18,7 +18,7 @@ use catchment::report::Report;
 use catchment::run::Requirement;
 use std::path::Path;
 
-/// What an input goes to, by the name of its corpus.
+/// The function that takes an input, by the name of its corpus.
 pub(crate) type Target = (&'static str, fn(&[u8]));
 
 /// The readers; their corpora are folders of `fuzz/corpus`.
@@ -47,7 +47,7 @@ pub(crate) fn design() -> Design {
     read(text, Path::new("")).expect("the design of the targets").design
 }
 
-/// A design file gives a design that obeys its own rules, or problems whose places lie in the text.
+/// A design file gives a design that obeys its own rules, or problems with places inside the text.
 fn design_file(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     match read(&text, Path::new("no-such-folder")) {
@@ -77,7 +77,7 @@ fn design_file(bytes: &[u8]) {
     }
 }
 
-/// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
+/// The STL reader accepts only closed solids, and refuses for a few known reasons.
 fn stl_file(bytes: &[u8]) {
     mesh_file("half.stl", bytes);
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
@@ -91,22 +91,23 @@ fn stl_file(bytes: &[u8]) {
     }
 }
 
-/// What the reader of OBJ files accepts is a closed solid, and what it refuses has few reasons.
+/// The OBJ reader accepts only closed solids, and refuses for a few known reasons.
 fn obj_file(bytes: &[u8]) {
     mesh_file("half.obj", bytes);
 }
 
-/// The same of PLY files.
+/// The same for PLY files.
 fn ply_file(bytes: &[u8]) {
     mesh_file("half.ply", bytes);
 }
 
-/// The same of 3MF files.
+/// The same for 3MF files.
 fn threemf_file(bytes: &[u8]) {
     mesh_file("half.3mf", bytes);
 }
 
-/// An answer of the interpreter that meshes STEP files: triangles of which closed solids are made as of any others, or a reason.
+/// An answer of the interpreter that meshes STEP files: triangles, from which closed solids are made as from any others, or a
+/// reason.
 fn step_answer(bytes: &[u8]) {
     match bodies_of_answer(bytes) {
         Ok(bodies) => {
@@ -129,7 +130,7 @@ fn step_answer(bytes: &[u8]) {
     }
 }
 
-/// What the readers of drawings accept makes a solid when it is extruded.
+/// An accepted drawing gives a solid when extruded.
 fn drawing(bytes: &[u8]) {
     for name in ["plate.svg", "plate.dxf"] {
         let outline = OutlineSpec::File(FileSpec::new(name, 0.1));
@@ -146,7 +147,7 @@ fn drawing(bytes: &[u8]) {
 }
 
 fn mesh_file(name: &str, bytes: &[u8]) {
-    // As it is, repaired, and simplified: what is accepted of any is a closed solid.
+    // Unchanged, repaired, and simplified: every accepted result is a closed solid.
     let treated = |repair, simplify| {
         mesh_treated(name, bytes, MeshPreparation { repair, simplify, ..MeshPreparation::DEFAULT })
     };
@@ -156,7 +157,7 @@ fn mesh_file(name: &str, bytes: &[u8]) {
     treated(true, Some(0.01));
 }
 
-/// Whether a mesh file is accepted.
+/// Whether the reader accepts a mesh file.
 fn mesh_treated(name: &str, bytes: &[u8], treatment: MeshPreparation) -> bool {
     let spec = FileSpec { treatment, ..FileSpec::new(name, 1.0) };
     let mesh = || HalfSource::Mesh { spec: spec.clone(), file: FileBytes::whole(bytes.to_vec()) };
@@ -175,7 +176,8 @@ fn mesh_treated(name: &str, bytes: &[u8], treatment: MeshPreparation) -> bool {
     }
 }
 
-/// A table of poses has as many errors as rows, all finite, and diagnostics lie in the text; so has one of trials, each of them once.
+/// A table of poses has as many errors as rows, all finite, and its diagnostics have places inside the text; so has a table of
+/// trials, each trial once.
 fn pose_table(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
@@ -214,7 +216,7 @@ fn pose_table(bytes: &[u8]) {
     }
 }
 
-/// A file of robots: finite moments, correlations of which none is beyond 1, or problems whose places lie in the text.
+/// A file of robots: finite moments, correlations within ±1, or problems with places inside the text.
 fn robots(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut table = |name: &str| match name {
@@ -248,7 +250,7 @@ fn robots(bytes: &[u8]) {
     }
 }
 
-/// A file of laws: every value that is drawn lies in the range of what it describes, or problems whose places lie in the text.
+/// A file of distributions: every sampled value lies in the range of its quantity, or problems with places inside the text.
 fn dynamics(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     match read_dynamics(&SourceText::new("dynamics.toml", text.clone()), &design()) {
@@ -272,7 +274,7 @@ fn dynamics(bytes: &[u8]) {
     }
 }
 
-/// One line that a person writes: a pose, a quantity, degrees of freedom, a distribution.
+/// One line of user input: a pose, a quantity, degrees of freedom, a distribution.
 fn line(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
@@ -299,7 +301,7 @@ fn line(bytes: &[u8]) {
     let _ = Distribution::uniform(&text, &design);
 }
 
-/// A stored report that is read is written again, and told, whatever its numbers are.
+/// A stored report that is read can be written again and printed, whatever its numbers are.
 fn report(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(report) = Report::from_json(&text) {
@@ -320,7 +322,7 @@ fn requirement(bytes: &[u8]) {
     }
 }
 
-/// A resolution gives a grid with that many cells, or says why not.
+/// A resolution gives a grid with that many cells, or an error with the reason.
 fn resolution(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(resolution) = text.parse::<Resolution>()
@@ -331,10 +333,10 @@ fn resolution(bytes: &[u8]) {
     }
 }
 
-/// What stands between the files of a group in one input.
+/// Separator between the files of a group in one input.
 pub(crate) const FILES_END: &[u8] = b"\n=====\n";
 
-/// Three files of a group, one behind the other: its metadata, those of its outcomes, and their first chunk.
+/// Three files of a group, concatenated: its metadata, the metadata of its outcomes, and their first chunk.
 #[cfg(feature = "zarr")]
 fn group(bytes: &[u8]) {
     use catchment::exec::Exec;

@@ -1,4 +1,5 @@
-//! A peg and a hole with chamfers of the same slope, so that face slides on face: the way most pegs are drawn, and the hardest to follow.
+//! A peg and a hole with chamfers of the same slope, so that face slides on face: the most common drawing of a peg, and the hardest to
+//! follow.
 //!
 //! ```text
 //!        │  body │
@@ -64,7 +65,7 @@ impl Chamfered {
         [HalfSource::Pieces(fixed), HalfSource::Pieces(vec![self.peg().concat()])]
     }
 
-    /// As an STL file would hold it: triangles in single precision.
+    /// As read from an STL file: triangles in single precision.
     pub(crate) fn triangles(&self) -> [HalfSource; 2] {
         let [mouth, rim, floor] = self.hole();
         let plate = [self.ring(OUTER, -BELOW), self.ring(OUTER, 0.0), mouth, rim, floor];
@@ -83,7 +84,7 @@ impl Chamfered {
         0.5 * f64::from(self.sides) * (MOUTH - TIP).powi(2) * (TAU / f64::from(self.sides)).sin()
     }
 
-    /// How far inside the captured n-gon an offset lies, in D; negative outside.
+    /// Signed distance of an offset from the border of the captured n-gon, in D; negative outside.
     pub(crate) fn inside(&self, error: &PoseError) -> f64 {
         let half = 0.5 * TAU / f64::from(self.sides);
         let side = |k| {

@@ -1,4 +1,5 @@
-//! What counts as docked, against closed forms: pegs in holes with play and chamfers, rests on the rim, flats.
+//! The definition of docked, against closed forms: pegs in holes with play and chamfers, rests on the rim,
+//! flats.
 
 #![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
@@ -23,7 +24,7 @@ fn at(x: f64, y: f64) -> PoseError {
     PoseError { x, y, ..PoseError::default() }
 }
 
-/// Accepts any play: what these tests are about.
+/// Accepts any play, which these tests are about.
 fn loose(alignment: &mut Alignment) {
     alignment.docked.limits = [Some(0.3), Some(0.3), None, None, Some(0.6)];
 }
@@ -32,7 +33,7 @@ fn loose(alignment: &mut Alignment) {
 fn pegs() -> impl Iterator<Item = Peg> {
     let shapes = [(4, 0.0), (6, 0.05), (8, 0.02), (16, 0.05), (4, 0.1), (16, 0.01)];
     shapes.into_iter().zip([0.05, 0.0, 0.2, 0.1, 0.05, 0.0]).flat_map(|((sides, play), chamfer)| {
-        // Walls that coincide are a peg that does not go in: a play of rounding is none.
+        // Coincident walls do not let the peg in: a play of rounding size counts as zero.
         let peg = Peg::new(sides, 0.3, f64::max(play, 1e-6), chamfer);
         [peg, Peg { blind: false, ..peg }]
     })
@@ -54,7 +55,7 @@ fn exact_motion_and_the_exact_region_have_the_area_of_the_mouth() {
             descent::run(problem.pair(), poses, &descent::DescentSettings::default(), &Exec::new()).unwrap();
         let share = found.counts()[0] as f64 / 400.0;
         let expected = peg.area() / (4.0 * range * range);
-        // Four standard deviations of a share of 400.
+        // Four standard deviations of a share estimated from 400 poses.
         let doubt = 4.0 * (expected * (1.0 - expected) / 400.0).sqrt() + 1e-9;
         assert!((share - expected).abs() <= doubt, "{peg:?}: {share} for {expected} ± {doubt}");
     }
@@ -68,7 +69,7 @@ fn the_corrected_sum_holds_the_area_in_its_interval() {
         let run = Run { over: Over::Grid("60".parse().unwrap()), ..Run::default() };
         let answer = run.on(&problem, &Exec::new()).unwrap();
         let [lo, hi] = answer.sum_ci95().unwrap();
-        // 95 % of intervals hold it; twice their width does unless something is wrong.
+        // 95 % of intervals contain it; twice their width does unless there is a defect.
         let (middle, half) = (0.5 * (lo + hi), hi - lo);
         assert!((peg.area() - middle).abs() <= half, "{peg:?}: {lo} … {hi} for {}", peg.area());
     }
@@ -110,7 +111,7 @@ fn the_play_is_that_of_the_walls() {
 fn on_the_rim_is_not_docked_and_seated_with_play_is() {
     let peg = Peg { deep: 0.4, ..Peg::new(32, 0.505 / 3.0, 0.005 / 3.0, 0.0) };
     let problem = peg.problem(&LATERAL, 0.1, |_| ()).unwrap();
-    // 0.3 mm off at D = 30 mm, on the rim 12 mm above the seat.
+    // 0.3 mm of error at D = 30 mm, on the rim 12 mm above the seat.
     assert_eq!(problem.follow(&at(0.01, 0.0)).outcome, Outcome::Jammed);
     assert_eq!(problem.follow(&at(0.0016, 0.0)).outcome, Outcome::Aligned);
     // Half a millimetre of play in a blind hole, at rest against its wall.
@@ -123,7 +124,7 @@ fn on_the_rim_is_not_docked_and_seated_with_play_is() {
 
 #[test]
 fn a_hole_beside_the_mated_one_is_not_the_seat() {
-    // Two equal slots beside each other: as deep, and not connected.
+    // Two equal slots beside each other: equally deep, and not connected.
     let block = |x: [f64; 2], z: [f64; 2]| -> Vec<DVec3> {
         (0..8).map(|k| DVec3::new(x[k & 1], [-0.5, 0.5][k >> 1 & 1], z[k >> 2])).collect()
     };
@@ -141,14 +142,14 @@ fn a_hole_beside_the_mated_one_is_not_the_seat() {
 fn limits_decide_where_the_seat_leaves_play() {
     let peg = Peg::new(4, 0.3, 0.04, 0.05);
     let limit = |x: f64| peg.problem(&[Dof::X], 0.2, |a| a.docked.limits[0] = Some(x)).unwrap();
-    // It rests where it comes down: 0.03 off.
+    // It rests where it comes down: at an error of 0.03.
     assert_eq!(limit(0.035).follow(&at(0.03, 0.0)).outcome, Outcome::Aligned);
     assert_eq!(limit(0.02).follow(&at(0.03, 0.0)).outcome, Outcome::Jammed);
     assert!(matches!(limit(0.02).mated_warnings(), [MatedProblem::LimitCutsPlay { dof: Dof::X, .. }]));
     assert_eq!(limit(0.05).mated_warnings(), []);
 }
 
-/// What keeps a problem from being built, as text.
+/// The error of a problem that does not build, as text.
 fn refused(problem: Result<Problem, ProblemError>) -> String {
     match problem {
         Err(ProblemError::Diagnostics(found)) => {
@@ -172,17 +173,17 @@ fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
     assert!(text.contains("leaves x free") && text.contains("[docked] x = "), "{text}");
     let text = refused(flat(&[Dof::Yaw]));
     assert!(text.contains("leaves yaw free") && text.contains("dont_care"), "{text}");
-    // Round, found: a polygon of 18 sides in its hole.
+    // The approximation of a round peg: a polygon of 18 sides in its hole.
     let text = refused(Peg::new(18, 0.3, 0.01, 0.05).problem(&[Dof::X, Dof::Y, Dof::Yaw], 0.2, |_| ()));
     assert!(
         text.contains("rotation about z changes nothing") && text.contains("dont_care = [\"yaw\"]"),
         "{text}"
     );
-    // A hexagon turns by 3.6° in this hole.
+    // A hexagon can turn by 3.6° in this hole.
     assert!(Peg::new(6, 0.3, 0.01, 0.05).problem(&[Dof::X, Dof::Y, Dof::Yaw], 0.2, |_| ()).is_ok());
 }
 
-/// A dimple on a ridge, 0.0015 D deep where seats reach 0.002 D above the mated pose: what is deep enough may lie beyond its rim, and slides off.
+/// A dimple on a ridge, 0.0015 D deep where seats reach 0.002 D above the mated pose: a pose deep enough may lie beyond its rim, and slides off.
 #[test]
 fn what_slides_over_a_low_rim_is_missed() {
     const RIM: f64 = 0.05;
@@ -236,7 +237,8 @@ fn drops_agree_with_motions() {
     assert!(same[0] * 100 >= same[1] * 97, "{same:?}");
 }
 
-/// Face slides on face down to the rim, where walls become flush: what happens there must not hang on the last digit of a drawing.
+/// Face slides on face down to the rim, where walls become flush: the outcome there must not depend on the last digit of a
+/// drawing.
 #[test]
 fn equal_chamfers_let_in_what_is_over_the_mouth() {
     let drawn = [(4, 1.0, 3), (4, 2f64.sqrt(), 9), (6, 1.0, 6), (7, 1.0, 6), (16, 1.0, 9), (32, 1.0, 6)];
@@ -258,7 +260,7 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
                     assert_eq!(*outcome, right, "{peg:?}: {error:?}, {inside} D inside");
                 }
             }
-            // What rests is 0.02 D off along the corners, less across the sides.
+            // The rest has an error of 0.02 D along the corners, less across the sides.
             let least = 0.02 * (0.5 * TAU / f64::from(sides)).cos();
             for off in play(problem.pair()) {
                 assert!((least - 1e-3..0.02 + 1e-3).contains(&off.most()), "{peg:?}: {off:?}");
@@ -267,7 +269,7 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
     }
 }
 
-/// Flush faces of a drawing that was rounded differ in their last digits: none of their contacts may be lost from the exact heights.
+/// Flush faces of a rounded drawing differ in their last digits: the exact heights must not lose any of their contacts.
 #[test]
 fn the_envelope_of_flush_faces_has_no_holes() {
     for (sides, slope, digits) in
@@ -305,7 +307,8 @@ fn the_envelope_of_flush_faces_has_no_holes() {
     }
 }
 
-/// The exact region of the same: an n-gon. Where rounding leads its flow astray whatever is made of it, it is refused: never wrong.
+/// The exact region of the same peg: an n-gon. If rounding leads its flow astray, the method refuses; it never returns a wrong
+/// region.
 #[test]
 fn equal_chamfers_have_an_n_gon_as_exact_region() {
     let drawn = [(4, 1.0, 3), (6, 1.0, 6), (7, 1.0, 6), (8, 2f64.sqrt() - 1.0, 9), (16, 1.0, 9)];
@@ -317,7 +320,8 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
             match zraa::run(problem.pair(), &zraa::ZraaSettings::default(), &Exec::new()) {
                 Ok(ref region @ Zraa::Region { area, .. }) => {
                     assert!((area - right).abs() < 1e-4 * right, "{peg:?}: {area} for {right}");
-                    // No gap between tiles counts as border: a square fits into the circle inside of the n-gon.
+                    // Gaps between tiles do not count as border: a square fits into the circle inside the
+                    // n-gon.
                     let square = zraa::AcceptedSquare::of(region, &Exec::new()).unwrap();
                     let inner = peg.inside(&at(0.0, 0.0)) * 2f64.sqrt();
                     assert!(
@@ -334,8 +338,8 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
     assert!(refused <= 3, "{refused} of {}", 2 * drawn.len());
 }
 
-/// A bar with two corners over a truncated V: the middle of the bar stays as far from the apex, so its height falls either way.
-/// At rest one corner has come to the end of the floor: cos(45° + p) = 0.4 / (0.42 √2).
+/// A bar with two corners over a truncated V: the middle of the bar keeps its distance from the apex, so its height falls
+/// either way. At rest one corner is at the end of the floor: cos(45° + p) = 0.4 / (0.42 √2).
 #[test]
 fn a_mated_pose_that_runs_off_is_said_to() {
     let block = |corners: &[(f64, f64)]| -> Vec<DVec3> {
@@ -344,7 +348,7 @@ fn a_mated_pose_that_runs_off_is_said_to() {
     let side = |s: f64| block(&[(s * 0.4, 0.0), (s * 0.8, 0.4), (s * 0.4, -0.2), (s * 0.8, -0.2)]);
     let floor = block(&[(-0.4, 0.0), (0.4, 0.0), (-0.4, -0.2), (0.4, -0.2)]);
     let bar = block(&[(-0.42, 0.0), (0.42, 0.0), (-0.3, -0.1), (0.3, -0.1)]);
-    // Where the corners touch the walls is the face centre.
+    // The corners touch the walls at the face centre.
     let lifted =
         |piece: Vec<DVec3>, by: f64| piece.into_iter().map(|p| p + DVec3::Z * by).collect::<Vec<_>>();
     let fixed = [floor, side(1.0), side(-1.0)].map(|piece| lifted(piece, -0.01)).into();
@@ -366,7 +370,7 @@ fn a_mated_pose_that_runs_off_is_said_to() {
     );
 }
 
-/// A plate around a hole is level: flooding drains it, and says over how many cells.
+/// A plate around a hole is level: flooding drains it, and reports over how many cells.
 #[test]
 fn flooding_says_that_level_ground_drains() {
     let peg = Peg::new(8, 0.3, 0.02, 0.05);
@@ -379,7 +383,7 @@ fn flooding_says_that_level_ground_drains() {
             Some(Warning::LevelGround { cells, of }) => Some((*cells, *of)),
             _ => None,
         });
-        // Without the level ground, and half a cell all around, it is the mouth.
+        // Without the level ground, and half a cell all around, it equals the mouth.
         let (cells, of) = level.unwrap_or_else(|| panic!("{method}: {:?}", answer.warnings()));
         let cell = 0.6 / 60.0;
         let (rest, ring) = ((of - cells) as f64 * cell * cell, 8.0 * cell * 0.1);

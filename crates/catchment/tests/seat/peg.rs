@@ -44,7 +44,7 @@ impl Peg {
         Self { sides, hole, body: hole - play, chamfer, deep: 0.3, blind: true }
     }
 
-    /// Area of the offsets from which the peg slides into its hole: its tip lies over the mouth.
+    /// Area of the offsets from which the peg slides into its hole: those with its tip over the mouth.
     pub(crate) fn area(&self) -> f64 {
         let reach = self.hole + self.chamfer - self.body;
         let n = f64::from(self.sides);

@@ -1,4 +1,4 @@
-//! `catchment export`: what other programs read.
+//! `catchment export`: files for other programs.
 //!
 //! ```text
 //!   a design  ──▶ a drop test as world files: MJCF for MuJoCo, SDF for Gazebo
@@ -84,7 +84,7 @@ pub(crate) struct ExportArgs {
 const MJCF: &str = "trial.xml";
 const SDF: &str = "trial.sdf";
 
-/// The kind of such a folder.
+/// Report kind that marks such a folder.
 const KIND: &str = "export";
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {

@@ -1,4 +1,4 @@
-//! A stored result for other programs.
+//! Export of a stored result.
 
 use super::ExportArgs;
 use crate::exit::ExitStatus;
@@ -15,7 +15,7 @@ use catchment::report::zarr;
 use catchment::terminal::shown;
 
 pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure> {
-    // A table is the only text among them.
+    // Only the table is a text format.
     let is_printed = is_stream(&args.output);
     let Some(kind) = SetFileKind::of(&args.output).or(is_printed.then_some(SetFileKind::Table)) else {
         let message = format!("cannot tell what to write into {}", shown(&args.output));
@@ -59,7 +59,7 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     tell(&words, &[format!("wrote {}", shown(&args.output))])
 }
 
-/// The first option that only a drop test has.
+/// The first option given that applies only to a drop test.
 fn of_a_design(args: &ExportArgs) -> Option<&'static str> {
     let own = [("--pose", args.pose.is_some()), ("--json", args.print.json)];
     own.into_iter()

@@ -1,4 +1,4 @@
-//! `catchment run --method all`: every method that applies, on one grid, and how they agree.
+//! `catchment run --method all`: every applicable method on one grid, and their agreement.
 
 use super::RunArgs;
 use super::study::study;
@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use catchment::report::figure;
 use catchment::study::agreement::{AgreementError, AgreementSettings, run as decide_by_all};
 
-/// Decides the design by every method that applies to it.
+/// Runs every method that applies to the design.
 pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     refuse_options(args)?;
     let default = AgreementSettings::default();
@@ -26,7 +26,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     })
 }
 
-/// Options that are about one result.
+/// Rejects options that apply to a single result.
 fn refuse_options(args: &RunArgs) -> Result<(), Failure> {
     let wrong = [
         ("--depth-tolerance", args.how.settings.depth_tolerance.is_some()),

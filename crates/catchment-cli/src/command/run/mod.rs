@@ -83,7 +83,7 @@ pub(crate) struct RunArgs {
     exec: ExecArgs,
 }
 
-/// Reads a resolution.
+/// Parses a resolution.
 pub(super) fn resolution(text: &str) -> Result<Resolution, String> {
     text.parse::<Resolution>().map_err(|error| escaped(&error.to_string()))
 }
@@ -131,7 +131,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
                 .to_owned();
         return Err(Failure::with_help(message, Some(help)).ends(ExitStatus::NotComputed));
     }
-    // Whoever chooses a resolution knows what it takes.
+    // An explicit resolution needs no notes about run time.
     let stated = match args.resolution {
         None => notes_before(&run, &plan, &problem, running.exec.threads()),
         Some(_) => Vec::new(),
@@ -155,10 +155,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     status
 }
 
-/// What takes longer than this is said before it begins, in seconds.
+/// Runs with a longer estimate print notes beforehand, in seconds.
 pub(super) const LONG: f64 = 20.0;
 
-/// How long it will take, and what would be faster.
+/// The estimated run time, and faster alternatives.
 fn notes_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) -> Vec<String> {
     let wall = |plan: &RunPlan, problem: &Problem| plan.seconds(problem) / threads as f64;
     let seconds = wall(plan, problem);
@@ -187,16 +187,16 @@ fn notes_before(run: &Run, plan: &RunPlan, problem: &Problem, threads: usize) ->
         stated = format!("{stated}; {named} alone: about {fewer} (--free {})", names.join(","));
     }
     let fewer = "--budget 30s takes fewer poses, --samples N that many".to_owned();
-    // Whoever gave one of them knows them.
+    // Omit the alternatives for options that the user has set.
     std::iter::once(stated).chain((run.sample == Sample::ByMethod).then_some(fewer)).collect()
 }
 
-/// Seconds as one says them.
+/// A readable duration.
 pub(super) fn time(seconds: f64) -> String {
     if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
 }
 
-/// Why there is no answer, at the key of the design or the option that it is about.
+/// The error of a run, at the responsible design key or option.
 pub(super) fn refused(problem: &Problem, error: RunError) -> Failure {
     match error {
         RunError::NotHeld(diagnostics) => diagnostics.into(),

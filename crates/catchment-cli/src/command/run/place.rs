@@ -1,4 +1,4 @@
-//! Where the files of a run go.
+//! Destinations of the files of a run.
 
 use crate::advice;
 use crate::failure::Failure;
@@ -36,7 +36,7 @@ pub(crate) struct PlaceArgs {
     pub(super) force: bool,
 }
 
-/// Where a path leads, however it is written; its end need not exist.
+/// The real path, with links resolved; its last component need not exist.
 fn real(path: &Path) -> Result<PathBuf, Failure> {
     let place = std::path::absolute(write::place(path)?)?;
     let known = place.ancestors().find_map(|folder| Some((folder, folder.canonicalize().ok()?)));
@@ -46,12 +46,12 @@ fn real(path: &Path) -> Result<PathBuf, Failure> {
     })
 }
 
-/// Places that can be written, as far as can be known beforehand.
+/// Destinations checked for writing, as far as this is possible beforehand.
 pub(super) struct Targets<'a> {
     all: Vec<Target<'a>>,
     /// A file for the report alone.
     report: Option<(&'a Path, result_args::Kind)>,
-    /// Whether files may be replaced.
+    /// Whether existing files may be replaced.
     force: bool,
 }
 
@@ -61,7 +61,7 @@ impl PlaceArgs {
         file(self.output.as_deref())
     }
 
-    /// Refuses places that cannot be written, before anything is computed.
+    /// Rejects unwritable destinations before the computation.
     pub(super) fn targets(&self) -> Result<Targets<'_>, Failure> {
         let is_group = |path: &Path| path.extension().is_some_and(|ending| ending == "zarr");
         let (output, figures) = (self.output(), self.figures.as_deref());
@@ -92,13 +92,13 @@ impl PlaceArgs {
         Ok(Targets { all: targets, report, force: self.force })
     }
 
-    /// Whether pictures alone are wanted.
+    /// Whether only pictures are requested.
     pub(super) const fn wants_figures_alone(&self) -> bool {
         self.figures.is_some()
     }
 }
 
-/// The set alone, as a file for another program.
+/// The accepted set as a file for another program.
 fn set(answer: &Answer, kind: SetFileKind, exec: &Exec) -> Result<Vec<u8>, Failure> {
     let heights = answer.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]);
     if answer.grid().is_none() && kind == SetFileKind::Table {
@@ -114,7 +114,7 @@ impl Targets<'_> {
         self.all.iter().any(|target| !matches!(target, Target::Group(_) | Target::Set(..)))
     }
 
-    /// Whether something is written that only a grid has.
+    /// Whether an output requires a grid.
     pub(super) fn need_grid(&self) -> bool {
         let needs = |target: &Target<'_>| match target {
             Target::Group(_) | Target::Set(_, SetFileKind::Image | SetFileKind::Border) => true,
@@ -128,7 +128,7 @@ impl Targets<'_> {
         self.all.iter().any(|target| !matches!(target, Target::Pictures(_)))
     }
 
-    /// Writes everything and says what was written.
+    /// Writes all files and returns notes on them.
     pub(super) fn write(
         &self,
         answer: &Answer,

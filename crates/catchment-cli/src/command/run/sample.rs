@@ -1,4 +1,4 @@
-//! How many random poses correct the Sum, as a person writes it.
+//! Parsing of the number of sampled poses that correct the Sum.
 
 use catchment::method::correction::Stop;
 use catchment::run::Sample;
@@ -30,7 +30,7 @@ pub(crate) struct SampleArgs {
 const SUM: &str = "Sampling";
 
 impl SampleArgs {
-    /// What was asked for.
+    /// The requested sample.
     pub(crate) fn sample(&self) -> Sample {
         match (self.samples, self.budget, self.tolerance) {
             (_, Some(budget), _) => Sample::Until(Stop::Budget(budget)),
@@ -42,7 +42,7 @@ impl SampleArgs {
     }
 }
 
-/// A time such as `20s`, `2 min`, `0.5 h`.
+/// Parses a time such as `20s`, `2 min`, `0.5 h`.
 pub(super) fn duration(text: &str) -> Result<Duration, String> {
     const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("min", 60.0), ("h", 3600.0)];
     const LONGEST_S: f64 = 1e7;
@@ -56,7 +56,7 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A share such as `1%`, `0.5 %`, `0.01`.
+/// Parses a share such as `1%`, `0.5 %`, `0.01`.
 fn share(text: &str) -> Result<f64, String> {
     let (number, unit) = match text.trim().strip_suffix('%') {
         Some(number) => (number, 0.01),

@@ -1,4 +1,4 @@
-//! `catchment run --converge` and `--sensitivity`: what one run alone cannot show.
+//! `catchment run --converge` and `--sensitivity`: studies over several runs.
 
 use super::RunArgs;
 use super::sample::duration;
@@ -34,7 +34,7 @@ pub(super) struct StudyArgs {
 
 const STUDIES: &str = "Studies of several runs";
 
-/// Does the study that was asked for, if one was.
+/// Runs the requested study, if any.
 pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
     let study = &args.study;
     if study.converge { Some(converge(args)) } else { study.sensitivity.then(|| sensitivity(args)) }
@@ -61,7 +61,7 @@ fn sensitivity(args: &RunArgs) -> Result<ExitStatus, Failure> {
     study(args, figure::sensitivity, |problem, exec| Ok(sensitivity::run(problem, &settings, exec)?))
 }
 
-/// Computes a study of the design, writes it where `-o` says, and prints it.
+/// Computes a study of the design, writes it to the `-o` path, and prints it.
 pub(super) fn study<T: Subject>(
     args: &RunArgs,
     draw: fn(&ReportOf<T>) -> Picture,

@@ -1,33 +1,35 @@
-//! As much of HTTP/1.1 as a page on this machine needs: one request per connection, everything bounded. Bytes alone: it reads and writes no socket.
+//! The subset of HTTP/1.1 that a local page needs: one request per connection, every size bounded. It works
+//! on bytes alone and reads and writes no socket.
 //!
 //! ```text
-//!   bytes ──parse──▶ Request ──admit──▶ path below the token     or a refusal:
-//!                                                                400 no request · 403 by another name, from another page · 404 no token
-//!                                                                408 too slow · 413 too much
+//!   bytes ──parse──▶ Request ──admit──▶ path below the token     or an error response:
+//!                                                                400 malformed · 403 foreign Host or Origin · 404 no token
+//!                                                                408 too slow · 413 too large
 //! ```
 //!
-//! A page elsewhere cannot ask: its requests come with its own Origin, and a name that leads here (DNS rebinding) with its own Host.
+//! A foreign page cannot send requests: they carry its own Origin, and a host name redirected here (DNS
+//! rebinding) carries its own Host.
 
 use super::live_page::ServedPage;
 use std::sync::Arc;
 
-/// Most bytes of the head of a request.
+/// Largest head of a request, in bytes.
 const HEAD_BYTES: usize = 16 << 10;
-/// Most bytes of its body: a resolution.
+/// Largest body of a request, in bytes: it holds a resolution.
 const BODY_BYTES: usize = 256;
 
-/// What is asked.
+/// A parsed request.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) method: String,
-    /// Below the token, once it is admitted.
+    /// The path below the token, after admission.
     pub(super) path: String,
     host: Vec<String>,
     origin: Vec<String>,
     pub(super) body: String,
 }
 
-/// An answer.
+/// A response.
 #[derive(Debug)]
 pub(super) struct Response {
     status: u16,
@@ -36,14 +38,14 @@ pub(super) struct Response {
     body: Arc<str>,
 }
 
-/// Who may ask.
+/// The admission rules: Host, Origin and token.
 pub(super) struct Gate {
     pub(super) port: u16,
     pub(super) token: String,
 }
 
 impl Gate {
-    /// Lets a request in, its path below the token.
+    /// Admits a request and reduces its path to the part below the token.
     pub(super) fn admit(&self, request: Request) -> Result<Request, Response> {
         let own =
             |name: &str| ["127.0.0.1", "localhost"].iter().any(|own| name == format!("{own}:{}", self.port));
@@ -66,15 +68,15 @@ impl Gate {
     }
 }
 
-/// Whether two texts are alike, in a time that does not tell how far.
+/// Compares two texts in a time that does not reveal the length of their common prefix.
 fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
-/// The request that the bytes hold; `None` while more of it has to come.
+/// Parses a request; `None` while it is incomplete.
 ///
 /// # Errors
-/// What is wrong with it, as the answer to it.
+/// The error response to a malformed or oversized request.
 pub(super) fn parse(bytes: &[u8]) -> Result<Option<Request>, Response> {
     let too_long = || Response::text(413, "the head of the request is too long");
     let searched = &bytes[..bytes.len().min(HEAD_BYTES)];
@@ -95,14 +97,14 @@ fn bad() -> Response {
     Response::text(400, "that is no request")
 }
 
-/// What the head of a request asks for below this token, if it is let in: for the fuzzer.
+/// The path below this token in the head of a request, if the request is admitted: for the fuzzer.
 pub(super) fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
     let (request, _) = parsed(head).ok()?;
     let gate = Gate { port, token: token.to_owned() };
     gate.admit(request).ok().map(|request| request.path)
 }
 
-/// The head of a request, and the length of its body.
+/// Parses the head of a request and the length of its body.
 fn parsed(head: &[u8]) -> Result<(Request, usize), Response> {
     let head = std::str::from_utf8(head).map_err(|_| bad())?;
     let mut lines = head.split("\r\n");
@@ -124,7 +126,7 @@ fn parsed(head: &[u8]) -> Result<(Request, usize), Response> {
             "content-length" if length.is_none() && value.bytes().all(|byte| byte.is_ascii_digit()) => {
                 length = Some(value.parse().map_err(|_| Response::text(413, "the request is too long"))?);
             }
-            // Two lengths, or a body in pieces: what would end where is not clear.
+            // Two lengths or a chunked body make the end of the request ambiguous.
             "content-length" | "transfer-encoding" => return Err(bad()),
             _ => {}
         }
@@ -149,7 +151,7 @@ impl Response {
         Self { status: 200, kind: "text/html; charset=utf-8", policy, body: html }
     }
 
-    /// The head and the body; the connection ends with them.
+    /// The head and the body; the connection closes after them.
     pub(super) fn into_parts(self) -> (String, Arc<str>) {
         let Self { status, kind, policy, body } = self;
         let reason = match status {
@@ -200,7 +202,7 @@ mod tests {
         assert_eq!(head("POST / HTTP/1.1\nContent-Length: 99999999999999999999999\n\n"), Err(413));
     }
 
-    /// However a request is cut, it is the same request; what is bounded is refused as soon as it is too much.
+    /// A request parses the same however it is split, and bounds apply as soon as they are exceeded.
     #[test]
     fn requests_arrive_in_pieces() {
         let whole = b"POST /t/run HTTP/1.1\r\nHost: 127.0.0.1:9\r\nContent-Length: 3\r\n\r\n7,8 and more";
@@ -232,7 +234,7 @@ mod tests {
         let here = &["127.0.0.1:9"][..];
         assert_eq!(ask("/abc/", here, &[]), Ok(String::new()));
         assert_eq!(ask("/abc/run", &["localhost:9"], &["http://localhost:9"]), Ok("run".to_owned()));
-        // Below the token names are compared, never opened.
+        // Below the token, paths are compared and never opened.
         assert_eq!(ask("/abc/../../etc/passwd", here, &[]), Ok("../../etc/passwd".to_owned()));
         let head = |path: &str| format!("GET {path} HTTP/1.1\r\nHost: localhost:9\r\n\r\n");
         assert_eq!(admitted(head("/abc/run").as_bytes(), 9, "abc"), Some("run".to_owned()));

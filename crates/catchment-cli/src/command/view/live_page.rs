@@ -1,12 +1,13 @@
-//! The newest page, and the computation of the next one.
+//! The newest page, and the computation of the next page.
 //!
 //! ```text
-//!   ask ──▶ next: the newest request alone ──▶ one thread: compute ──▶ page
+//!   ask ──▶ next: only the newest request ───▶ one thread: compute ──▶ page
 //!            │                                     ▲
-//!            └── cancels what is being computed ───┘
+//!            └── cancels the running computation ──┘
 //! ```
 //!
-//! At most one computation runs. A newer request cancels the one before and takes its place; requests between the two are dropped.
+//! At most one computation runs. A newer request cancels the previous one and replaces it; requests between
+//! the two are dropped.
 
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
@@ -16,35 +17,36 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
-/// HTML with the policy that it is served under.
+/// HTML with its content security policy.
 #[derive(Debug, Clone)]
 pub(super) struct ServedPage {
     pub(super) html: Arc<str>,
     pub(super) policy: Arc<str>,
 }
 
-/// Computes a page over so many cells, or the design's own; what is wrong, in words.
+/// Computes a page at a given resolution, or at the default resolution of the design; the error is its
+/// message.
 type Compute = Box<dyn Fn(Option<Resolution>, &Exec) -> Result<ServedPage, String> + Send + Sync>;
 
-/// What is served, and what is computed.
+/// The current page and the running computation.
 pub(super) struct LivePage {
     compute: Compute,
     threads: usize,
     state: Mutex<State>,
 }
 
-/// What is computed next.
+/// A requested computation.
 struct Request {
-    /// Cells per error; the design's own where none are given.
+    /// Cells per error; `None` for the default of the design.
     resolution: Option<Resolution>,
 }
 
 #[derive(Default)]
 struct State {
     page: Option<ServedPage>,
-    /// Asked for and not begun.
+    /// The request that has not begun.
     next: Option<Request>,
-    /// Cancels the computation that runs.
+    /// Cancels the running computation.
     running: Option<Arc<AtomicBool>>,
     is_closed: bool,
     share: f64,
@@ -61,7 +63,7 @@ const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
     `computing … ${p.stage} ${Math.round(100*p.share)} %`;\
     setTimeout(ask,300)}};ask();";
 
-/// What a browser shows until there is a page: it asks for the progress, and loads the page when it is there.
+/// Placeholder page before the first result: it polls the progress and loads the page once it is ready.
 static WAITING: LazyLock<ServedPage> = LazyLock::new(|| {
     let html = format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>catchment</title><style>{WAITING_STYLE}</style>\
@@ -71,7 +73,8 @@ static WAITING: LazyLock<ServedPage> = LazyLock::new(|| {
 });
 
 impl LivePage {
-    /// Nothing is computed before it is asked for; each computation gets so many threads, 0 meaning one per core.
+    /// Computes nothing before the first request; each computation uses `threads` threads, 0 meaning one per
+    /// core.
     pub(super) fn new(
         threads: usize,
         compute: impl Fn(Option<Resolution>, &Exec) -> Result<ServedPage, String> + Send + Sync + 'static,
@@ -83,7 +86,7 @@ impl LivePage {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The newest page. Where there is none because the last computation failed, loading it computes again.
+    /// The newest page. If no page exists because the last computation failed, this call computes again.
     pub(super) fn page(self: &Arc<Self>) -> ServedPage {
         let state = self.locked();
         if let Some(page) = &state.page {
@@ -97,7 +100,7 @@ impl LivePage {
         WAITING.clone()
     }
 
-    /// State (`running`, `ready`, `failed`), share done, stage, and what failed, as JSON.
+    /// State (`running`, `ready`, `failed`), completed share, stage and error message, as JSON.
     pub(super) fn progress(&self) -> String {
         let State { running, share, stage, failed, .. } = &*self.locked();
         let state = match (running, failed) {
@@ -108,10 +111,11 @@ impl LivePage {
         json!({ "state": state, "share": share, "stage": stage, "message": failed }).to_string()
     }
 
-    /// A page asks for another one: over so many cells, or as before. Whether it replaces a computation that was running.
+    /// Requests another page: at the given resolution, or at the previous one. Returns whether it replaces a
+    /// running computation.
     ///
     /// # Errors
-    /// The text is no number of cells.
+    /// The text is not a number of cells.
     pub(super) fn ask(self: &Arc<Self>, cells: &str) -> Result<bool, String> {
         let resolution = match cells.trim() {
             "" => None,
@@ -120,7 +124,7 @@ impl LivePage {
         Ok(self.start(resolution))
     }
 
-    /// Computes another page; one that is being computed is given up. Whether there was one.
+    /// Starts a computation and cancels the running one. Returns whether one was running.
     pub(super) fn start(self: &Arc<Self>, resolution: Option<Resolution>) -> bool {
         let mut state = self.locked();
         if state.is_closed {
@@ -143,7 +147,7 @@ impl LivePage {
         false
     }
 
-    /// Takes the newest request, and the one after it, until there is none.
+    /// Processes the newest request until no request remains.
     fn work(self: &Arc<Self>) {
         loop {
             let mut state = self.locked();
@@ -156,7 +160,7 @@ impl LivePage {
             drop(state);
             let result = self.compute(resolution, exec);
             let mut state = self.locked();
-            // What was replaced meanwhile is no page, however it ended.
+            // Discard the result of a replaced computation, whatever its outcome.
             if state.next.is_some() {
                 continue;
             }
@@ -179,13 +183,13 @@ impl LivePage {
         };
         let exec = exec.with_threads(self.threads).map_err(|error| error.to_string())?;
         let exec = exec.with_progress(Arc::new(progress));
-        // The hook of the program has printed where; the server goes on.
+        // The panic hook has printed the location; the server continues.
         catch_unwind(AssertUnwindSafe(|| (self.compute)(resolution, &exec))).unwrap_or_else(|_| {
             Err("a bug of the program ended the computation; the terminal shows where".to_owned())
         })
     }
 
-    /// Cancels what is computed; nothing is computed from now on.
+    /// Cancels the running computation and accepts no further requests.
     pub(super) fn close(&self) {
         let mut state = self.locked();
         (state.is_closed, state.next) = (true, None);
@@ -208,14 +212,14 @@ mod tests {
         resolution.map_or_else(|| "own".to_owned(), |resolution| resolution.to_string())
     }
 
-    /// Waits for a state; how long it takes decides nothing.
+    /// Waits for a state; the waiting time does not affect the result.
     fn until(desk: &LivePage, state: &str) {
         while !desk.progress().contains(&format!("\"state\":\"{state}\"")) {
             std::thread::yield_now();
         }
     }
 
-    /// The first computation ends by nothing but being cancelled, the ones between never begin.
+    /// The first computation ends only by cancellation, and the intermediate requests never begin.
     #[test]
     fn a_newer_request_cancels_the_older_one_and_takes_its_place() {
         let (begun, begins) = mpsc::channel();
@@ -225,7 +229,7 @@ mod tests {
             while name == "own" && !exec.is_cancelled() {
                 std::thread::yield_now();
             }
-            // What a cancelled computation gives is not shown.
+            // The result of a cancelled computation is discarded.
             Ok(served(&name))
         }));
         assert!(!desk.start(None));
@@ -237,7 +241,7 @@ mod tests {
         until(&desk, "ready");
         assert_eq!(&*desk.page().html, "9");
         let rest: Vec<String> = begins.try_iter().collect();
-        // 7 may have begun before 9 was asked for.
+        // 7 may have begun before the request for 9.
         assert!(rest == ["9"] || rest == ["7", "9"], "{rest:?}");
         assert!(!desk.ask("").unwrap(), "nothing ran");
         desk.close();

@@ -1,4 +1,4 @@
-//! `catchment view`: the page of a design, served to this machine, computed again on demand.
+//! `catchment view`: serves the page of a design on this machine and recomputes it on demand.
 
 mod http;
 mod live_page;
@@ -47,13 +47,13 @@ pub(crate) struct ViewArgs {
     exec: ExecArgs,
 }
 
-/// What the head of a request asks for below this token, if it is let in.
+/// The path below this token in the head of a request, if the request is admitted.
 pub(crate) fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
     http::admitted(head, port, token)
 }
 
 pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
-    // What is wrong with the design is told here, where it has its place in the file.
+    // Report the defects of the design here, with their place in the file.
     args.design.problem()?;
     let running = args.exec.start()?;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
@@ -82,7 +82,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     Ok(signals::received().unwrap_or(ExitStatus::Done))
 }
 
-/// The page of the design as the file has it now.
+/// The page of the design in its current file.
 fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<ServedPage, Failure> {
     let parts = made.parts(&design.problem()?, exec)?;
     let mut page = parts.page();
@@ -90,12 +90,12 @@ fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<ServedPage,
     Ok(ServedPage { policy: page.policy().into(), html: page.html(exec)?.into() })
 }
 
-/// What a page shows of a failure.
+/// The text of a failure on a page.
 fn message(failure: &Failure) -> String {
     failure.text().lines().map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// 128 random bits, as the system gives them to every process for its hash tables.
+/// 128 random bits, from the system's seed for hash tables.
 fn token() -> String {
     let bits = || RandomState::new().hash_one(std::process::id());
     format!("{:016x}{:016x}", bits(), bits())

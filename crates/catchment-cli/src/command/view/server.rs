@@ -1,12 +1,13 @@
-//! All connections on one thread: none waits for another.
+//! Serves all connections on one thread; no connection blocks another.
 //!
 //! ```text
 //!   accept ──▶ Reading ──parse, admit, respond──▶ Writing ──▶ Draining ──▶ closed
-//!                 5 s                              60 s        2 s, what the client still sends
+//!                 5 s                              60 s        2 s, discards further input
 //! ```
 //!
-//! Sockets do not block. At most [`MOST_CONNECTIONS`] are open; a newcomer takes the place of the one that has been open longest without a complete
-//! request, so that clients which send nothing, or slowly, hold up nobody. A response is computed at once: the page is there already.
+//! Sockets do not block. At most [`MOST_CONNECTIONS`] are open. A new connection replaces the oldest one
+//! without a complete request, so that idle or slow clients do not delay other clients. Responses need no
+//! computation: the page already exists.
 
 use super::http::{Request, Response, parse};
 use std::io::{self, Read, Write};
@@ -15,36 +16,37 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Connections that are open at a time; a browser opens six.
+/// Largest number of open connections; a browser opens six.
 const MOST_CONNECTIONS: usize = 128;
-/// How long a request may take to arrive, a response to leave, and a client to close.
+/// Time limits for receiving a request, sending a response, and the client's close.
 const READING: Duration = Duration::from_secs(5);
 const WRITING: Duration = Duration::from_mins(1);
 const DRAINING: Duration = Duration::from_secs(2);
-/// Between two looks at sockets of which none was ready.
+/// Pause between two polls if no socket was ready.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Bytes that are read at a time.
+/// Bytes per read.
 const PIECE: usize = 4096;
 
-/// A socket, as far as a connection needs it.
+/// The socket operations that a connection needs.
 trait Stream: Read + Write {
-    /// Nothing more will be written.
+    /// Closes the sending direction.
     fn finish(&self);
 }
 
 impl Stream for TcpStream {
     fn finish(&self) {
-        // The client may have gone.
+        // The client may already be gone.
         let _ = self.shutdown(Shutdown::Write);
     }
 }
 
 enum Phase {
-    /// What has arrived of a request.
+    /// The received part of a request.
     Reading(Vec<u8>),
-    /// A response, and how many of its bytes have left.
+    /// A response, and the number of its bytes sent.
     Writing { head: String, body: Arc<str>, sent: usize },
-    /// The response has left. Closing at once would reset a client that is still sending, before it has read.
+    /// The response is sent. An immediate close would reset a client that still sends, before it has read the
+    /// response.
     Draining,
 }
 
@@ -54,7 +56,7 @@ struct Connection<S> {
     until: Instant,
 }
 
-/// Whether a step did something, or waits for the client.
+/// Whether a step made progress or waits for the client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
     Advanced,
@@ -84,7 +86,7 @@ impl<S: Stream> Connection<S> {
             Phase::Reading(bytes) => {
                 let mut piece = [0; PIECE];
                 match self.stream.read(&mut piece) {
-                    // Whatever has arrived is all of it.
+                    // End of input: the request stays incomplete.
                     Ok(0) => return Step::Closed,
                     Ok(count) => {
                         bytes.extend_from_slice(&piece[..count]);
@@ -130,11 +132,11 @@ impl<S: Stream> Connection<S> {
     }
 }
 
-/// Those that are open, the oldest first.
+/// The open connections, the oldest first.
 struct Connections<S>(Vec<Connection<S>>);
 
 impl<S: Stream> Connections<S> {
-    /// Takes one more, and reads what it has sent already.
+    /// Adds a connection and reads its first bytes.
     fn take(&mut self, stream: S, now: Instant, respond: &dyn Fn(Request) -> Response) {
         if self.0.len() >= MOST_CONNECTIONS {
             self.give_up_one();
@@ -145,7 +147,7 @@ impl<S: Stream> Connections<S> {
         }
     }
 
-    /// Closes the one that has been open longest of those without a complete request; where all have one, the oldest of all.
+    /// Closes the oldest connection without a complete request; if all are complete, the oldest of all.
     fn give_up_one(&mut self) {
         let reads = |connection: &Connection<S>| matches!(connection.phase, Phase::Reading(_));
         let oldest = self.0.iter().position(reads).unwrap_or(0);
@@ -154,7 +156,7 @@ impl<S: Stream> Connections<S> {
         }
     }
 
-    /// A step of each; whether any advanced.
+    /// Advances every connection one step; returns whether any made progress.
     fn step(&mut self, now: Instant, respond: &dyn Fn(Request) -> Response) -> bool {
         let mut advanced = false;
         self.0.retain_mut(|connection| {
@@ -166,10 +168,10 @@ impl<S: Stream> Connections<S> {
     }
 }
 
-/// Answers until `stop` is set.
+/// Serves until `stop` is set.
 ///
 /// # Errors
-/// The listener cannot be made to return at once.
+/// The listener cannot be made non-blocking.
 pub(super) fn serve(
     listener: &TcpListener,
     stop: &AtomicBool,
@@ -179,7 +181,7 @@ pub(super) fn serve(
     let mut open = Connections(Vec::new());
     while !stop.load(Ordering::Relaxed) {
         let mut advanced = false;
-        // As many as may be open, then those that are have their turn.
+        // Accept at most this many, then advance the open connections.
         for _ in 0..MOST_CONNECTIONS {
             match listener.accept() {
                 Ok((stream, _)) => {
@@ -189,7 +191,7 @@ pub(super) fn serve(
                     }
                 }
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
-                // A client that went away before it was taken, or no descriptor left for the next one.
+                // A client that left before it was accepted, or no free file descriptor.
                 Err(_) => {
                     open.give_up_one();
                     break;
@@ -210,7 +212,7 @@ mod tests {
     use std::cell::{Cell, RefCell};
     use std::rc::Rc;
 
-    /// A client: what it has sent and not been read, what it has read, how many bytes it reads at most.
+    /// A test client: its unread output, its input, and the largest number of bytes that it reads.
     #[derive(Clone, Default)]
     struct Client(Rc<Pipe>);
 
@@ -287,7 +289,8 @@ mod tests {
         while open.step(now, &respond) {}
     }
 
-    /// More slow clients than may be open: they are given up, oldest first, and every complete request is answered. No time passes.
+    /// With more slow clients than the limit, the oldest are closed first and every complete request gets a
+    /// response. No time passes.
     #[test]
     fn slow_clients_hold_up_no_request() {
         let (mut open, now) = (Connections(Vec::new()), Instant::now());
@@ -303,13 +306,13 @@ mod tests {
         settle(&mut open, now);
         assert!(good.iter().all(|client| client.status() == "200" && client.0.is_finished.get()));
         assert_eq!(open.0.len(), MOST_CONNECTIONS);
-        // One of the slow ones that are left goes on, and is answered.
+        // One of the remaining slow clients completes its request and gets a response.
         slow[199].send("TP/1.1\r\n\r\n");
         settle(&mut open, now);
         assert_eq!(slow[199].status(), "200");
     }
 
-    /// Clients that read nothing wait for themselves alone.
+    /// Clients that do not read delay only themselves.
     #[test]
     fn many_are_answered_at_once() {
         let (mut open, now) = (Connections(Vec::new()), Instant::now());
@@ -326,7 +329,7 @@ mod tests {
         assert!(stuck[0].0.is_finished.get());
     }
 
-    /// Time is an argument: nothing here waits.
+    /// Time is an argument: the test does not wait.
     #[test]
     fn every_phase_ends() {
         let (mut open, now) = (Connections(Vec::new()), Instant::now());

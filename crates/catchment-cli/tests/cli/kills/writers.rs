@@ -1,4 +1,4 @@
-//! Every command that writes, in two versions.
+//! Every command that writes files, in two versions.
 
 use crate::{catchment, designs, home};
 use std::fs;
@@ -6,7 +6,8 @@ use std::fs;
 const POSES: &str = "poses.csv";
 pub(super) const TARGET: &str = "target";
 
-/// A command that writes to [`TARGET`], with a place for what differs between two versions.
+/// A command that writes to [`TARGET`], with a placeholder for the argument that differs between the two
+/// versions.
 pub(super) struct Writer(pub(super) &'static str, [&'static str; 2]);
 
 pub(super) const WRITERS: [Writer; 35] = [
@@ -60,14 +61,14 @@ pub(super) const WRITERS: [Writer; 35] = [
 ];
 
 impl Writer {
-    /// The words of a version.
+    /// The arguments of a version.
     pub(super) fn words(&self, version: usize) -> Vec<String> {
         let line = self.0.replace("{}", self.1[version]);
         line.split_whitespace().map(ToOwned::to_owned).collect()
     }
 }
 
-/// A folder with what the writers read.
+/// A folder with the inputs of the writers.
 pub(super) fn furnished(writer: &Writer) -> tempfile::TempDir {
     let home = home();
     for (from, to) in [

@@ -1,12 +1,12 @@
-//! The designs that methods are compared on.
+//! The designs for the comparison of methods.
 
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::pose::Dof;
 
-/// One design, and how finely it is decided.
+/// One design and its resolutions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
-    /// Which family.
+    /// The connector family.
     pub family: Family,
     /// H/D.
     pub aspect_ratio: f64,
@@ -30,11 +30,11 @@ const fn case(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: &'sta
 /// tan 30°, the dissertation's choice for the 3-D X-Face.
 const SADDLE: f64 = FamilySpec::new(Family::XFace3d).aspect_ratio();
 
-/// That of the locking one.
+/// The aspect ratio of the locking 3-D X-Face.
 const LOCKING: f64 = FamilySpec::new(Family::XFace3dLocking).aspect_ratio();
 
-/// Planar and spatial, convex and not, two to five errors, centres of rotation from far behind the face to far before
-/// it; the two with thin ravines and shallow jams (V-Face) are there because they are hard.
+/// Planar and spatial, convex and non-convex, two to five errors, centres of rotation from far behind the face to far
+/// before it; the two with thin ravines and shallow jams (V-Face) are included because they are hard.
 pub const CASES: [Case; 11] = [
     case(Family::VFace, 1.0, 0.0, 1.0, PLANAR),
     case(Family::VFace, 0.5, -0.5, 1.0, PLANAR),
@@ -49,7 +49,7 @@ pub const CASES: [Case; 11] = [
     case(Family::XFace3d, SADDLE, 0.5, 0.5, ALL),
 ];
 
-/// The designs whose labels are looked at cell by cell, and cells per axis.
+/// The designs with labels checked cell by cell, and cells per axis.
 pub const LABELLED: [(Case, usize); 5] = [
     (case(Family::Pyramid, 0.5, 0.5, 0.5, ALL), 20),
     (case(Family::Pyramid, 0.5, 0.0, 0.5, ALL), 20),

@@ -1,4 +1,5 @@
-//! How many labels of confluence are wrong? Cells drawn at random, each beside the exact motion of its own centre.
+//! Misclassified labels of confluence: randomly drawn cells, each compared with the exact motion of its own
+//! centre.
 
 use super::{AccuracyError, Case, SEEDS, problem};
 use catchment::acceptance::{Domain, Outcome};
@@ -9,35 +10,35 @@ use catchment::study::refinement::RefinementError;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Cells that are drawn at least, and so many more at a time until enough of them jam.
+/// Cells per round of drawing, at least one round; further rounds follow until enough cells jam.
 pub const DRAWN: usize = 200_000;
-/// Jams of which a share of two percent is told from one: then no more are drawn.
+/// Number of jams that distinguishes a share of two percent from one percent; drawing stops there.
 const ENOUGH_JAMS: usize = 1000;
-/// Times that cells are drawn at most.
+/// Maximum number of rounds.
 const MOST_ROUNDS: usize = 8;
 
-/// The labels of one design beside exact motions.
+/// The labels of one design compared with exact motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LabelAccuracy {
-    /// What it is.
+    /// The design's name.
     pub name: String,
     /// Cells per axis.
     pub resolution: usize,
     /// Cells that were drawn.
     pub drawn: usize,
-    /// How many of them are accepted and should not be, or the other way round.
+    /// Number of cells whose accepted label contradicts the exact motion, in either direction.
     pub accepted_wrong: usize,
-    /// How many have another outcome than their motion, whichever.
+    /// Number of cells whose label differs from the exact outcome.
     pub wrong: usize,
-    /// How many jam by their own motion.
+    /// Number of cells that jam by exact motion.
     pub jams: usize,
-    /// How many of these are labelled otherwise.
+    /// Number of these with a different label.
     pub jams_lost: usize,
     /// Wall-clock time of all labels, in seconds.
     pub seconds: f64,
 }
 
-/// Labels the grid of a design, and draws `drawn` of its cells, again until enough of them jam.
+/// Labels the grid of a design and draws `drawn` of its cells, repeatedly until enough of them jam.
 pub(super) fn labels(
     case: &Case,
     resolution: usize,
@@ -82,7 +83,7 @@ pub(super) fn labels(
 }
 
 impl LabelAccuracy {
-    /// Counts a cell with this label, whose centre has an outcome of its own.
+    /// Counts a cell with this label and the exact outcome of its centre.
     fn count(&mut self, label: Outcome, own: Outcome) {
         let is_jam = own == Outcome::Jammed;
         self.drawn += 1;

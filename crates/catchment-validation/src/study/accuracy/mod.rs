@@ -1,13 +1,15 @@
-//! How far is each method off? The same designs by every method at several resolutions, beside the exact Sum.
+//! Error of each method: the same designs by every method at several resolutions, compared with the exact
+//! Sum.
 //!
 //! ```text
 //!   error = Sum of the method / exact Sum − 1       exact: the finest grid of confluence, corrected by a large random sample
 //! ```
 //!
-//! A method is better than this table can show where its error is smaller than the interval of the exact Sum.
+//! If a method's error is smaller than the interval of the exact Sum, this table gives only an upper bound on
+//! it.
 //!
-//! Not promised: that other designs are as easy or as hard; that exact means real: friction, speed and mass are left
-//! out of all methods alike.
+//! Not promised: that other designs are as easy or as hard; that exact means real: all methods omit friction, speed
+//! and mass.
 
 mod cases;
 mod labels;
@@ -28,7 +30,7 @@ use std::time::Instant;
 pub struct ExactSum {
     /// The estimate.
     pub sum: f64,
-    /// Unit of this and of all Sums beside it, like `D²·rad³`.
+    /// Unit of this and of all compared Sums, like `D²·rad³`.
     pub unit: String,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
@@ -36,19 +38,19 @@ pub struct ExactSum {
     pub descents: usize,
 }
 
-/// Where a Sum comes from.
+/// Source of a Sum.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SumSource {
     /// The grid of a method alone.
     Grid(Method),
-    /// Confluence, corrected by as many exact descents as `run` uses.
+    /// Confluence, corrected with the number of exact descents that `run` uses.
     Corrected,
 }
 
 /// One method at one resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AccuracyEntry {
-    /// What decided.
+    /// The method.
     pub way: SumSource,
     /// Cells per axis.
     pub resolution: usize,
@@ -58,7 +60,8 @@ pub struct AccuracyEntry {
     pub sum: f64,
     /// `sum / exact − 1`.
     pub error: f64,
-    /// Half the Sum's own 95 % interval, as a share of the exact Sum; null for grids, which have none.
+    /// Half-width of the Sum's own 95 % interval, as a share of the exact Sum; null for grids, which have no
+    /// interval.
     pub doubt: Option<f64>,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
@@ -67,13 +70,13 @@ pub struct AccuracyEntry {
 /// One design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AccuracyRow {
-    /// What it is.
+    /// The design's name.
     pub name: String,
     /// Its free errors.
     pub free: Vec<&'static str>,
     /// The exact Sum.
     pub exact: ExactSum,
-    /// By resolution, then by way.
+    /// By resolution, then by source.
     pub entries: Vec<AccuracyEntry>,
 }
 
@@ -84,27 +87,27 @@ pub struct Accuracy {
     pub seed: u64,
     /// One per design.
     pub rows: Vec<AccuracyRow>,
-    /// Labels of single cells beside exact motions, one per design.
+    /// Labels of single cells compared with exact motions, one entry per design.
     pub labels: Vec<LabelAccuracy>,
 }
 
-/// Why there is no table.
+/// Reasons why the table fails.
 #[derive(Debug, thiserror::Error)]
 pub enum AccuracyError {
     /// A design of the list cannot be built.
     #[error("{name} cannot be built: {problem}")]
     Geometry {
-        /// Which.
+        /// The design.
         name: String,
-        /// What is wrong.
+        /// The defect.
         problem: String,
     },
-    /// A method gave up.
+    /// A method failed.
     #[error(transparent)]
     Refinement(#[from] RefinementError),
 }
 
-/// Seeds: of the exact values, and of the corrected Sums that are judged by them.
+/// Seeds of the exact values, and of the corrected Sums that are compared with them.
 const SEEDS: [u64; 2] = [1, 2];
 
 /// Random poses of an exact value.
@@ -117,7 +120,7 @@ impl Serialize for SumSource {
 }
 
 impl SumSource {
-    /// All of them, in the order of the table.
+    /// All sources, in the order of the table.
     pub fn all() -> Vec<Self> {
         Method::on_grids().into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
     }
@@ -131,11 +134,11 @@ impl SumSource {
     }
 }
 
-/// Descent follows every cell of a grid only up to so many: beyond them it would take an hour.
+/// Maximum number of grid cells that descent follows: more would take an hour.
 const FOLLOWED: usize = 400_000;
 
-/// Computes the table of some designs, [`CASES`], and the labels of others, [`LABELLED`], `drawn` cells of each at least: all of them take
-/// a quarter of an hour.
+/// Computes the table of some designs, [`CASES`], and the labels of others, [`LABELLED`], with at least `drawn` cells of each: all of them
+/// take a quarter of an hour.
 ///
 /// # Errors
 /// See [`AccuracyError`].
@@ -203,7 +206,7 @@ fn row(case: &Case, exec: &Exec) -> Result<AccuracyRow, AccuracyError> {
 }
 
 impl AccuracyEntry {
-    /// The grid's own Sum; its error is not known yet.
+    /// The grid's own Sum; its error is not yet known.
     fn of(
         sampled: &GridDecision,
         method: &Method,

@@ -10,21 +10,21 @@ use serde::Serialize;
 
 /// Marks behind a number.
 const LARGEST: char = '▲';
-/// See above.
+/// The mark of the smallest value.
 const SMALLEST: char = '▼';
 
-/// Where the largest and the smallest values of a table are.
+/// Places of the largest and the smallest values of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Extremes {
     /// Of the printed values.
     pub published: Places,
-    /// Of ours; null where one of them is not computed.
+    /// Of ours; null if an entry is not computed.
     pub ours: Option<Places>,
-    /// Of the exact ones; null where one of them is not computed.
+    /// Of the exact values; null if an entry is not computed.
     pub exact: Option<Places>,
 }
 
-/// Places as `[row, column]`, both from 0; several where values are equal.
+/// Places as `[row, column]`, both from 0; several for equal values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Places {
     /// Of the largest value.
@@ -62,7 +62,7 @@ impl Places {
         Some(Self { largest: equal(most), smallest: equal(least) })
     }
 
-    /// The mark of a place, if it has one.
+    /// The mark of a place, if any.
     pub fn mark(&self, place: [usize; 2]) -> Option<char> {
         if self.largest.contains(&place) {
             Some(LARGEST)

@@ -1,13 +1,13 @@
-//! Published tables beside what this program computes.
+//! Published tables compared with the results of this program.
 //!
 //! ```text
 //!   published      ours          ratio = ours / published
 //!   ┌────────┐   ┌────────┐    ┌────────┐
-//!   │ printed│   │computed│    │ 1.000  │   an entry that is known not to match says so and why
+//!   │ printed│   │computed│    │ 1.000  │   a known difference has a mark and a reason
 //!   └────────┘   └────────┘    └────────┘
 //! ```
 //!
-//! Beside both stands the exact value, where there is one: the same solids and rotation point, followed exactly
+//! A third value is the exact one, where it exists: the same solids and rotation point, followed exactly
 //! ([`ExactValue`]).
 //!
 //! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.11) are computed with conventions that were
@@ -25,7 +25,7 @@ mod extremes;
 
 pub use extremes::{Extremes, Places};
 
-/// What to compute.
+/// Settings of a reproduction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ReproduceSettings {
     /// Also the exact value of every entry: seconds to minutes per table.
@@ -37,89 +37,91 @@ pub struct ReproduceSettings {
 pub struct ReproducedEntry {
     /// The printed value.
     pub published: f64,
-    /// What this program computes by the same method; null where it cannot.
+    /// This program's value by the same method; null if it is not computed.
     pub ours: Option<f64>,
     /// `ours / published`.
     pub ratio: Option<f64>,
-    /// Whether the two agree to the printed digits, or as the integer counts that they stand for.
+    /// Whether the two agree to the printed digits, or as the integer counts that they represent.
     pub as_printed: bool,
-    /// Whether the two agree within the table's tolerance; null where nothing is promised or computed.
+    /// Whether the two agree within the table's tolerance; null without a promised agreement or a computed
+    /// value.
     pub matches: Option<bool>,
     /// Why the entry is known not to match.
     pub known_difference: Option<&'static str>,
-    /// The exact value; null where there is none or it was not asked for.
+    /// The exact value; null if it does not exist or was not requested.
     pub exact: Option<ExactValue>,
     /// `exact / published`.
     pub exact_ratio: Option<f64>,
 }
 
-/// How well a table is reproduced.
+/// Agreement of a table with its reproduction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
     /// Number of entries.
     pub entries: usize,
-    /// Entries that were computed by the same method.
+    /// Number of entries computed by the same method.
     pub computed: usize,
-    /// How many agree to the printed digits, or as counts.
+    /// Number of entries that agree to the printed digits, or as counts.
     pub as_printed: usize,
-    /// How many agree within the table's tolerance.
+    /// Number of entries that agree within the table's tolerance.
     pub matching: usize,
-    /// Median of |ratio − 1|; null where nothing was computed.
+    /// Median of |ratio − 1|; null without computed entries.
     pub median_error: Option<f64>,
-    /// Mean of |ln ratio|; null where nothing was computed.
+    /// Mean of |ln ratio|; null without computed entries.
     pub mean_log_ratio: Option<f64>,
-    /// Mean of |ln ratio| of the exact values; null where there are none.
+    /// Mean of |ln ratio| of the exact values; null without exact values.
     pub exact_mean_log_ratio: Option<f64>,
 }
 
-/// A published table beside ours.
+/// A published table and ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TableComparison {
     /// Number of the table in the dissertation, such as `5.7`.
     pub table: &'static str,
-    /// What it holds.
+    /// Its title.
     pub title: &'static str,
-    /// The method that it was made with.
+    /// The method of the table.
     pub method: &'static str,
     /// Unit of its values.
     pub unit: &'static str,
-    /// Relative error within which an entry counts as matching; 0 where integer counts must agree; null where nothing is
-    /// promised.
+    /// Relative error within which an entry counts as matching; 0 where integer counts must agree; null without a
+    /// promised agreement.
     pub tolerance: Option<f64>,
-    /// What the rows are, with their unit.
+    /// Meaning of the rows, with their unit.
     pub row_name: &'static str,
     /// Names or values of the rows.
     pub rows: Vec<String>,
-    /// What the columns are, with their unit.
+    /// Meaning of the columns, with their unit.
     pub column_name: &'static str,
     /// Names or values of the columns.
     pub columns: Vec<String>,
     /// The entries, row by row.
     pub entries: Vec<Vec<ReproducedEntry>>,
-    /// The largest and the smallest values, in the tables in which the source highlights them (5.8 to 5.11); null elsewhere.
+    /// The largest and the smallest values, for the tables in which the source highlights them (5.8 to 5.11); null
+    /// elsewhere.
     pub extremes: Option<Extremes>,
-    /// How well they agree.
+    /// Measures of agreement.
     pub summary: Summary,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 
-/// Why a table cannot be reproduced.
+/// Reasons why a table cannot be reproduced.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReproduceError {
     /// No such table.
     #[error("there is no table `{name}` to reproduce; known are {}", known())]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
     },
-    /// A published table does not read as a table.
+    /// A published file is not a valid table.
     #[error(transparent)]
     Published(#[from] PublishedError),
-    /// An entry cannot be computed.
+    /// The computation of an entry failed.
     #[error(transparent)]
     Entry(#[from] RecipeError),
-    /// It was asked to stop.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -128,10 +130,10 @@ fn known() -> String {
     TABLES.iter().map(|t| t.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Computes a published table and sets it beside the printed one.
+/// Computes a published table and compares it with the printed one.
 ///
 /// # Errors
-/// When there is no such table (the message lists those there are), or the computation is cancelled.
+/// When the table does not exist (the message lists the existing ones), or the computation is cancelled.
 pub fn reproduce(
     table: &str,
     settings: &ReproduceSettings,
@@ -141,7 +143,7 @@ pub fn reproduce(
     beside(ReproducibleTable::of(table).ok_or_else(unknown)?, *settings, exec)
 }
 
-/// Our values beside those that a table has printed.
+/// Our values and the printed values of a table.
 fn beside(
     table: &ReproducibleTable,
     settings: ReproduceSettings,
@@ -214,7 +216,7 @@ fn mean_ratios(x_face: &[ReproducedEntry]) -> Result<Vec<String>, ReproduceError
     Ok(notes)
 }
 
-/// Mean over all entries of the X-Face over another face: printed, ours.
+/// Mean over all entries of the ratio of the X-Face to another face: printed, ours.
 fn mean_ratio(x_face: &[ReproducedEntry], other: &str) -> Result<[f64; 2], ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: other.to_owned() };
     let values = ReproducibleTable::of(other).ok_or_else(unknown)?.published()?.values.concat();
@@ -222,7 +224,7 @@ fn mean_ratio(x_face: &[ReproducedEntry], other: &str) -> Result<[f64; 2], Repro
         x_face.iter().zip(&values).map(|(entry, other)| value(entry) / other).sum::<f64>()
             / values.len() as f64
     };
-    // The printed tables of the other two faces are ours in every entry.
+    // The printed tables of the other two faces equal ours in every entry.
     Ok([of(&|entry| entry.published), of(&|entry| entry.ours.unwrap_or(f64::NAN))])
 }
 

@@ -15,7 +15,7 @@ fn every_entry_matches_unless_it_is_listed_and_every_listed_one_does_not() {
         let comparison = comparison(table.name);
         for (row, entries) in comparison.rows.iter().zip(&comparison.entries) {
             for (column, entry) in comparison.columns.iter().zip(entries) {
-                // Nothing is known of what is not computed.
+                // An entry that is not computed has no known difference.
                 assert_eq!(
                     entry.matches.unwrap_or(true),
                     entry.known_difference.is_none(),
@@ -33,7 +33,7 @@ fn the_kinematic_tables_are_reproduced_in_all_242_integers() {
     for name in ["3.3", "3.4"] {
         for entry in comparison(name).entries.iter().flatten() {
             let counts = [entry.published, entry.ours.unwrap()].map(|v| v / START_MEASURE);
-            // The printed values have four digits: never further than an eighth from the integer they stand for.
+            // The printed values have four digits: each is within an eighth of the integer it represents.
             assert!((counts[0] - counts[0].round()).abs() < 0.13);
             assert_eq!(counts[0].round(), counts[1].round());
             exact += 1;
@@ -66,7 +66,7 @@ fn the_pyramid_tables_are_reproduced_as_far_as_their_conventions_are_known() {
     assert!(summary.matching >= 7 && summary.median_error.unwrap() < 0.073, "{summary:?}");
 }
 
-/// What chapter 5 says of its own tables, asked of their printed numbers.
+/// The statements of chapter 5 about its own tables, checked on the printed numbers.
 #[test]
 fn the_statements_of_chapter_5_about_its_tables() {
     let printed = |name: &str| ReproducibleTable::of(name).unwrap().published().unwrap().values;
@@ -100,14 +100,14 @@ fn the_largest_and_the_smallest_of_the_highlighted_tables() {
     let extremes = |name: &str| comparison(name).extremes;
     let printed = |name: &str| extremes(name).unwrap().published;
     let [x_y_pitch, x_pitch_roll] = ["5.8", "5.9"].map(printed);
-    // 2.08 at H/D 2, COR 1, and not at the highest of both; 0.123 at H/D 1/4, COR −1.
+    // 2.08 at H/D 2, COR 1, not at the highest H/D and COR together; 0.123 at H/D 1/4, COR −1.
     assert_eq!((x_y_pitch.largest, x_y_pitch.smallest), (vec![[3, 4]], vec![[0, 0]]));
     // 6.65, and 0.00398 twice.
     assert_eq!((x_pitch_roll.largest, x_pitch_roll.smallest), (vec![[4, 4]], vec![[4, 0], [4, 1]]));
     for name in ["5.10", "5.11"] {
         let places = extremes(name).unwrap();
         assert_eq!(places.published.smallest, [[4, 0]], "{name}");
-        // The exact values were not asked for.
+        // The exact values were not requested.
         assert!(places.ours.is_some() && places.exact.is_none(), "{name}");
     }
     assert_eq!(printed("5.10").largest, [[4, 4]]);
@@ -158,8 +158,8 @@ fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
     assert!(notes[1].contains("2.2965 from the printed tables (the text: 2.3846, which"), "{notes:?}");
 }
 
-/// What is stated of DRAGON is a reach of Ø/5, and that does not give its printed area: a value calculated back from print is no
-/// agreement.
+/// The source states a reach of Ø/5 for DRAGON, which does not give its printed area: a value calculated back from print does
+/// not count as agreement.
 #[test]
 fn zero_rotation_areas_are_computed_from_stated_geometry_alone() {
     let table = comparison("2.1");
@@ -171,7 +171,7 @@ fn zero_rotation_areas_are_computed_from_stated_geometry_alone() {
     assert!(dragon.known_difference.unwrap().contains("calculated back"));
 }
 
-/// A reason does not claim more than its table shows: of 5.11 half of all entries are more than 7 % off.
+/// A reason must not claim more than its table shows: half of all entries of 5.11 deviate by more than 7 %.
 #[test]
 fn no_reason_calls_a_table_explained_that_is_not() {
     for name in ["5.10", "5.11"] {
@@ -194,7 +194,7 @@ fn tables_of_the_partition_have_both_values() {
     assert!(exact.value > 2.0 && exact.value < 3.5, "{exact:?}");
 }
 
-/// The first row of a table stands for all.
+/// The first row of a table represents the whole table.
 #[test]
 fn exact_values_stand_beside_printed_ones() {
     let whole = ReproducibleTable::of("5.2").unwrap();
