@@ -131,7 +131,7 @@ impl PlaceArgs {
 }
 
 /// Number of candidates in the summary.
-const TOLD: usize = 3;
+const MOST_ROWS: usize = 3;
 /// Smallest score that the summary lists.
 const WORTH: f64 = 0.01;
 
@@ -285,7 +285,7 @@ fn summary(result: &Proposal, moving: Option<&Path>) -> Vec<String> {
         "moving {moving} (pose errors and the centre of rotation are those of this half; if the other half moves, {other})"
     );
     let rows: Vec<_> =
-        result.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
+        result.candidates.iter().filter(|one| one.score >= WORTH).take(MOST_ROWS).cloned().collect();
     let ranking = rows.iter().enumerate().map(|(k, one)| {
         format!("{} {}", if k == 0 { "chosen, score" } else { "       score" }, one.in_words(&rows, unit))
     });

@@ -194,7 +194,7 @@ mod tests {
         for k in (0..30).rev() {
             result.push(Diagnostic::error("design", k.to_string(), None).at(Some(k..k + 1)));
         }
-        result.push_with(|| panic!("nobody reads it"));
+        result.push_with(|| panic!("the message is never built"));
         assert_eq!(result.len(), 31);
         let diagnostics = result.of(SourceText::new("d.toml", ""));
         assert_eq!((diagnostics.list.len(), diagnostics.omitted), (Diagnostics::MOST, 11));

@@ -400,8 +400,8 @@ fn other_signs(
             (otherwise, judge.followed() - before)
         },
     )?;
-    let otherwise = result.iter().filter(|(otherwise, _)| *otherwise).count();
-    Ok((otherwise, result.iter().map(|(_, count)| count).sum()))
+    let differing = result.iter().filter(|(differs, _)| *differs).count();
+    Ok((differing, result.iter().map(|(_, count)| count).sum()))
 }
 
 /// The order of the trials: every pose once, then again; each time shuffled by itself. Blocks are runs of that order.

@@ -50,7 +50,7 @@ const COLUMNS: [&str; 14] = [
     "known_difference",
 ];
 
-/// Computing effort of a study, which differs between otherwise equal runs.
+/// Computing effort of a study, which differs between equal runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Wall-clock time.
