@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_allows_what_it_says() {
+    fn a_limit_is_inclusive() {
         assert!(THREE.allows(3).is_ok() && THREE.allows(4).is_err());
     }
 }

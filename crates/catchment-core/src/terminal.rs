@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_neither_steers_nor_begins_a_line() {
+    fn control_characters_are_replaced_or_escaped() {
         let name = "a\u{1b}[2J<&\u{0}\u{9b}\n\u{202e}µ";
         assert_eq!(printable(name), "a?[2J<&????µ");
         assert_eq!(escaped(name), "a\\u{1b}[2J<&\\u{0}\\u{9b}\\n\\u{202e}µ");
@@ -71,7 +71,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn what_is_not_utf8_is_shown_all_the_same() {
+    fn non_utf8_paths_are_shown() {
         use std::os::unix::ffi::OsStrExt;
         let name = std::ffi::OsStr::from_bytes(b"a\xff\n");
         assert_eq!(shown(Path::new(name)).to_string(), "a\u{fffd}\\n");

@@ -164,7 +164,7 @@ fn imports_run_against_the_flow_of_data() {
 }
 
 #[test]
-fn every_file_belongs_to_a_room_and_the_map_names_it() {
+fn every_module_is_ranked_and_documented() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let map = fs::read_to_string(root.join("../../docs/architecture.md")).unwrap();
     let tour = fs::read_to_string(root.join("../catchment/src/lib.rs")).unwrap();
@@ -185,7 +185,7 @@ fn every_file_belongs_to_a_room_and_the_map_names_it() {
 }
 
 #[test]
-fn an_import_along_the_flow_is_found_however_it_is_written() {
+fn an_import_along_the_flow_is_detected_in_any_form() {
     let found = |place: &str, text: &str| -> Vec<(usize, String)> {
         violations(place, text).into_iter().map(|v| (v.line, v.to)).collect()
     };
@@ -209,7 +209,7 @@ fn an_import_along_the_flow_is_found_however_it_is_written() {
 }
 
 #[test]
-fn a_violation_says_what_would_be_right() {
+fn a_violation_lists_the_allowed_imports() {
     let [violation] = &violations("contact/mod.rs", "\nuse crate::method::descent;")[..] else {
         panic!("one violation expected");
     };

@@ -74,7 +74,7 @@ fn no_two_public_types_share_a_name() {
 }
 
 #[test]
-fn files_are_named_by_what_they_hold() {
+fn no_file_has_a_coined_name() {
     let coined = |file: &PathBuf| {
         let stem = file.file_stem().unwrap().to_string_lossy();
         COINED.contains(&stem.as_ref())

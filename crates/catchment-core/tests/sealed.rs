@@ -62,7 +62,7 @@ const ALLOWED: [(&str, &str, &str); 10] = [
 
 /// Lines of code that ask for something they may not, as `place:line: what`. What follows the unit tests of a file is not
 /// looked at, nor are files of tests.
-fn asks(place: &str, text: &str) -> Vec<String> {
+fn violations(place: &str, text: &str) -> Vec<String> {
     let tests = |part: &str| part == "tests" || part == "tests.rs";
     let core = place.split(['/', '.']).next().is_some_and(|room| CORE.contains(&room));
     if !core || place.split('/').any(tests) {
@@ -99,21 +99,21 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn the_core_asks_the_system_for_nothing() {
+fn the_core_calls_the_system_only_where_allowed() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     sources(&src, &mut files);
     files.sort();
     let place = |file: &PathBuf| file.strip_prefix(&src).unwrap().to_string_lossy().replace('\\', "/");
     let wrong: Vec<String> =
-        files.iter().flat_map(|file| asks(&place(file), &fs::read_to_string(file).unwrap())).collect();
+        files.iter().flat_map(|file| violations(&place(file), &fs::read_to_string(file).unwrap())).collect();
     assert!(files.len() > 50, "only {} files found below {}", files.len(), src.display());
     assert!(wrong.is_empty(), "the core asks the system:\n  {}", wrong.join("\n  "));
 }
 
 #[test]
-fn asking_is_found_where_it_is_not_allowed() {
-    let found = |place: &str, text: &str| asks(place, text);
+fn forbidden_system_calls_are_detected() {
+    let found = |place: &str, text: &str| violations(place, text);
     let clock = "use std::time::Instant;\n";
     assert_eq!(found("merit/sum.rs", clock), ["merit/sum.rs:1: asks for the time"]);
     assert_eq!(
@@ -147,7 +147,7 @@ fn of(names: &[&str]) -> Vec<PathBuf> {
 /// Names of files are shown by `terminal::shown` alone: as they are, a line break in one begins a line of the terminal. Where a name is data
 /// (JSON, another path) it stays as it is.
 #[test]
-fn no_message_shows_a_path_as_it_is() {
+fn no_message_shows_an_unescaped_path() {
     const DATA: [(&str, usize); 7] = [
         ("catchment-core/src/terminal.rs", 1),
         ("catchment-core/src/poses/robots/read.rs", 1),

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_has_its_line() {
+    fn defects_are_reported_with_their_line() {
         let refused = |from: &str, to: &str| match read(&CUBE.replace(from, to)) {
             Err(problems) => problems[0].to_string(),
             Ok(surface) => panic!("{surface:?}"),
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn points_and_lines_bound_nothing_and_ends_of_lines_may_be_those_of_windows() {
+    fn points_and_lines_are_ignored_and_crlf_is_read() {
         let text = format!("{CUBE}p 1\nf 1\nl 1 2\nf 1 2\n").replace('\n', "\r\n");
         assert_eq!(read(&text).unwrap(), read(CUBE).unwrap());
         assert!(

@@ -115,7 +115,7 @@ mod tests {
     use crate::pose::Mount;
 
     #[test]
-    fn what_is_packed_is_unpacked_to_the_bit() {
+    fn packed_halves_unpack_equal() {
         for family in Family::ALL {
             let connector = Connector::of_family(&FamilySpec::new(family), Mount::X).unwrap();
             for half in [connector.fixed, connector.moving] {
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_announces_more_than_there_is_takes_no_memory() {
+    fn announced_sizes_beyond_the_data_take_no_memory() {
         let huge = [1, u32::MAX, u32::MAX, u32::MAX, u32::MAX, 1].map(u32::to_le_bytes).concat();
         assert_eq!(Half::from_bytes(&huge), Err(PackedError::Length));
     }

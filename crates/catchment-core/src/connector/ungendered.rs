@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn families_are_what_the_field_calls_them() {
+    fn ungendered_families_are_those_of_the_literature() {
         for name in Family::ALL {
             let ungendered =
                 matches!(name, Family::SFace | Family::XFace | Family::XFace3d | Family::XFace3dLocking);

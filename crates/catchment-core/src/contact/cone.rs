@@ -118,7 +118,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(300))]
 
         #[test]
-        fn all_by_which_a_feature_touches_is_in_its_cone(
+        fn contact_normals_of_a_corner_lie_in_its_cone(
             points in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 6..20),
             height in prop_oneof![Just(1.0), 0.001..1.0f64], slack in prop_oneof![Just(4e-6), 0.0..0.2f64],
             pushes in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 40),
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn cones_are_as_narrow_as_what_they_hold() {
+    fn cones_enclose_their_normals_tightly() {
         // The tip of a cube: 54.7° from its axis to its facets, whose normals it touches by.
         let corners: Vec<_> = (0..8).map(|k| [0, 1, 2].map(|i| f64::from(k >> i & 1))).collect();
         let cube = shape(&corners, 1.0).unwrap();

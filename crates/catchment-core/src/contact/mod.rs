@@ -173,7 +173,7 @@ impl Pair {
     }
 
     /// Whether motions use trees to find possible contacts.
-    pub(crate) const fn asks_trees(&self) -> bool {
+    pub(crate) const fn has_trees(&self) -> bool {
         self.trees.is_some()
     }
 

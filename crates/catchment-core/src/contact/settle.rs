@@ -122,7 +122,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(24))]
         /// A pyramid drawn at an angle settles, and the halves at rest are the mated ones.
         #[test]
-        fn what_is_drawn_askew_settles(e in prop::array::uniform5(-0.03..0.03f64)) {
+        fn a_tilted_drawing_settles_to_the_mated_pose(e in prop::array::uniform5(-0.03..0.03f64)) {
             let design = pyramid();
             let straight = Connector::build(&design).unwrap();
             let drawn = askew(&straight, &PoseError::from_array(e));
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_mated_stays() {
+    fn a_mated_drawing_stays_in_place() {
         let design = pyramid();
         let straight = Connector::build(&design).unwrap();
         assert_eq!(rest(&Pair::new(&straight, &design.alignment)), Some(PoseError::default()));

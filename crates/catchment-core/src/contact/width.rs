@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_touch_does_not_count() {
+    fn unreachable_surfaces_do_not_count() {
         // A plate with a tower; a small block on the tower, with a wide plate far above.
         let mut fixed = block([-50.0, -50.0, 0.0], [50.0, 50.0, 5.0]);
         fixed.surfaces.extend(block([-10.0, -8.0, 5.0], [10.0, 8.0, 30.0]).surfaces);
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_counts_as_far_as_it_reaches_in() {
+    fn only_the_overlapping_part_of_a_slope_counts() {
         let cone = |z: f64, tip: f64, r: f64| {
             let ring = [[r, 0.0], [0.0, r], [-r, 0.0], [0.0, -r]].map(|[x, y]| DVec3::new(x, y, z));
             Half::of(vec![convex_hull(&[&ring[..], &[DVec3::new(0.0, 0.0, tip)]].concat()).unwrap()])

@@ -245,7 +245,7 @@ mod tests {
 
     /// Parameters added later leave the digests of older designs unchanged: this digest was recorded before.
     #[test]
-    fn digests_stay() {
+    fn new_parameters_keep_old_digests() {
         use crate::design::family::XFace;
         use crate::design::hex;
         let old = "fea9ebe52e43e7f586e998c95c3786faadb7b5ed0658fed4a441f163acb70c87";
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_changes_an_answer_changes_the_digest() {
+    fn parameter_changes_change_the_digest() {
         let base = family(Family::Cone);
         let mut others: Vec<Design> = Family::ALL.into_iter().map(family).collect();
         let mut other = |change: &dyn Fn(&mut Design)| {
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn names_units_and_the_sign_of_zero_do_not() {
+    fn names_units_and_signed_zeros_keep_the_digest() {
         let base = family(Family::Pyramid);
         let mut same = base.clone();
         (same.name, same.width, same.unit) = ("b".into(), 50.0, Some(LengthUnit::Mm));
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_mesh_counts_what_it_held() {
+    fn mesh_digests_depend_on_content_not_path() {
         let mesh = |path: &str, scale, held: Option<&[u8]>| {
             let content = held.map(|bytes| MeshContent::of(bytes, 4));
             let half = HalfSpec::Mesh(FileSpec { content, ..FileSpec::new(path, scale) });
@@ -314,7 +314,7 @@ mod tests {
     /// The permission to repair changes nothing; an actual repair, and the permitted displacement of a
     /// simplification, do.
     #[test]
-    fn of_a_mesh_counts_how_it_was_treated() {
+    fn mesh_digests_depend_on_applied_preparation() {
         let mesh = |treatment, repairs| {
             let content = Some(MeshContent { repairs, ..MeshContent::of(b"x", 4) });
             let half = HalfSpec::Mesh(FileSpec { treatment, content, ..FileSpec::new("a", 1.0) });

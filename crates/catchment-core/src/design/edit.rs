@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_are_found_by_path_by_word_and_by_short_name() {
+    fn keys_resolve_by_path_name_and_short_name() {
         let path = |name: &str| key_path(name).unwrap();
         assert_eq!(path("aspect_ratio"), "connector.aspect_ratio");
         assert_eq!(path("cor"), "alignment.center_of_rotation");

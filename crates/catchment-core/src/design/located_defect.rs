@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_fall_back_to_what_surrounds_them() {
+    fn spans_fall_back_to_the_enclosing_key() {
         let mut sources = Sources::default();
         sources.insert("connector".into(), 0..9);
         sources.insert("connector.fixed.pieces".into(), 20..30);

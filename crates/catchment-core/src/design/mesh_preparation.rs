@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_done_is_one_line() {
+    fn repairs_are_summarized_in_one_line() {
         let mut repairs = Repairs { without_area: 12, united: 1, deviation: 2e-6, ..Repairs::default() };
         assert_eq!(
             repairs.to_string(),
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_was_done_is_written() {
+    fn only_applied_repairs_are_written() {
         let json = serde_json::to_string(&Repairs { turned: 2, ..Repairs::default() }).unwrap();
         assert_eq!(json, r#"{"turned":2,"deviation":0.0}"#);
         assert_eq!(serde_json::from_str::<MeshPreparation>("{}").unwrap(), MeshPreparation::DEFAULT);

@@ -150,14 +150,14 @@ mod tests {
     }
 
     #[test]
-    fn what_an_option_does_not_change_keeps_the_name() {
+    fn an_option_without_effect_keeps_the_name() {
         let name = "V-Face, AR 1, COR 0";
         let same = named(name).with_aspect_ratio(1.0).unwrap();
         assert_eq!(same.with_center_of_rotation(cor("0")).unwrap().name, name);
     }
 
     #[test]
-    fn what_is_swept_is_not_in_the_title() {
+    fn swept_parameters_are_not_in_the_title() {
         let title = |name: &str| {
             let design = named(name).untitled(DesignParameter::AspectRatio);
             design.untitled(DesignParameter::CenterOfRotation).name

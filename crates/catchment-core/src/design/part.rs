@@ -52,7 +52,7 @@ impl FileSpec {
     }
 
     /// Whether files of this type may state their unit.
-    pub fn may_say_its_unit(&self) -> bool {
+    pub fn may_state_unit(&self) -> bool {
         const SAY: [&str; 5] = ["3mf", "step", "stp", "svg", "dxf"];
         SAY.contains(&self.ending().as_str())
     }

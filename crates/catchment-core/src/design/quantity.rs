@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn invalid_quantities_are_reported() {
         let defect = |text: &str| text.parse::<Quantity>().unwrap_err();
         assert!(matches!(defect("5 mmm"), DesignDefect::UnknownUnit { meant: Some("mm"), .. }));
         assert!(matches!(defect("5 furlong"), DesignDefect::UnknownUnit { meant: None, .. }));

@@ -317,7 +317,7 @@ impl<'t> Walk<'t> {
             }
         });
         let file = path.map(|path| FileSpec::new(path, 1.0));
-        let says_it = file.as_ref().is_some_and(FileSpec::may_say_its_unit);
+        let says_it = file.as_ref().is_some_and(FileSpec::may_state_unit);
         let scale = scale?;
         let written = unit;
         let (scale, unit) = match (unit, scale.unit) {

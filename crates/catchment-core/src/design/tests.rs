@@ -118,7 +118,7 @@ fn a_mesh_is_scaled_from_its_unit_to_d() {
 }
 
 #[test]
-fn all_problems_are_found_at_once_with_their_places() {
+fn all_defects_are_reported_with_their_places() {
     let text = "schema = 2\n\
                 [connector]\n\
                 family = \"pyramide\"\n\
@@ -156,7 +156,7 @@ fn all_problems_are_found_at_once_with_their_places() {
 }
 
 #[test]
-fn each_rule_has_its_complaint() {
+fn each_rule_reports_its_defect() {
     let pyramid = |rest: &str| problem(&format!("[connector]\nfamily = \"pyramid\"\n{rest}")).defect;
     assert!(matches!(pyramid("pins = 3"), DesignDefect::NotAParameter { .. }));
     assert!(matches!(pyramid("face_height = 0.3"), DesignDefect::NotAParameter { .. }));
@@ -195,7 +195,7 @@ fn each_rule_has_its_complaint() {
 }
 
 #[test]
-fn each_rule_of_own_halves_has_its_complaint() {
+fn each_rule_of_own_halves_reports_its_defect() {
     const GOOD: &str = "pieces = [[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]]";
     let own = |fixed: &str| {
         let text = format!("[connector]\nface_height = 0.5\nfixed = {{ {fixed} }}\nmoving = {{ {GOOD} }}");

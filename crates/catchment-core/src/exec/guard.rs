@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_no_answer_and_what_comes_after_is_a_bug_again() {
+    fn a_panic_is_expected_only_inside_an_attempt() {
         let refused: Option<u8> = attempt(|| {
             assert!(is_expected());
             assert_eq!(attempt(|| 1), Some(1));

@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_reports_its_span_of_the_whole_and_a_part_of_it_its_own() {
+    fn nested_parts_report_their_span_of_the_whole() {
         let (exec, reports) = listening();
         let part = exec.part([0.5, 0.75], "whole");
         part.part([0.0, 0.5], "part").report(0.5, "inner");
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_overtaken_is_not_reported_and_stages_do_not_mix() {
+    fn overtaken_progress_is_dropped_and_stages_stay_separate() {
         let (exec, reports) = listening();
         exec.report(0.5, "a");
         exec.report(0.25, "b");
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_limit_stops_this_one_and_its_parts_alone() {
+    fn a_time_limit_stops_only_its_exec_and_parts() {
         let exec = Exec::new();
         let late = exec.clone().with_time_limit(Duration::ZERO);
         assert!(
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_are_what_was_asked_for() {
+    fn with_threads_sets_the_thread_count() {
         assert_eq!(Exec::new().with_threads(3).unwrap().threads(), 3);
     }
 }

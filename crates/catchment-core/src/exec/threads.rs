@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn an_environment_that_asks_for_no_number_of_threads_is_refused() {
+    fn an_invalid_thread_count_in_the_environment_is_refused() {
         let wanted = |value: &str| wanted(Some(value.into()));
         assert_eq!([wanted(""), wanted("0"), wanted(" 8 "), wanted("1024")], [Ok(0), Ok(0), Ok(8), Ok(1024)]);
         for value in ["1000000000", "1025", "-1", "many", "1e3", "99999999999999999999999"] {
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn stacks_take_half_of_what_is_left_at_most() {
+    fn thread_stacks_take_at_most_half_of_the_free_memory() {
         const MIB: u64 = 1 << 20;
         assert_eq!(ensure_room(1024, u64::MAX), Ok(()));
         assert_eq!(ensure_room(1024, 4096 * MIB), Ok(()));
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_alone_does_everything_itself() {
+    fn alone_runs_everything_on_the_calling_thread() {
         let here = std::thread::spawn(|| {
             let me = std::thread::current().id();
             for _ in 0..2 {

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused_before_it_is_allocated() {
+    fn oversized_grids_are_refused_before_allocation() {
         let pair = two_pyramids(&Dof::ALL, 0.0);
         let grid = Grid::over(&pair.alignment, |_| 1000);
         let exec = Exec::new().with_memory_budget(1 << 20);

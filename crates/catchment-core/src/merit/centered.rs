@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_ball_it_is_the_inscribed_cube() {
+    fn the_centred_cube_of_a_ball_is_inscribed() {
         // Half edge r/√3; it stops at the border of a cell whose centre is outside the ball: within a cell of 0.04.
         for cells in [50, 51] {
             let cube = centered_cube(&ball(&grid(&[cells; 3], &[1.0; 3]), 0.9), &Exec::new()).unwrap();
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_stopped_by_the_error_box_says_so() {
+    fn a_box_limited_by_the_error_box_reports_it() {
         let cube = centered_cube(&accept(&grid(&[6, 7], &[1.0, 1.5]), |_| true), &Exec::new()).unwrap();
         assert_eq!((cube.edge, cube.reaches_border), (1.0, true));
     }

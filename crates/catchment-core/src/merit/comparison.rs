@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_over_the_same_errors_is_refused_with_its_place() {
+    fn results_over_different_errors_are_refused_with_the_axis() {
         let a = ball(&grid(&[10, 10], &[1.0, 1.0]), 0.5);
         let refused = |b: &Acceptance| Paired::of(&a, b).unwrap_err().to_string();
         assert!(

@@ -301,7 +301,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn bits_are_the_cells((shape, outcomes) in masks()) {
+        fn bits_match_the_accepted_cells((shape, outcomes) in masks()) {
             let exec = Exec::new();
             let mut mask = accepted(&shape, &outcomes, &exec);
             let aligned: Vec<usize> = (0..outcomes.len()).filter(|i| outcomes[*i] == Outcome::Aligned).collect();
@@ -313,7 +313,7 @@ mod tests {
         }
 
         #[test]
-        fn grown_and_fitted_as_defined((shape, outcomes) in masks(), sizes in proptest::array::uniform4(0.0..1.0f64)) {
+        fn growing_and_fitting_are_as_defined((shape, outcomes) in masks(), sizes in proptest::array::uniform4(0.0..1.0f64)) {
             let exec = Exec::new();
             let g = grid(&shape, &vec![1.0; shape.len()]);
             let mask = accepted(&shape, &outcomes, &exec);
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused_and_what_is_cancelled_stops() {
+    fn an_oversized_mask_is_refused_and_a_cancelled_one_stops() {
         let outcomes = vec![Outcome::Aligned; 4096];
         let small = Exec::new().with_memory_budget(511);
         let wanted = |o| o == Outcome::Aligned;

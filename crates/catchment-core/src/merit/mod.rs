@@ -272,7 +272,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_set_cut_off_by_the_box_says_along_which_axes() {
+    fn a_set_cut_off_by_the_box_reports_the_axes() {
         let grid = grid(&[8, 8, 8], &[1.0, 1.0, 1.0]);
         let slab = accept(&grid, |e| e[1].abs() < 0.5);
         let warnings = |acceptance| super::warnings(acceptance, &Exec::new()).unwrap();

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slice_shows_the_cells_it_says() {
+    fn a_slice_contains_the_cells_of_its_axes() {
         let g = grid(&[4, 5, 6], &[1.0, 1.0, 1.5]);
         let at = PoseError { y: 0.41, ..PoseError::default() };
         let slice = GridSlice::of(&g, &[Dof::Roll, Dof::X], &at).unwrap();
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_refused() {
+    fn invalid_axes_and_positions_are_refused() {
         let g = grid(&[3, 3], &[1.0, 1.0]);
         let zero = PoseError::default();
         assert!(matches!(GridSlice::of(&g, &[Dof::Yaw], &zero), Err(MeritError::NoAxis { .. })));

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_box_it_is_the_product_of_error_functions() {
+    fn a_box_succeeds_with_the_product_of_error_functions() {
         let result = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma: SIGMA }).unwrap();
         let exact = within(0.3, 0.3) * within(0.4, 0.2) * within(0.9, 0.5);
         let inside = within(1.0, 0.3) * within(1.0, 0.2) * within(1.5, 0.5);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_never_varies_is_a_point() {
+    fn an_error_without_variance_is_a_point() {
         let sigma = PoseError { x: 0.3, ..ZERO };
         let result = success(&boxed(), &Distribution::Normal { mean: ZERO, sigma }).unwrap();
         assert!((result.probability - within(0.3, 0.3)).abs() < 1e-13, "{}", result.probability);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_distribution_is_refused() {
+    fn invalid_distributions_are_refused() {
         let refused = |d: Distribution| success(&boxed(), &d).unwrap_err();
         let sigma = PoseError { x: -0.1, ..ZERO };
         assert!(matches!(refused(Distribution::Normal { mean: ZERO, sigma }), MeritError::Negative { .. }));

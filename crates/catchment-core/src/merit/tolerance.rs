@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn followed_they_are_those_of_the_set_and_not_of_cells() {
+    fn followed_tolerances_are_finer_than_the_cells() {
         let g = grid(&[2, 3], &[1.0, 2.0]);
         let inside = |e: &PoseError| (-0.5..0.3).contains(&e.x) && e.y.abs() < 0.25 && e.x + e.y > -0.6;
         let decide = |poses: Vec<PoseError>| {
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_box_off_centre_both_sides_are_found() {
+    fn both_limits_of_an_off_centre_box_are_exact() {
         // Borders of the box lie on cell borders for 40 cells over [−1, 1], so the tolerances are exact.
         let g = grid(&[40, 40], &[1.0, 1.0]);
         let t = tolerances(&accept(&g, |e| (-0.5..0.3).contains(&e[0]) && e[1].abs() < 0.25)).unwrap();
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn of_an_ellipsoid_they_are_the_half_axes_within_half_a_cell() {
+    fn an_ellipsoid_has_its_half_axes_within_half_a_cell() {
         let half = [0.83, 0.61, 0.37, 0.9, 0.45];
         for cells in [8, 9] {
             let g = grid(&[cells; 5], &[1.0; 5]);

@@ -19,7 +19,7 @@ pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>())
 /// the cube of the number of facets; for halves with trees it is measured on a few motions.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
-    if pair.asks_trees() {
+    if pair.has_trees() {
         return (DESCENT_SECONDS / *pair.motion_cache.seconds.get_or_init(|| counted(pair))).min(1.0);
     }
     let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
@@ -106,7 +106,7 @@ mod tests {
     use crate::pose::{DofSet, Mount};
 
     #[test]
-    fn halves_of_many_facets_are_searched_and_not_listed() {
+    fn the_cost_of_many_facets_stays_below_their_cube() {
         let share = |chord_error: f64| {
             let spec = FamilySpec::Cone(Cone { chord_error, ..Cone::default() });
             let connector = Connector::of_family(&spec, Mount::X).unwrap();
@@ -120,17 +120,17 @@ mod tests {
     }
 
     #[test]
-    fn what_a_motion_takes_is_counted_and_the_same_each_time() {
+    fn the_cost_of_a_motion_is_counted_and_reproducible() {
         let spec = FamilySpec::Cone(Cone { chord_error: 1e-5, ..Cone::default() });
         let connector = Connector::of_family(&spec, Mount::X).unwrap();
         let pair = || Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X));
         let (one, other) = (counted(&pair()), counted(&pair()));
-        assert!(pair().asks_trees() && one > DESCENT_SECONDS);
+        assert!(pair().has_trees() && one > DESCENT_SECONDS);
         assert_eq!(one.to_bits(), other.to_bits());
     }
 
     #[test]
-    fn a_time_has_so_many_motions_and_never_none() {
+    fn a_time_budget_yields_its_motions_and_at_least_ten() {
         let connector = Connector::of_family(&FamilySpec::Cone(Cone::default()), Mount::X).unwrap();
         let pair = Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X));
         assert_eq!(motions_in(100.5 * seconds_per_motion(&pair), &pair), 100);

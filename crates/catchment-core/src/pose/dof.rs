@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slip_is_reported_what_was_meant() {
+    fn a_misspelt_axis_gets_a_suggestion() {
         let error = |name: &str| name.parse::<Dof>().unwrap_err();
         assert_eq!(error("ptich").meant, Some(Dof::Pitch));
         assert_eq!(error("Yaw").to_string(), "there is no axis `Yaw`; did you mean yaw?");

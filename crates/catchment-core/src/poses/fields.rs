@@ -66,7 +66,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn fields_are_found_where_they_stand() {
+    fn spans_match_the_fields_as_written() {
         let fields = |text: &str| spans(text, 0).into_iter().map(|s| text[s].to_owned()).collect::<Vec<_>>();
         assert_eq!(fields("a,\"b,\"\"c\nd\" ,  e\r\n"), ["a", "\"b,\"\"c\nd\"", "e"]);
         // A quote inside a field is a character like any other.
@@ -75,7 +75,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn fields_are_those_that_the_reader_sees(text in "[a,\" \r\n]{0,40}") {
+        fn spans_agree_with_the_csv_reader(text in "[a,\" \r\n]{0,40}") {
             for (start, record) in records(&text) {
                 let result = spans(&text, start);
                 prop_assert_eq!(result.len(), record.len());

@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn near_names_are_refused_with_what_was_meant() {
+    fn near_names_are_refused_with_a_suggestion() {
         for (name, meant) in [
             ("x mm", "x_mm"),
             ("x.mm", "x_mm"),
@@ -272,7 +272,7 @@ mod tests {
 
     /// The first of each is a Cyrillic, Greek, wide or mathematical letter.
     #[test]
-    fn names_that_only_look_like_errors_are_refused_with_the_odd_character() {
+    fn lookalike_characters_are_refused_and_named() {
         for (name, code, meant) in [
             ("х", "U+0445", "x"),
             ("у_mm", "U+0443", "y_mm"),
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_show_is_refused_and_not_repeated() {
+    fn hidden_characters_are_refused_and_not_repeated() {
         for name in ["\u{feff}x", "x\0", "pa\0rt", "\x1b[2J", "note\nmore", "x\u{200b}", "\u{202e}x"] {
             let fault = read(name).expect_err(name);
             assert!(!fault.message.contains(is_hidden), "{name:?}");

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_reported_in_its_place() {
+    fn defects_are_reported_in_their_places() {
         let text = "x=1,y=5,yaw=2.5,x=3,pich=2";
         let places: Vec<&str> = parse_counts(text, &design())
             .unwrap_err()

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_read_with_what_was_seen() {
+    fn rows_are_read_with_observed_outcomes() {
         let text = "trial,line,x_mm,pitch_deg,predicted,outcome,notes\n7,2,5,0,aligned,aligned,\n3,2,10,-9,jammed,,late\n";
         let table = RobotTrialTable::parse(text, &design(), OffsetsAt::Face).unwrap();
         let seen: Vec<_> = table.rows.iter().map(|row| (row.trial, row.line, row.observed)).collect();

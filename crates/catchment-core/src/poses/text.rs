@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_text_or_never_ends_is_refused() {
+    fn invalid_utf8_and_endless_input_are_refused() {
         assert_eq!(read_text("\u{feff}x\n1\n".as_bytes()).unwrap(), "x\n1\n");
         assert!(matches!(read_text(&b"x\n1\n\xff\n"[..]), Err(TextError::NotUtf8 { line: 3 })));
         assert!(matches!(read_text(io::repeat(b'x')), Err(TextError::TooLarge)));

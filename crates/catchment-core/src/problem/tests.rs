@@ -22,7 +22,7 @@ fn diagnostics(error: ProblemError) -> Diagnostics {
 }
 
 #[test]
-fn it_goes_to_any_thread_and_is_one_value() {
+fn a_problem_is_clone_send_and_sync() {
     fn goes_anywhere<T: Send + Sync + Clone + 'static>(_: &T) {}
     let problem = read(V_FACE).unwrap();
     goes_anywhere(&problem);
@@ -33,7 +33,7 @@ fn it_goes_to_any_thread_and_is_one_value() {
 }
 
 #[test]
-fn equal_digests_are_equal_problems_whatever_they_are_called() {
+fn digests_depend_on_the_problem_not_its_name() {
     let digest = |text: &str| read(text).unwrap().digest().to_owned();
     let own = digest(V_FACE);
     assert_eq!(digest(&format!("name = \"another\"\n{V_FACE}")), own);
@@ -49,7 +49,7 @@ fn equal_digests_are_equal_problems_whatever_they_are_called() {
 }
 
 #[test]
-fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
+fn the_digest_depends_on_mesh_content_not_location() {
     let meshes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/meshes");
     let [plug, socket] = ["plug.stl", "socket.stl"].map(|name| std::fs::read(meshes.join(name)).unwrap());
     let home = tempfile::tempdir().unwrap();
@@ -76,7 +76,7 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
 }
 
 #[test]
-fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
+fn diagnostics_keep_their_place_from_any_module() {
     let place = |text: &str| {
         let result = diagnostics(read(text).unwrap_err());
         let source = result.source.unwrap();
@@ -106,7 +106,7 @@ fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
 }
 
 #[test]
-fn a_refused_change_says_what_asked_for_it() {
+fn a_refused_change_names_its_origin() {
     let draft = Draft::read(SourceText::new("d.toml", V_FACE)).unwrap();
     let all = DofSet::ALL;
     let result = diagnostics(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
@@ -152,7 +152,7 @@ fn triangles_in_memory_are_the_same_problem_as_their_family() {
 }
 
 #[test]
-fn what_is_wrong_in_memory_is_said_without_a_file() {
+fn defects_in_memory_are_reported_without_a_file() {
     let alignment = Alignment::new(DofSet::EMPTY.with(Dof::X), Mount::X);
     let mut open = soup(Family::Pyramid, true);
     open.pop();
@@ -215,7 +215,7 @@ fn a_measured_width_gives_the_digest_of_a_written_one() {
 }
 
 #[test]
-fn what_is_wrong_beside_a_width_that_is_left_out_is_said() {
+fn defects_beside_an_omitted_width_are_reported() {
     let error_of = |text: &str| {
         let diagnostics = diagnostics(Draft::read(SourceText::new("d.toml", text)).unwrap_err());
         diagnostics.list.iter().map(|diagnostic| diagnostic.message.clone()).collect::<Vec<_>>().join("; ")

@@ -155,7 +155,7 @@ mod tests {
 
     /// Whatever is called aligned lies in the seat: no higher than its depth above the mated pose.
     #[test]
-    fn what_is_aligned_lies_in_the_seat() {
+    fn aligned_poses_end_in_the_seat() {
         let problem = beside_a_roof();
         let poses: Vec<PoseError> =
             (0..600).map(|k| PoseError { x: -0.9 + 0.003 * f64::from(k), ..PoseError::default() }).collect();

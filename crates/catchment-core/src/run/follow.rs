@@ -132,7 +132,7 @@ mod tests {
 
     /// The results kept after a stop equal those of the complete computation, for any number of threads.
     #[test]
-    fn what_was_finished_is_kept() {
+    fn finished_results_are_kept() {
         let problem = v_face();
         let poses: Vec<PoseError> = (0..4000)
             .map(|k| PoseError { x: f64::from(k) / 4000.0 - 0.5, pitch: 0.1, ..PoseError::default() })
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_finished_is_nothing_to_keep() {
+    fn a_run_stopped_before_any_result_is_cancelled() {
         let exec = Exec::new();
         exec.cancel_flag().store(true, Ordering::Relaxed);
         let method = "descent".parse().unwrap();

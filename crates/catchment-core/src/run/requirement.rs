@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn every_relation_on_both_sides() {
+    fn every_relation_is_judged_on_both_sides() {
         for (text, met) in [
             ("acceptance.sum>=2.5", true),
             ("acceptance.sum >= 2.6", false),
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_judged_is_said() {
+    fn invalid_requirements_are_reported() {
         for text in ["", "sum", ">= 3", "sum = 3", "sum >= much", "sum >= nan", "sum >= 3 parsec"] {
             assert!(matches!(judge(text), Err(RequirementError::Syntax { .. })), "{text}");
         }
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_written_as_it_is_read() {
+    fn requirements_display_as_they_are_parsed() {
         for text in ["onaa.edge >= 0.3", "a.0 == -1", "b < 2", "window.yaw >= 5 deg"] {
             assert_eq!(text.parse::<Requirement>().unwrap().to_string(), text);
         }

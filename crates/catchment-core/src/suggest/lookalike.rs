@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_looks_like_ascii_reads_as_ascii() {
+    fn lookalikes_of_ascii_read_as_ascii() {
         for (written, read) in [
             ("х", "x"),
             ("уаԝ", "yaw"),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_listed_twice_and_nothing_steers() {
+    fn lookalikes_are_unique_and_printable() {
         let all: Vec<char> = ALIKE.iter().flat_map(|(_, others)| others.chars()).collect();
         for (k, c) in all.iter().enumerate() {
             assert!(!all[..k].contains(c) && !c.is_ascii() && !crate::terminal::steers(*c), "{c}");

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_meant_is_said() {
+    fn malformed_numbers_get_a_suggestion() {
         for (text, help) in [
             ("nan", "write a finite number, or leave it out"),
             ("-inf", "write a finite number, or leave it out"),

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_body_is_the_first_and_holds_what_is_in_its_box() {
+    fn the_largest_body_is_first_and_includes_bodies_in_its_box() {
         let file = || {
             vec![
                 [tetrahedron(1.0, [5.0; 3]), tetrahedron(2.0, [0.0; 3]), tetrahedron(0.2, [0.1; 3])].concat(),

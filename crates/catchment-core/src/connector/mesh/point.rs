@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_says_its_unit_and_millimetres() {
+    fn a_point_displays_its_unit_and_millimetres() {
         let at = DVec3::new(1.0, -0.0, f64::from(0.1_f32));
         assert_eq!(MeshPoint::from(at).to_string(), "(1, 0, 0.1)");
         let of = |unit| MeshPoint { at, unit: Some(unit) }.to_string();

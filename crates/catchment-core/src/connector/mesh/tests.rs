@@ -39,7 +39,7 @@ fn refused(soup: &Soup) -> Vec<MeshProblem> {
 }
 
 #[test]
-fn what_is_sound_stays_as_it_is() {
+fn a_sound_mesh_stays_unchanged() {
     let cube = block([0.0; 3], [1.0; 3]);
     let (kept, ready) = (treated(&cube, MeshPreparation::AS_IT_IS).unwrap(), repaired(&cube));
     assert_eq!(kept.surface, ready.surface);
@@ -97,7 +97,7 @@ fn cells(at: impl IntoIterator<Item = [f64; 3]>) -> Soup {
 }
 
 #[test]
-fn a_lid_across_a_hole_goes() {
+fn a_lid_across_a_hole_is_removed() {
     let ring = (0..9).filter(|k| *k != 4).map(|k| [f64::from(k % 3), f64::from(k / 3), 0.0]);
     let mut frame = cells(ring);
     let [a, b, c, d] = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
@@ -109,7 +109,7 @@ fn a_lid_across_a_hole_goes() {
 }
 
 #[test]
-fn a_lid_on_a_blind_hole_may_as_well_be_its_top() {
+fn an_ambiguous_lid_on_a_blind_hole_is_refused() {
     let cup = (0..18).filter(|k| *k != 13).map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from));
     let mut cup = cells(cup);
     let [a, b, c, d] = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 2.0));
@@ -119,7 +119,7 @@ fn a_lid_on_a_blind_hole_may_as_well_be_its_top() {
 }
 
 #[test]
-fn windings_are_made_one() {
+fn windings_are_made_consistent() {
     let mut cube = block([0.0; 3], [1.0; 3]);
     for k in [1, 7, 8] {
         cube[k].swap(0, 1);
@@ -220,7 +220,7 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
 proptest! {
     /// A convex solid, spoilt in every way that does not change it, is repaired to the original.
     #[test]
-    fn a_spoilt_solid_is_the_sound_one(
+    fn a_spoilt_solid_is_repaired_to_the_original(
         points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 6..16),
         flat in prop::collection::vec((0usize..1000, 0usize..3, 0.2..0.8f64), 0..4),
         turned in prop::collection::vec(0usize..1000, 0..4),
@@ -265,7 +265,7 @@ proptest! {
 
     /// Two boxes that overlap, or not, have the volume of their union.
     #[test]
-    fn a_union_has_the_volume_of_both_without_what_they_share(
+    fn a_union_counts_the_shared_volume_once(
         shift in prop::array::uniform3(0.05..1.4f64), size in prop::array::uniform3(0.3..1.2f64)
     ) {
         let (lo, hi) = (DVec3::from_array(shift), DVec3::from_array(shift) + DVec3::from_array(size));
@@ -284,7 +284,7 @@ proptest! {
     /// Tetrahedra with corners on a small lattice, which touch in every way: an accepted result has at least
     /// the volume of the largest and at most that of all.
     #[test]
-    fn tangles_are_united_or_refused(
+    fn touching_tetrahedra_are_united_or_refused(
         corners in prop::collection::vec(prop::array::uniform4(prop::array::uniform3(0u8..4)), 2..5)
     ) {
         let mut soup = Soup::new();
@@ -310,7 +310,7 @@ proptest! {
 
 /// Found by the property above: the library that unites shells finds no ray that runs along nothing, and panics.
 #[test]
-fn what_the_union_panics_on_is_refused() {
+fn a_panicking_union_is_refused() {
     let corners =
         [[[0, 1, 0], [2, 0, 0], [1, 2, 0], [0, 0, 1]], [[1, 2, 1], [0, 0, 1], [0, 1, 1], [1, 1, 0]]];
     let mut soup = Soup::new();
@@ -376,7 +376,7 @@ fn a_plate_with_a_hole_keeps_convex_facets() {
 }
 
 #[test]
-fn what_is_hardly_bent_stays_bent() {
+fn a_slightly_bent_face_stays_bent() {
     // A roof so flat that single precision could not hold it: two facets, however flat.
     for (rise, facets) in [(1e-9, 2), (1e-14, 1)] {
         let mut cube = block([0.0; 3], [1.0; 3]);

@@ -29,7 +29,7 @@ fn loops_nest() {
 }
 
 #[test]
-fn what_bounds_nothing_is_refused() {
+fn invalid_loops_are_refused() {
     let bow = vec![DVec2::ZERO, DVec2::ONE, DVec2::X, DVec2::new(0.0, 1.1)];
     assert!(matches!(regions(vec![bow]), Err(OutlineProblem::Crossing { .. })));
     assert!(matches!(
@@ -47,7 +47,7 @@ fn what_bounds_nothing_is_refused() {
 /// A plate of 10 by 6 with a round hole of radius 2: as a path, as shapes, and as a DXF drawing. Chords lie
 /// inside the circle by at most the chord error.
 #[test]
-fn a_plate_with_a_hole_in_both_kinds_of_drawings() {
+fn svg_and_dxf_give_the_same_plate_with_a_hole() {
     let round = std::f64::consts::PI * 4.0;
     let most = std::f64::consts::TAU * 2.0 * 1e-3;
     let path = "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0,0h10v6H0z M7,3a2,2 0 1 0 -4 0 A2 2 0 0 0 7 3Z'/></svg>";
@@ -85,7 +85,7 @@ fn a_plate_with_a_hole_in_both_kinds_of_drawings() {
 }
 
 #[test]
-fn what_is_wrong_with_a_drawing_is_said_with_its_line() {
+fn drawing_defects_are_reported_with_their_line() {
     let svg = |inner: &str| drawing("a.svg", &format!("<svg>\n{inner}\n</svg>")).unwrap_err().to_string();
     assert!(svg("<path d='M0 0h5v5'/>").starts_with("line 2: the outline that begins at [0, 0] is open"));
     assert!(svg("<text>a</text>").starts_with("line 2: <text> is not read"));
@@ -132,7 +132,7 @@ fn the_unit_of_a_drawing_counts() {
 
 /// Everything that may hide a shape, and the volume that is left: a plate of 10 by 10 with a hole of 2 by 2 and, in the hole, a post that is hidden.
 #[test]
-fn what_is_hidden_is_no_solid() {
+fn hidden_shapes_are_left_out() {
     let svg = |head: &str, post: &str| {
         format!("<svg {head}>\n<path d='M0 0h10v10h-10z M2 2h2v2h-2z'/>{post}\n</svg>")
     };
@@ -180,7 +180,7 @@ fn what_is_hidden_is_no_solid() {
 }
 
 #[test]
-fn what_changes_a_picture_and_is_not_read_is_refused_with_its_line() {
+fn unsupported_svg_features_are_refused_with_their_line() {
     let error_of = |post: &str| {
         drawing("a.svg", &format!("<svg>\n<rect width='9' height='9'/>\n{post}</svg>"))
             .unwrap_err()
@@ -248,7 +248,7 @@ fn a_transform_has_its_origin() {
 
 /// Attributes are counted on the tokens that are read: quotes in a text change nothing.
 #[test]
-fn a_crowd_is_counted_where_it_stands() {
+fn too_many_attributes_or_elements_are_refused() {
     let crowd = |count: usize| (0..count).map(|k| format!("a{k}='' ")).collect::<Vec<_>>().concat();
     for text in ["", "='", "=\"", "<!-- ' -->=\"", "<![CDATA[ <g a=\"]]>"] {
         let result =
@@ -332,7 +332,7 @@ fn a_broken_dxf_drawing_is_refused_with_its_line() {
 
 /// Hundreds of holes in a plate, which cost an hour of comparing bridges when all were sorted for each.
 #[test]
-fn a_sieve_is_a_solid() {
+fn a_plate_with_many_holes_is_a_solid() {
     let hole =
         |k: usize| format!("M{} {}h1l-.5 1z", 1.0 + 2.0 * (k % 25) as f64, 1.0 + 2.0 * (k / 25) as f64);
     let holes: String = (0..625).map(hole).collect();

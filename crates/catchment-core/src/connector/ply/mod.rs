@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn defects_are_reported() {
         let refused = |bytes: &[u8]| read(bytes).unwrap_err()[0].to_string();
         let changed = |from: &str, to: &str| refused(CUBE.replace(from, to).as_bytes());
         assert!(
@@ -194,7 +194,7 @@ mod tests {
 
     /// Elements that take no bytes could have any number: a header of a megabyte requested 29 GB.
     #[test]
-    fn a_header_is_believed_as_far_as_there_are_bytes() {
+    fn a_header_that_announces_too_much_is_refused() {
         let refused = |bytes: &[u8]| read(bytes).unwrap_err()[0].to_string();
         let nothing = (0..400).map(|k| format!("element a{k} 1000000\n")).collect::<Vec<_>>().concat();
         let format = "ply\nformat binary_little_endian 1.0\n";
@@ -232,7 +232,7 @@ mod tests {
 
     /// Elements that are passed over take no memory, however many there are, and may stand anywhere.
     #[test]
-    fn other_elements_are_passed_over() {
+    fn other_elements_are_skipped() {
         let cube = read(CUBE.as_bytes()).unwrap();
         let (head, body) = CUBE.split_once("end_header\n").unwrap();
         let before = head.replace(

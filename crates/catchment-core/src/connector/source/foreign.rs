@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_called_stl_is_named_as_what_it_is() {
+    fn a_foreign_file_called_stl_is_reported_by_its_format() {
         let refused = |bytes: &[u8]| refuse(bytes, &["stl"]).unwrap_err()[0].to_string();
         let archive = [b"PK\x03\x04".as_slice(), &[0; 40], MODEL].concat();
         assert!(refused(&archive).contains("a 3MF: let its name end in .3mf"));

@@ -41,7 +41,7 @@ fn a_pair_in_memory_is_the_family_without_any_file() {
 }
 
 #[test]
-fn triangles_in_memory_are_complained_about_by_number() {
+fn defects_of_triangles_in_memory_are_reported() {
     let hull = convex_hull(&cube()[0]).unwrap();
     let good = soup(&hull);
     let defect = |triangles: Vec<[DVec3; 3]>| match &build(&HalfSource::Triangles(triangles)).unwrap_err()[0]
@@ -100,7 +100,7 @@ fn stl_of(half: &Half) -> Vec<u8> {
 }
 
 #[test]
-fn what_the_file_held_counts_and_not_where_it_lay() {
+fn the_digest_depends_on_the_content_and_not_on_the_path() {
     let half = build(&HalfSource::Pieces(cube())).unwrap();
     let design = mesh_design("a.stl", &stl_of(&half));
     let ConnectorSpec::Own(OwnSpec {

@@ -16,7 +16,7 @@ fn read_answer(bytes: &[u8]) -> Result<FileContent, Vec<MeshProblem>> {
 }
 
 #[test]
-fn an_answer_is_taken_whole_or_not_at_all() {
+fn only_a_complete_reply_is_read() {
     let whole = answer(HEAD, &POINTS, &[0, 1, 2]);
     let held = read_answer(&whole).unwrap();
     assert_eq!((held.bodies.len(), held.bodies[0].len(), held.metres), (1, 1, Some(1e-3)));
@@ -37,7 +37,7 @@ fn an_answer_is_taken_whole_or_not_at_all() {
 }
 
 #[test]
-fn what_it_refuses_is_said_with_advice() {
+fn refusals_are_reported_with_advice() {
     let error_of = |kind: &str, message: &str| {
         let head = serde_json::json!({ "error": kind, "message": message }).to_string();
         read_answer(&answer(&head, &[], &[])).unwrap_err()[0].to_string()
@@ -59,7 +59,7 @@ fn what_it_refuses_is_said_with_advice() {
 }
 
 #[test]
-fn only_what_begins_like_a_step_file_is_meshed() {
+fn only_files_with_a_step_header_are_meshed() {
     let spec = FileSpec::new("part.step", 1.0);
     let refused = |bytes: &[u8], spec: &FileSpec| {
         read(&FileBytes::whole(bytes.to_vec()), spec, &Exec::new()).unwrap_err()[0].to_string()
@@ -79,7 +79,7 @@ fn shell(script: &str, input: Vec<u8>, most_time: Duration, exec: &Exec) -> Resu
 
 #[cfg(unix)]
 #[test]
-fn a_child_is_heard_and_ended() {
+fn a_child_process_is_read_and_ended() {
     let exec = Exec::new();
     let long = Duration::from_mins(1);
     // More than a pipe holds, both ways.
@@ -99,7 +99,7 @@ fn a_child_is_heard_and_ended() {
 }
 
 #[test]
-fn a_program_that_is_none_is_said() {
+fn a_missing_program_is_reported() {
     let job = child::Job {
         program: "no/such/python".into(),
         arguments: &[],

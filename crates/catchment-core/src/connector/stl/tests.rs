@@ -80,14 +80,14 @@ fn scale_turns_file_units_into_d() {
 }
 
 #[test]
-fn an_empty_file_says_so() {
+fn an_empty_file_is_reported() {
     assert_eq!(parse(b"").unwrap_err(), [MeshProblem::Empty]);
     assert_eq!(parse(b"solid\nendsolid\n").unwrap_err(), [MeshProblem::NoTriangles]);
     assert_eq!(parse(b"hello").unwrap_err(), [MeshProblem::NotStl { found: 5 }]);
 }
 
 #[test]
-fn a_truncated_binary_file_says_where() {
+fn a_truncated_binary_file_is_reported() {
     let mut file = bytes(&socket(), StlEncoding::Binary);
     let expected = file.len() as u64;
     file.truncate(400);
@@ -103,7 +103,7 @@ fn a_binary_file_that_begins_with_solid_is_binary() {
 }
 
 #[test]
-fn a_truncated_text_says_in_which_line() {
+fn a_truncated_text_is_reported_with_its_line() {
     let whole = text(&cube());
     let cut: String = whole.lines().take(11).collect::<Vec<_>>().join("\n");
     let problems = parse(cut.as_bytes()).unwrap_err();

@@ -74,7 +74,7 @@ fn models_may_be_split() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_place() {
+fn defects_are_reported_with_their_place() {
     let refused = |text: &str| of_model(text).err().unwrap();
     let object =
         |inner: &str| model("", &format!("<object id=\"1\">{inner}</object>"), "<item objectid=\"1\"/>");
@@ -107,7 +107,7 @@ fn what_is_wrong_is_said_with_its_place() {
 
 /// Small files that would unpack to large content: unpacking stops at the limit.
 #[test]
-fn bombs_do_not_go_off() {
+fn expansion_bombs_are_refused() {
     let refused = |text: &str| of_model(text).err().unwrap();
     // Each object contains the previous object twice.
     let twice = |k: u32| {
@@ -155,7 +155,7 @@ fn bombs_do_not_go_off() {
 /// The same mesh in the same place, repeated any number of times, is one solid; in too many places it is
 /// rejected.
 #[test]
-fn bodies_that_fall_together_are_one() {
+fn coincident_bodies_are_one() {
     let one = format!("<object id=\"1\">{MESH}</object>");
     let twenty = "<component objectid=\"1\"/>".repeat(20);
     let group = format!("<object id=\"2\"><components>{twenty}</components></object>");

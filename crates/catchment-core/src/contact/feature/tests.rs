@@ -40,7 +40,7 @@ fn a_cone_is_round_and_pointed() {
 }
 
 #[test]
-fn names_say_how_faces_lie() {
+fn names_describe_face_orientations() {
     let lie = |least: f64, most: f64| FaceOrientation {
         least: least.to_radians(),
         most: most.to_radians(),

@@ -110,7 +110,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn trees_of_families_find_what_the_list_holds(
+    fn trees_of_families_agree_with_the_list(
         which in proptest::sample::select(Family::ALL.to_vec()), pose in poses(0.8, 1.5),
         slack in 0.0..0.1f64, reach in 0.0..0.1f64, below in 0.0..0.3f64,
     ) {
@@ -118,7 +118,7 @@ proptest! {
     }
 
     #[test]
-    fn trees_of_soups_find_what_the_list_holds(
+    fn trees_of_soups_agree_with_the_list(
         corners in proptest::collection::vec(proptest::array::uniform3(-0.5..0.5f64), 8..64), pose in poses(0.6, 3.0),
         slack in 0.0..0.1f64, reach in 0.0..0.1f64, below in 0.0..0.3f64,
     ) {
@@ -130,7 +130,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn trees_of_what_is_wide_and_far_find_what_the_list_holds(
+    fn trees_of_stretched_distant_soups_agree_with_the_list(
         corners in proptest::collection::vec(proptest::array::uniform3(-0.5..0.5f64), 8..64), pose in poses(0.6, 3.0),
         wide in proptest::array::uniform3(0.02..16.0f64), far in proptest::array::uniform3(-16.0..16.0f64),
         slack in 0.0..0.1f64, reach in 0.0..0.1f64,
@@ -146,7 +146,7 @@ proptest! {
 }
 
 #[test]
-fn trees_of_a_funnel_find_what_the_list_holds() {
+fn trees_of_a_funnel_agree_with_the_list() {
     let pair = funnel(1000);
     // Far from the mated pose, near it, and at it, with contact everywhere.
     for (size, reach) in [(1.0, 0.02), (0.3, 0.02), (1e-2, 1e-2), (1e-3, 1e-4), (1e-6, 1e-4), (0.0, 1e-5)] {
@@ -197,7 +197,7 @@ fn walk(pair: &Pair, start: &CorPose, seed: f64) {
 }
 
 #[test]
-fn what_is_kept_for_a_neighbourhood_answers_as_the_list_does() {
+fn cached_neighbourhoods_agree_with_the_list() {
     for seed in 0..8 {
         let seed = 0.37 * f64::from(seed);
         let start = CorPose { lateral: DVec2::new(0.1, -0.05), rotation: rotation(0.05, 0.1, 0.2) };
@@ -209,7 +209,7 @@ fn what_is_kept_for_a_neighbourhood_answers_as_the_list_does() {
 }
 
 #[test]
-fn heights_of_a_funnel_are_the_judges() {
+fn funnel_heights_agree_with_brute_force() {
     let pair = funnel(1000);
     for k in 0..4 {
         let a = f64::from(k);
@@ -223,7 +223,7 @@ fn heights_of_a_funnel_are_the_judges() {
 }
 
 #[test]
-fn a_searched_lattice_is_the_listed_one() {
+fn lattice_heights_by_tree_and_list_agree() {
     let mut pair = funnel(300);
     let turn = rotation(0.1, -0.2, 0.3);
     let lattice = |first: f64| Lattice { first, step: 0.11, count: 14 };

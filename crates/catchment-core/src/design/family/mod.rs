@@ -288,7 +288,7 @@ mod tests {
     use crate::design::keys::{Applies, DesignTable};
 
     #[test]
-    fn the_table_of_keys_says_which_family_has_what() {
+    fn the_key_table_lists_each_familys_parameters() {
         for family in Family::ALL {
             let has: Vec<_> = FamilySpec::new(family).parameters().iter().map(|(key, _)| key.name).collect();
             let message: Vec<_> = DesignTable::Connector
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn one_object_with_the_parameters_that_the_family_has() {
+    fn json_holds_only_the_parameters_of_the_family() {
         let json = |spec: FamilySpec| serde_json::to_string(&spec).unwrap();
         let pyramid = FamilySpec::new(Family::Pyramid);
         assert_eq!(json(pyramid), r#"{"family":"pyramid","aspect_ratio":0.5,"base_thickness":null}"#);

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_system_that_says_nothing_has_no_limit() {
+    fn a_system_without_limits_has_no_limit() {
         let home = system(&[]);
         assert_eq!((free(home.path()), limit(home.path())), (None, None));
         let home = system(&[
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_address_space_leaves() {
+    fn the_address_space_limits_the_memory() {
         let limits = ("proc/self/limits", "Limit   Soft  Hard\nMax address space   10240   20480  bytes\n");
         assert_eq!(limit(system(&[limits]).path()), Some(10240));
         let taken = |size| system(&[limits, ("proc/self/status", size)]);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_control_groups_of_version_2_leave() {
+    fn control_groups_of_version_2_limit_the_memory() {
         let home = system(&[
             ("proc/self/cgroup", "0::/a/b\n"),
             ("sys/fs/cgroup/a/memory.max", "1000\n"),
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_control_groups_of_version_1_leave() {
+    fn control_groups_of_version_1_limit_the_memory() {
         let home = system(&[
             ("proc/self/cgroup", "7:cpu,cpuacct:/x\n5:memory:/docker/not-seen-from-inside\n"),
             ("sys/fs/cgroup/memory/memory.limit_in_bytes", "4000\n"),

@@ -199,7 +199,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn operations_hold_what_they_give((a, x) in known(), (b, y) in known()) {
+        fn operations_contain_exact_results((a, x) in known(), (b, y) in known()) {
             prop_assert!((a + b).contains(x + y) && (a - b).contains(x - y) && (a * b).contains(x * y));
             prop_assert!((a * 0.3).contains(x * 0.3) && (-a).contains(-x) && a.hull(b).contains(y));
             prop_assert_eq!(a.and(b).is_some_and(|both| both.contains(x)), b.contains(x));
@@ -210,7 +210,7 @@ mod tests {
         }
 
         #[test]
-        fn waves_are_no_wider_than_their_angles((a, _) in known()) {
+        fn sine_and_cosine_are_no_wider_than_their_angle((a, _) in known()) {
             for wave in a.sin_cos() {
                 prop_assert!(wave.width() <= a.width() + 4.0 * SINE);
             }
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn crests_are_reached_and_nothing_stays_nothing() {
+    fn sine_reaches_its_maximum_and_zero_stays_zero() {
         let [sine, cosine] = Interval::new(-0.1, 2.0).sin_cos();
         assert_eq!((sine.up, cosine.up), (1.0, 1.0));
         assert_eq!(Interval::ZERO.sin_cos(), [Interval::ZERO, Interval::thin(1.0)]);

@@ -48,7 +48,7 @@ fn random_box(pair: &Pair, most: f64, number: &mut impl FnMut() -> f64) -> (Pose
 
 /// Heights lie between floor and roof, and the carrying contacts are among the recorded contacts, with
 /// height, slope and push within their bounds.
-fn holds_what_is(pair: &Pair, boxes: usize, most: f64) {
+fn assert_bounds_hold(pair: &Pair, boxes: usize, most: f64) {
     let bodies = Bodies::of(pair);
     let all: Vec<u32> = (0..bodies.meetings.len() as u32).collect();
     let (mut number, mut nearby) = (numbers(17), pair.about(REACH));
@@ -96,12 +96,12 @@ fn holds_what_is(pair: &Pair, boxes: usize, most: f64) {
 fn bounds_hold_exact_heights_and_slopes() {
     for family in [Family::VFace, Family::XFace, Family::SFace] {
         for most in [0.2, 0.02, 1e-4] {
-            holds_what_is(&pair_of(family, &[], 0.3), 300, most);
+            assert_bounds_hold(&pair_of(family, &[], 0.3), 300, most);
         }
     }
     for most in [0.2, 0.02] {
-        holds_what_is(&pair_of(Family::Pyramid, &[], -0.4), 150, most);
-        holds_what_is(&pair_of(Family::XFace3d, &[], 0.5), 150, most);
+        assert_bounds_hold(&pair_of(Family::Pyramid, &[], -0.4), 150, most);
+        assert_bounds_hold(&pair_of(Family::XFace3d, &[], 0.5), 150, most);
     }
 }
 
@@ -212,7 +212,7 @@ fn no_motion_contradicts_the_other_certificates() {
 
 /// Poses left open by the budget are undecided, and no label is wrong.
 #[test]
-fn a_budget_ends_it() {
+fn a_time_budget_ends_certification() {
     let pair = pair_of(Family::VFace, &[], 0.0);
     let settings = CertifiedSettings { boxes: usize::MAX, gap: 0.0, budget_s: Some(0.3) };
     let found = certify(&pair, &settings, &Exec::new()).unwrap();
@@ -232,7 +232,7 @@ fn nothing_jams_where_all_slides_off() {
 
 /// In translation the pyramid leaves its socket when its tip is at the rim: lifted by the depth H.
 #[test]
-fn the_pyramid_is_held_by_its_depth() {
+fn the_escape_height_of_the_pyramid_is_its_depth() {
     let pair = pair_of(Family::Pyramid, &[Dof::X, Dof::Y], 0.0);
     let found = certified(&pair, 20_000);
     let depth = FamilySpec::new(Family::Pyramid).aspect_ratio();
@@ -287,7 +287,7 @@ fn a_border_in_three_errors_is_reported() {
 
 /// Beyond this distance nothing touches, for any centre of rotation: no motion returns from there.
 #[test]
-fn halves_pass_each_other_by_where_it_is_said() {
+fn halves_have_no_contact_at_the_passing_distance() {
     for cor in [-1.5, -0.5, 0.0, 0.5, 1.5] {
         for family in [Family::Pyramid, Family::XFace3d, Family::SFace] {
             let pair = pair_of(family, &[], cor);
@@ -344,7 +344,7 @@ fn motions_never_go_back_along_a_bearing() {
 
 /// Trials of an independent engine end in agreement with the labels of their boxes.
 #[test]
-fn no_trial_of_an_engine_contradicts() {
+fn no_engine_trial_contradicts_the_labels() {
     for (file, boxes, labelled) in
         [("x-face-3d-cor0-xy.json", 8000, 150), ("pyramid-ar1-cor0-xyyaw.json", 20_000, 10)]
     {
@@ -375,7 +375,7 @@ fn no_trial_of_an_engine_contradicts() {
 /// The lowest exit from the seat on a grid lies between its certified bounds, up to the height difference
 /// between cells.
 #[test]
-fn the_merge_tree_lets_the_seat_go_as_high() {
+fn the_merge_tree_escape_lies_between_the_bounds() {
     let translations = [Dof::X, Dof::Y];
     for (family, free, cor) in
         [(Family::VFace, &[][..], 0.0), (Family::XFace, &[], 0.5), (Family::Pyramid, &translations, 0.0)]
@@ -406,7 +406,7 @@ fn the_merge_tree_lets_the_seat_go_as_high() {
 
 /// With all five errors free boxes are too many, but the neighbourhood of the mated pose is certain, and with it a part of the set that has a volume.
 #[test]
-fn five_errors_leave_an_inner_set() {
+fn five_errors_have_a_certified_inner_set() {
     let pair = pair_of(Family::Pyramid, &[], 0.5);
     let bodies = Bodies::of(&pair);
     let root = pair.alignment.half_ranges.map(|range| Interval::new(-range, range));
@@ -438,7 +438,7 @@ fn five_errors_leave_an_inner_set() {
 
 /// A ball in a pit of eight slopes of 45°, whose rim lies H high: its centre rests √2·r above the apex, and leaves r above the rim.
 #[test]
-fn a_ball_is_held_by_the_rim_of_its_pit() {
+fn the_escape_height_of_a_ball_is_that_over_the_rim() {
     const SIDES: usize = 8;
     let (rim, beyond, depth, radius, chord) = (0.4, 0.6, 0.4, 0.25, 0.01);
     let wedge = |k: usize| {
@@ -491,7 +491,7 @@ fn threads_change_no_bit() {
 }
 
 #[test]
-fn it_ends_soon_when_asked_to() {
+fn a_cancelled_certification_ends_soon() {
     let pair = pair_of(Family::Pyramid, &[], 0.0);
     let exec = Exec::new();
     let flag = exec.cancel_flag();

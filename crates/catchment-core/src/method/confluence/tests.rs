@@ -104,7 +104,7 @@ fn threads_do_not_change_a_bit() {
 /// Cells within the budget are decided as without it; cells beyond it are higher, and undecided: for any
 /// number of threads.
 #[test]
-fn a_budget_of_motions_decides_what_lies_lowest() {
+fn a_motion_budget_decides_the_lowest_cells() {
     let pair = pair(Family::XFace3d, 0.577, 0.5, 0.5, None);
     let grid = Grid::over(&pair.alignment, |_| 6);
     let whole = labels(&pair, 6);
@@ -143,7 +143,7 @@ fn a_budget_of_motions_decides_what_lies_lowest() {
 }
 
 #[test]
-fn a_budget_of_time_ends_at_once_or_never() {
+fn a_time_budget_is_ample_or_leaves_cells_undecided() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
     let grid = Grid::over(&pair.alignment, |_| 5);
     let whole = labels(&pair, 5);
@@ -194,7 +194,7 @@ fn a_slice_is_followed_cell_by_cell() {
 }
 
 #[test]
-fn refusals() {
+fn unaffordable_and_cancelled_runs_are_refused() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
     let grid = Grid::over(&pair.alignment, |_| 40);
     let small = Exec::new().with_memory_budget(1 << 20);

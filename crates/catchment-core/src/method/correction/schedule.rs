@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_a_given_time_is_a_run_of_as_many_poses() {
+    fn a_time_budget_gives_the_batches_of_its_sample_count() {
         for strata in [1, 4, 22, 32] {
             for millis in (1..60).chain([100, 500, 2500, 20_000]) {
                 let budget = Stop::Budget(Duration::from_millis(millis));
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_as_asked_for_and_one_in_every_stratum_of_every_batch() {
+    fn batches_add_up_to_the_sample_count_and_cover_every_stratum() {
         for strata in [1, 4, 22, 32] {
             for wanted in (0..700).chain([4000, 100_000]) {
                 let sizes = batches(Stop::Samples(wanted), strata, Duration::ZERO);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_is_parted_completely_and_mostly_where_the_doubt_is() {
+    fn a_batch_is_fully_allotted_and_favours_uncertain_strata() {
         let mut seen = [StratumCounts::new(0.5), StratumCounts::new(0.3), StratumCounts::new(0.2)];
         assert_eq!(allot(3, &seen), [1, 1, 1]);
         assert_eq!(allot(103, &seen), [51, 31, 21]);

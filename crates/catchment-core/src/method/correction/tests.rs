@@ -94,7 +94,7 @@ fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
 /// In nearly pure strata the interval must leave room for unsampled cases, so for correct grids it contains
 /// the true value more often than 95 times in 100; for all others between 93 and 98.
 #[test]
-fn the_interval_holds_the_truth_as_often_as_it_says_and_the_mean_is_the_truth() {
+fn the_interval_has_its_coverage_and_the_mean_is_unbiased() {
     const REPEATS: u64 = 1000;
     for case in cases() {
         for stop in [Stop::Samples(300), Stop::Samples(1000)] {
@@ -124,7 +124,7 @@ fn a_tolerance_is_met_and_its_interval_still_holds() {
 }
 
 #[test]
-fn nothing_accepted_ends_too_and_leaves_room_for_what_was_not_seen() {
+fn an_empty_acceptance_ends_with_a_positive_upper_bound() {
     let case = Case::new("nothing", &[9, 9], 0.0, |_, _| false);
     let result = case.estimate(Stop::Tolerance(0.5), 1, &Exec::new());
     assert!(result.sum == 0.0 && result.ci95[0] == 0.0 && result.ci95[1] > 0.0, "{result:?}");
@@ -185,7 +185,7 @@ fn undecided_poses_widen_the_interval_upwards_only() {
 }
 
 #[test]
-fn a_stop_is_obeyed_and_settings_without_sense_are_refused() {
+fn a_cancelled_run_stops_and_invalid_settings_are_refused() {
     let case = &cases()[0];
     let by = ByNeighbours::new(&case.outcomes, case.grid.shape());
     let with = |grid: &Grid, stop: Stop, exec: &Exec| {
@@ -222,7 +222,7 @@ impl Stratify for Table {
 proptest! {
     /// Cells found by rank against a plain list of the stratum's cells.
     #[test]
-    fn every_cell_of_a_stratum_is_found_by_its_rank(
+    fn every_cell_of_a_stratum_is_located_by_its_rank(
         table in proptest::collection::vec(0u8..MOST_STRATA as u8, 1..2000), mask in 0u8..32,
     ) {
         // Masked: few strata with many cells as well as many with few.
@@ -240,7 +240,7 @@ proptest! {
 
     /// Neighbours counted by strides against neighbours counted by coordinates; fractions band as they are named.
     #[test]
-    fn strata_are_what_they_are_named(
+    fn strata_match_their_names(
         shape in proptest::collection::vec(1usize..5, 1..=5), seed in any::<u64>(),
     ) {
         let grid = grid(&shape);

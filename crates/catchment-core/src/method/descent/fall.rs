@@ -57,7 +57,7 @@ fn about(pair: &Pair) -> ReleaseResult {
         let mut seat = Seat::new(pair);
         // If all facets nearly touch, the last part of a motion near the mated pose takes longest; motions
         // stop early if all starts nearby reach it.
-        let mut within = if pair.asks_trees() && !pair.is_tight() { TAKEN } else { 0.0 };
+        let mut within = if pair.has_trees() && !pair.is_tight() { TAKEN } else { 0.0 };
         let mut falls = |from: PoseError| {
             // A motion near the mated pose stops early, unless its end is needed: the last part takes
             // longest.
@@ -106,7 +106,7 @@ fn starts(pair: &Pair) -> Vec<PoseError> {
     };
     let alternate = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     // Motions of these halves are slow: about a tenth of a second each.
-    let is_slow = pair.asks_trees() || pair.is_tight();
+    let is_slow = pair.has_trees() || pair.is_tight();
     let mut starts = vec![PoseError::default()];
     if !is_slow {
         starts.extend(

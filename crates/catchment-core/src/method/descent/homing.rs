@@ -67,7 +67,7 @@ mod tests {
     use crate::method::descent::outcome;
 
     #[test]
-    fn it_does_not_depend_on_who_asks_first() {
+    fn homing_does_not_depend_on_the_first_query() {
         let alignment = Alignment::default_for(Some(Family::Pyramid));
         let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid));
         let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };

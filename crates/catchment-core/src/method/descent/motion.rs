@@ -171,7 +171,7 @@ impl<'a> Motion<'a> {
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
-            } else if self.pair.asks_trees() {
+            } else if self.pair.has_trees() {
                 let far = self.pair.alignment.length(&self.error_of(&state));
                 let climbed = self.energy(&state) - self.pair.mated_energy();
                 if far <= near && climbed >= TAPER * far {
@@ -314,20 +314,20 @@ impl<'a> Motion<'a> {
     /// Whether halves of many facets are moved to their mated pose when they are near it. Almost all facets
     /// touch there, and determining which of them carry takes as long as the whole motion before.
     fn ends_at_home(&self) -> bool {
-        self.pair.asks_trees() && !self.pair.is_tight() && !self.settings.may_hold()
+        self.pair.has_trees() && !self.pair.is_tight() && !self.settings.may_hold()
     }
 
     /// The mated pose, if halves of many facets are as close to it, in the ρ-metric, as the contact
     /// tolerance.
     pub(super) fn home_of(&self, state: &State) -> Option<State> {
         let is_near = || self.pair.alignment.length(&self.error_of(state)) <= TOUCHING;
-        (self.pair.asks_trees() && is_near()).then(|| self.home())
+        (self.pair.has_trees() && is_near()).then(|| self.home())
     }
 
     /// Whether halves of many facets rest in the mated pose, at which no push leads on.
     pub(super) fn is_home(&self, state: &State) -> bool {
         let home = self.home();
-        self.pair.asks_trees()
+        self.pair.has_trees()
             && !self.pair.is_tight()
             && state.cor == home.cor
             && state.rotation == home.rotation

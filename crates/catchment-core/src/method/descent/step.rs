@@ -134,7 +134,7 @@ impl Motion<'_> {
                     // A wall without a known contact becomes a contact, if it is new; or the contact that
                     // carries the body there does.
                     let looks =
-                        cuts < MAX_CUTS && (!self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE);
+                        cuts < MAX_CUTS && (!self.pair.has_trees() || pace.step <= longest * LOOKING_SHARE);
                     if looks
                         && (self.meet(state, &landed, pace.step, &u) || rises && self.cut(&landed, rise, &u))
                     {

@@ -130,7 +130,7 @@ fn the_first_step_is_the_steepest_in_the_metric() {
 }
 
 #[test]
-fn passing_by_is_missed_and_keeps_the_pose() {
+fn a_passing_pose_is_missed_and_unchanged() {
     let pair = pair(Family::Pyramid, lateral);
     let end = outcome(&pair, &at(1.3, 0.0), &DescentSettings::default());
     assert_eq!(end.outcome, Outcome::Missed);
@@ -163,7 +163,7 @@ fn a_locked_translation_stays_at_the_centre_of_rotation() {
 }
 
 #[test]
-fn a_spent_budget_is_undecided_and_said() {
+fn a_spent_budget_is_undecided_and_reported() {
     let pair = pair(Family::Pyramid, |_| ());
     let settings = DescentSettings { max_steps: 2, ..DescentSettings::default() };
     let domain = Domain::Poses(vec![at(0.3, 0.1), at(0.0, 0.0)]);
@@ -173,7 +173,7 @@ fn a_spent_budget_is_undecided_and_said() {
 }
 
 #[test]
-fn a_stop_is_obeyed() {
+fn a_cancelled_run_stops() {
     let pair = pair(Family::Pyramid, |_| ());
     let exec = Exec::new();
     exec.cancel_flag().store(true, Ordering::Relaxed);
@@ -184,9 +184,9 @@ fn a_stop_is_obeyed() {
 /// Pins in holes that fit tightly, followed by trees: lengths of a step that overlap, tried before an overlap was seen, count as clear no more. These poses of
 /// 310 jammed.
 #[test]
-fn pins_by_trees_do_not_jam_on_a_length_that_seemed_clear() {
+fn tight_pins_followed_by_trees_do_not_jam_falsely() {
     let pair = pair(Family::PinHole, |_| ());
-    assert!(pair.is_tight() && pair.asks_trees());
+    assert!(pair.is_tight() && pair.has_trees());
     let settings = DescentSettings::default();
     let mut follower = Follower::new(&pair, &settings);
     for error in [
@@ -292,7 +292,7 @@ fn lathed(halves: [meshes::Triangles; 2]) -> Pair {
 #[test]
 fn a_funnel_ends_in_the_mated_pose() {
     let pair = lathed(meshes::funnel(1000));
-    assert!(pair.asks_trees() && !pair.is_tight());
+    assert!(pair.has_trees() && !pair.is_tight());
     let settings = DescentSettings::default();
     let mut follower = Follower::new(&pair, &settings);
     let mut docked = 0;
@@ -323,7 +323,7 @@ fn a_funnel_ends_in_the_mated_pose() {
 /// If a flat bottom leaves play, a half near the mated pose stays at its rest, and is not moved to it; if
 /// halves taper, it is.
 #[test]
-fn only_a_seat_that_leads_home_takes_home() {
+fn only_a_tapering_seat_moves_a_rest_to_the_mated_pose() {
     let [socket, plug] = meshes::funnel(1000);
     assert!(home(&lathed([socket.clone(), plug.clone()])) > 1e-3);
     // Both cut off at a depth of 0.2 D, and the plug a little narrower.
@@ -333,7 +333,7 @@ fn only_a_seat_that_leads_home_takes_home() {
         socket.into_iter().map(|corners| corners.map(bottom)).collect(),
         plug.into_iter().map(|corners| corners.map(top)).collect(),
     ]);
-    assert!(pair.asks_trees() && !pair.is_tight());
+    assert!(pair.has_trees() && !pair.is_tight());
     assert_eq!(home(&pair), 0.0);
     let error = PoseError { x: 1.5e-3, ..PoseError::default() };
     let rest = Follower::new(&pair, &DescentSettings::default()).come_to_rest(&error);
@@ -346,7 +346,7 @@ fn only_a_seat_that_leads_home_takes_home() {
 fn trees_change_no_motion() {
     let pair = lathed(meshes::cone(160));
     let judge = pair.without_trees();
-    assert!(pair.asks_trees() && !judge.asks_trees());
+    assert!(pair.has_trees() && !judge.has_trees());
     let settings = DescentSettings::default();
     let (mut by_trees, mut by_list) = (Follower::new(&pair, &settings), Follower::new(&judge, &settings));
     let (mut seen, mut differ) = ([0, 0], Vec::new());

@@ -147,7 +147,7 @@ fn a_slope_threshold_ends_motion_on_gentler_slopes() {
 /// Whitney's diagram (*Quasi-static assembly of compliantly supported rigid parts*, 1982): pushed `off` its
 /// axis it jams from a friction of depth/(2·off) on, and from depth/d on it wedges, for any push.
 #[test]
-fn a_peg_jams_and_wedges_as_whitney_says() {
+fn a_peg_jams_and_wedges_at_whitneys_thresholds() {
     const WIDTH: f64 = 1.0;
     const CLEARANCE: f64 = 5e-4;
     for off in [0.0, 0.3, 0.75, 1.5] {

@@ -37,7 +37,7 @@ fn about(moment: DVec3) -> Load {
 
 /// h = AR·max(|x|, |y|): AR along x and y, AR/√2 at 45°; a twist lifts by AR/2 of D.
 #[test]
-fn the_spatial_x_face_takes_its_aspect_ratio() {
+fn the_holding_force_of_the_spatial_x_face_is_its_aspect_ratio() {
     let ratio = 3f64.sqrt().recip();
     let pair = pair(&format!("family = \"x-face-3d\"\naspect_ratio = {ratio}"), ALL);
     let mut held = mated(&pair);
@@ -54,7 +54,7 @@ fn the_spatial_x_face_takes_its_aspect_ratio() {
 
 /// A lip with draft δ resists cot δ instead of its aspect ratio, and an upright lip any load.
 #[test]
-fn a_lip_takes_the_cotangent_of_its_draft() {
+fn the_holding_force_of_a_lip_is_the_cotangent_of_its_draft() {
     for draft in [0.1f64, 0.3] {
         let pair = pair(&format!("family = \"x-face-3d-locking\"\ndraft_angle = {draft}"), ALL);
         let result = mated(&pair).most(&sideways(0.0), Guide::Along, 0.0).unwrap();
@@ -71,7 +71,7 @@ fn a_lip_takes_the_cotangent_of_its_draft() {
 
 /// On a single flank of slope α a force climbs at tan(α + φ), and never if that is a right angle.
 #[test]
-fn a_flank_with_friction_takes_the_tangent_of_both_angles() {
+fn the_holding_force_of_a_flank_is_the_tangent_of_both_angles() {
     let pair = pair("family = \"v-face\"\naspect_ratio = 0.6", "\"x\"");
     let slope = 1.2f64.atan();
     for friction in [0.0f64, 0.1, 0.3, 0.6] {
@@ -107,7 +107,7 @@ fn a_plate_slides_at_its_friction_and_tips_over_its_edge() {
 /// No motion that the contacts permit lifts by less per displacement along the load than the holding force,
 /// and some motions lift hardly more.
 #[test]
-fn the_least_lift_of_all_motions_is_what_it_withstands() {
+fn the_holding_force_is_the_least_lift_of_all_motions() {
     const TRIED: u64 = 200_000;
     let pair = pair("family = \"v-face\"\naspect_ratio = 0.5", PLANE);
     let mut held = mated(&pair);

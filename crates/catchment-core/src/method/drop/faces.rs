@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn knots_on_straight_sides_go() {
+    fn knots_on_straight_sides_are_removed() {
         let block = block();
         let joined = joined(&block);
         assert_eq!((block.facets.len(), joined.facets.len()), (10, 6));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_bends_stays() {
+    fn knots_on_bent_sides_stay() {
         let bent = |by: f64| {
             let mut vertices = block().vertices;
             for k in [1, 9] {

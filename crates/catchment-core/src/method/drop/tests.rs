@@ -91,7 +91,7 @@ fn threads_change_no_bit() {
 }
 
 #[test]
-fn hinges_stay_hinges() {
+fn locked_errors_stay_zero() {
     // Roll and pitch without yaw: turning to and fro must not add up to a yaw. A locked y stays 0 at the COR.
     let free = DofSet::EMPTY.with(Dof::X).with(Dof::Roll).with(Dof::Pitch);
     let pair = pair(Family::Cone, free);
@@ -159,7 +159,7 @@ fn the_majority_decides() {
 }
 
 #[test]
-fn what_cannot_run_is_refused() {
+fn invalid_and_unaffordable_runs_are_refused() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
     let refused = |settings: &DropSettings, exec: &Exec| {
         run(&pair, Domain::Poses(vec![x(0.1)]), settings, exec).unwrap_err()
@@ -188,7 +188,7 @@ fn what_cannot_run_is_refused() {
 }
 
 #[test]
-fn settings_survive_json_and_refuse_what_they_do_not_know() {
+fn settings_survive_json_and_refuse_unknown_keys() {
     let settings = DropSettings {
         push: Push::Gravity(9.81),
         body: MassProperties::Solid { density: 3.0 },
@@ -202,7 +202,7 @@ fn settings_survive_json_and_refuse_what_they_do_not_know() {
 /// A tip beside its notch slides off outwards, until its base clears the peak at x = 1: past the notch into
 /// free space, or onto the ground of the notch, on which its apex comes to rest.
 #[test]
-fn what_slides_off_comes_to_rest_on_the_ground() {
+fn a_half_that_slides_off_rests_on_the_ground() {
     let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
     let fall = |ground: Option<f64>, at: f64| {
         let settings = DropSettings { ground, trials: 1, ..DropSettings::default() };

@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn levels_order_like_heights_and_tell_them_back() {
+    fn levels_order_like_heights_and_convert_back() {
         let heights = [f32::NEG_INFINITY, -2.5, -1e-40, 0.0, 1e-40, 0.1, 7.0, f32::INFINITY];
         assert!(heights.windows(2).all(|w| level(w[0]) < level(w[1])));
         assert!(heights.iter().all(|h| height(level(*h)).to_bits() == h.to_bits()));

@@ -92,7 +92,7 @@ proptest! {
 
     /// The staircase, in one pass, equals the results of merging at every single tolerance.
     #[test]
-    fn the_staircase_is_merging_at_every_tolerance((shape, heights) in landscapes(), at in any::<prop::sample::Index>()) {
+    fn the_staircase_equals_merging_at_every_tolerance((shape, heights) in landscapes(), at in any::<prop::sample::Index>()) {
         let target = at.index(heights.len());
         let (labels, tree) = fast(&shape, &heights, 1);
         let steps = tree.staircase(labels[target], heights[target].into());
@@ -189,7 +189,7 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
 }
 
 #[test]
-fn basins_tell_depth_share_and_outcome() {
+fn basins_have_depth_share_and_outcome() {
     let (landscape, alignment) = line(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE]);
     let settings = FloodSettings::with_tolerance(0.5);
     let basins = flood(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap().hierarchy.basins;
@@ -200,7 +200,7 @@ fn basins_tell_depth_share_and_outcome() {
 }
 
 #[test]
-fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
+fn a_landscape_draining_out_of_the_box_is_not_aligned_and_warns() {
     let (landscape, alignment) = line(&[0.0, 1.0, 2.0, 1.5, 2.0, 1.0, 0.0]);
     let flooding =
         flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(0.1), &Exec::new()).unwrap();
@@ -214,7 +214,7 @@ fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
 }
 
 #[test]
-fn what_cannot_be_flooded_is_refused() {
+fn bad_tolerances_and_budgets_are_refused() {
     let (landscape, alignment) = line(&[1.0, 0.0, 1.0]);
     let bad = flood(&landscape, &alignment, &|_| true, &FloodSettings::with_tolerance(-1.0), &Exec::new())
         .unwrap_err();
@@ -263,7 +263,7 @@ const PLANAR: [(Family, f64, f64, f64); 5] = [
 
 /// The measured bias at 100 × 100 equals that in the module's opening, for both rules.
 #[test]
-fn the_bias_of_flooding_is_what_the_documentation_says() {
+fn the_bias_of_flooding_matches_the_documentation() {
     let measure = |(family, aspect_ratio, cor, exact): (Family, f64, f64, f64)| {
         let mut pair = pair(family, aspect_ratio, cor, 1);
         pair.alignment.rotation_length = 1.0;
@@ -282,7 +282,7 @@ fn the_bias_of_flooding_is_what_the_documentation_says() {
 
 /// Meyer's queue with its dams, on the same heights at the same tolerance.
 #[test]
-fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
+fn the_difference_from_meyers_flooding_matches_the_documentation() {
     let measure = |(family, aspect_ratio, cor, _)| {
         let pair = pair(family, aspect_ratio, cor, 1);
         let grid = Grid::over(&pair.alignment, |_| 100);
@@ -305,7 +305,7 @@ fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
 
 /// With the text's own tolerance, 0.1·H, Meyer's queue has the bias in the module's opening, to a percent.
 #[test]
-fn meyers_flooding_has_the_bias_that_the_documentation_says() {
+fn the_bias_of_meyers_flooding_matches_the_documentation() {
     let expected = [2.3, -24.0, 0.5, -3.5, 1.6];
     for ((family, aspect_ratio, cor, exact), expected) in PLANAR.into_iter().zip(expected) {
         let pair = pair(family, aspect_ratio, cor, 1);

@@ -302,7 +302,7 @@ mod tests {
     proptest! {
         /// The equations of the text that have no motion in them hold of every contact, and the angles add up.
         #[test]
-        fn the_geometry_is_that_of_the_text(
+        fn the_geometry_satisfies_the_texts_equations(
             family in family(), h in 0.1f64..3.0, r in 0.0f64..6.0, x in -0.9f64..0.9, pitch in -1.2f64..1.2,
         ) {
             let start = LeverPose::of(&problem(family, h, r), &pose(x, pitch)).unwrap();
@@ -327,7 +327,7 @@ mod tests {
 
         /// Of an X-Face it is the contact that the stepping starts from.
         #[test]
-        fn an_x_face_is_stepped_from_the_same_contact(
+        fn stepping_of_an_x_face_starts_at_the_same_contact(
             h in 0.1f64..3.0, r in 0.0f64..6.0, x in -0.9f64..0.9, pitch in -1.2f64..1.2,
         ) {
             let start = LeverPose::of(&problem(Family::XFace, h, r), &pose(x, pitch)).unwrap();
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn what_it_does_not_know_is_refused() {
+    fn poses_with_yaw_are_refused() {
         let v = problem(Family::VFace, 0.5, 1.0);
         assert_eq!(LeverPose::of(&v, &PoseError { yaw: 0.1, ..pose(0.0, 0.0) }), Err(UnsuitableDesign::Pose));
         let missed = LeverPose::of(&v, &pose(3.0, 0.1)).unwrap();

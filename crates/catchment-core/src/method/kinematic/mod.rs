@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_do_not_change_it_and_what_it_does_not_know_is_refused() {
+    fn threads_change_no_outcome_and_unsuitable_designs_are_refused() {
         let x_face = design(Family::XFace, -0.5);
         let grid = Grid::over(&x_face.alignment, |_| 20);
         let with = |threads| accept(&x_face, &grid, &Exec::new().with_threads(threads).unwrap()).unwrap();

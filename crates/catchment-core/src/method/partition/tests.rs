@@ -150,7 +150,7 @@ fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [us
 }
 
 #[test]
-fn parts_end_where_their_points_end() {
+fn labels_of_parts_equal_outcomes_of_their_points() {
     for (case, (family, ratio, cor)) in FIVE.into_iter().enumerate() {
         let pair = pair(family, ratio, cor, 1.0, &[]);
         let partition = run(&pair, &PartitionSettings { slices: 12, strips: 3 }, &Exec::new()).unwrap();
@@ -170,7 +170,7 @@ fn exact(pair: &Pair, cells: usize) -> f64 {
 }
 
 #[test]
-fn sums_come_to_those_of_exact_descents() {
+fn sums_are_close_to_those_of_exact_descents() {
     for (family, ratio, cor) in FIVE {
         let pair = pair(family, ratio, cor, 1.0, &[]);
         // Of some 1000 accepted cells a grid counts 0.3·√240 = 5 too many or too few, 0.5 %: so it does with borders of 240 cells.
@@ -201,7 +201,7 @@ fn without_strips_more_slices_make_it_worse() {
 }
 
 #[test]
-fn spatial_sets_of_three_errors_agree_with_the_judge() {
+fn spatial_sets_of_three_errors_agree_with_the_oracle() {
     for (free, slices, least) in
         [([Dof::X, Dof::Y, Dof::Pitch], 8, 0.98), ([Dof::X, Dof::Pitch, Dof::Yaw], 2, 0.94)]
     {
@@ -228,7 +228,7 @@ fn threads_change_nothing() {
 }
 
 #[test]
-fn the_outline_encloses_what_is_accepted() {
+fn the_outline_encloses_the_accepted_set() {
     let (family, ratio, cor) = FIVE[1];
     let pair = pair(family, ratio, cor, 1.0, &[]);
     let partition = run(&pair, &PartitionSettings { slices: 12, strips: 4 }, &Exec::new()).unwrap();
@@ -252,7 +252,7 @@ fn the_outline_encloses_what_is_accepted() {
 }
 
 #[test]
-fn what_cannot_be_partitioned_is_said() {
+fn unsuitable_errors_and_settings_are_reported() {
     let locked = pair(Family::Pyramid, 0.5, 0.0, 0.5, &[Dof::X, Dof::Y]);
     let error = run(&locked, &PartitionSettings::default(), &Exec::new()).unwrap_err();
     assert_eq!(error, PartitionError::TooFewErrors { free: 2 });

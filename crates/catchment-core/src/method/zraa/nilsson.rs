@@ -269,14 +269,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_rule_is_what_solids_do(inner in inner(), ends in [-8i32..8, -8i32..8]) {
+        fn the_rule_agrees_with_solids(inner in inner(), ends in [-8i32..8, -8i32..8]) {
             let profile = profile(&inner, ends);
             prop_assume!(has_no_level(&profile));
             agree(&profile);
         }
 
         #[test]
-        fn the_rule_is_what_like_halves_do(left in left(), end in -8i32..8) {
+        fn the_rule_agrees_for_ungendered_halves(left in left(), end in -8i32..8) {
             let profile = symmetric(&left, end);
             prop_assume!(has_no_level(&profile));
             prop_assert!(Nilsson::of(&profile).ungendered);
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn the_faces_reach_their_bounds_and_say_what_catches() {
+    fn the_faces_reach_their_bounds_and_report_the_minimum() {
         for (family, ungendered, reach) in [(Family::VFace, false, 0.5), (Family::SFace, true, 1.0 / 3.0)] {
             for base in [None, Some(0.4)] {
                 let pair = pair(FamilySpec::new(family).with_base_thickness(base));

@@ -28,7 +28,7 @@ proptest! {
     }
 
     #[test]
-    fn a_hulls_facets_are_those_of_brute((dimension, points) in cloud(2..=4, 10)) {
+    fn hull_facets_and_edges_agree_with_brute_force((dimension, points) in cloud(2..=4, 10)) {
         let brute = brute::facets(dimension, &points);
         let depth = |f: &Halfspace| points.iter().map(|p| -f.excess(p)).fold(0.0, f64::max);
         // Brute force cannot distinguish the sides of a nearly flat set.
@@ -156,7 +156,7 @@ proptest! {
     }
 
     #[test]
-    fn a_section_holds_what_the_body_holds_there(
+    fn a_section_agrees_with_the_body_on_its_plane(
         (dimension, points) in cloud(2..=5, 12),
         axis in 0..5usize,
         value in -0.5..0.5f64,

@@ -92,7 +92,7 @@ fn a_cube_cut_at_its_corner() {
 }
 
 #[test]
-fn what_is_flat_is_none() {
+fn degenerate_input_is_refused() {
     let square = [point(&[0.0, 0.0]), point(&[1.0, 0.0]), point(&[0.0, 1.0]), point(&[1.0, 1.0])];
     assert!(Polytope::hull(3, &square).is_none());
     assert!(Polytope::hull(2, &square).is_some());

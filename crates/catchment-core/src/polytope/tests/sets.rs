@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_not_shared_is_the_difference(
+    fn difference_and_intersection_partition_a_body(
         (dimension, a) in cloud(1..=4, 9),
         b in cloud(4..=4, 9),
         share in 0..3usize,

@@ -80,7 +80,7 @@ fn all_problems_come_at_once_in_their_places() {
 }
 
 #[test]
-fn matrices_that_are_no_covariance_say_by_how_much() {
+fn invalid_covariances_are_reported_with_details() {
     let with = |matrix: &str| one(&format!("covariance = {{ axes = [\"x\", \"yaw\"], matrix = {matrix} }}"));
     assert_eq!(with("[[1, 0.5], [0.4, 1]]")[0].0, "0.4");
     assert!(with("[[1, 0.5], [0.4, 1]]")[0].1.contains("yaw with x is 0.4, and x with yaw is 0.5"));

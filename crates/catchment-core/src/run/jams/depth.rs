@@ -42,7 +42,7 @@ pub(in crate::run) fn check(problem: &Problem, certified: bool, friction: f64) -
 
 /// Sets the requested escape heights of rests: of all rests by a grid, and lower bounds for the examined
 /// rests.
-pub(in crate::run) fn tell(
+pub(in crate::run) fn report(
     problem: &Problem,
     mut places: Vec<&mut RestGroup>,
     resolution: Option<&Resolution>,

@@ -155,7 +155,7 @@ impl Search<'_> {
                 HeightAside::Blocked => return,
                 HeightAside::Gone => {
                     let over = self.space.error(self.rest, way, length);
-                    return self.found(way, length, top, (Outcome::Missed, over));
+                    return self.record_best(way, length, top, (Outcome::Missed, over));
                 }
             };
             let energy = self.pair.energy(&pose, height);
@@ -172,7 +172,7 @@ impl Search<'_> {
             if energy < self.rest.energy - LOWER || falls && climbing || is_level {
                 (climbing, requested) = (false, length);
                 if let Some(to) = self.leads_out(way, length) {
-                    return self.found(way, length, top, to);
+                    return self.record_best(way, length, top, to);
                 }
             }
             climbing |= energy > last + LOWER * STEP;
@@ -189,7 +189,7 @@ impl Search<'_> {
         self.nearby.height_below(pose.lateral, f64::INFINITY).0.map_or(HeightAside::Gone, HeightAside::At)
     }
 
-    fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, (to, end): (Outcome, PoseError)) {
+    fn record_best(&mut self, way: &[f64; 5], length: f64, climb: f64, (to, end): (Outcome, PoseError)) {
         let over = self.space.error(self.rest, way, length);
         self.best = Some(EscapeAttempt { along: *way, length, out: EscapePath { climb, to, over }, end });
     }

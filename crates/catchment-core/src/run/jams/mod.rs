@@ -38,7 +38,7 @@ mod tests;
 pub use depth::DepthError;
 pub use descriptions::{contact_in_words, contacts_in_words, escape_height};
 pub use escape::EscapePath;
-pub use pairs::{Sticks, TouchingPair, what_sticks};
+pub use pairs::{Sticks, TouchingPair, stuck_pairs};
 pub use results::{Examined, Extent, FeatureContact, Jam, JammingPair, Jams, NamedFeature};
 pub use stability::Stability;
 
@@ -273,7 +273,7 @@ fn of(
         group.examined = Some(examined);
     }
     let depths = groups.iter_mut().collect();
-    depth::tell(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
+    depth::report(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
     let (jammed, failed) = (groups.iter().map(|group| group.count).sum(), motions - counts[0]);
     let drawn = expected.map_or(0, |counts| counts.iter().sum());
     let free = problem.alignment().free;

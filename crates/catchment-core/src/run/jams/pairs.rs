@@ -32,7 +32,7 @@ pub struct Sticks {
 
 /// The features in contact at stuck poses, each followed at its own friction coefficient, with these
 /// coefficients; and the number of stuck poses.
-pub fn what_sticks(
+pub fn stuck_pairs(
     problem: &Problem,
     poses: &[(PoseError, f64)],
     exec: &Exec,

@@ -21,7 +21,7 @@ fn by_outcome(of: &BTreeMap<Outcome, Share>) -> [usize; 4] {
     Outcome::ALL.map(|outcome| of[&outcome].count)
 }
 
-fn found(problem: &Problem, motions: usize) -> Jams {
+fn jams(problem: &Problem, motions: usize) -> Jams {
     run(problem, &JamsSettings { motions: Some(motions), ..JamsSettings::default() }, &Exec::new()).unwrap()
 }
 
@@ -49,7 +49,7 @@ fn every_pose_is_in_one_outcome_and_every_jammed_one_in_one_jam() {
 #[test]
 fn a_tip_on_its_side_is_one_jam_at_two_places() {
     let problem = v_face();
-    let found = found(&problem, 2000);
+    let found = jams(&problem, 2000);
     let jam = &found.jams[0];
     assert_eq!(jam.places, 2, "{jam:#?}");
     assert!(jam.of_box.count * 10 > found.jammed() * 9, "{found:#?}");
@@ -91,7 +91,7 @@ fn the_two_rests_are_mirror_images() {
         (lo..=hi).contains(&share)
     };
     assert!(within(sides[0], sides[0] + sides[1], 0.5), "{sides:?}");
-    let found = found(&problem, 3000);
+    let found = jams(&problem, 3000);
     assert_eq!(
         by_outcome(&found.outcomes)[0] + by_outcome(&found.outcomes)[2] + found.jammed(),
         found.motions
@@ -107,7 +107,7 @@ fn the_two_rests_are_mirror_images() {
 #[test]
 fn a_rigid_body_stays_where_it_jams() {
     let problem = v_face();
-    let found = found(&problem, 1500);
+    let found = jams(&problem, 1500);
     let drop = "drop".parse().unwrap();
     for jam in &found.jams {
         // Halves at rest on level ground stay anywhere on their level.
@@ -132,7 +132,7 @@ fn a_rigid_body_stays_where_it_jams() {
 fn a_peg_beside_its_hole_rests_on_level_ground() {
     let text = "[connector]\nfamily = \"pin-hole\"\npins = 1\ncircle_radius = 0\npin_radius = 0.1\nclearance = 0.01\n\
                 chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
-    let found = found(&problem(text), 300);
+    let found = jams(&problem(text), 300);
     let jam = &found.jams[0];
     assert_eq!((found.jams.len(), jam.of_box.count), (1, by_outcome(&found.outcomes)[1]));
     let [contact] = jam.contacts.as_slice() else { panic!("{jam:#?}") };
@@ -156,7 +156,7 @@ fn threads_change_nothing() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn invalid_and_cancelled_runs_are_refused() {
     let problem = v_face();
     let refused = |settings: JamsSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
     assert_eq!(refused(JamsSettings { motions: Some(0), ..JamsSettings::default() }), JamsError::Nothing);
@@ -237,7 +237,7 @@ fn a_jam_has_an_order_and_a_depth_on_a_grid() {
 /// The escape height lies between the certified bound and the climb of a path; it is almost zero for an
 /// almost level rest. With friction nothing is certified.
 #[test]
-fn a_jam_is_as_deep_as_is_certain() {
+fn the_certified_depth_is_at_most_the_climb() {
     let problem = v_face();
     let settings = JamsSettings { motions: Some(600), certified: true, ..JamsSettings::default() };
     let found = run(&problem, &settings, &Exec::new()).unwrap();
@@ -257,7 +257,7 @@ fn a_jam_is_as_deep_as_is_certain() {
 
 /// On a single facet both thresholds of a rest held by friction equal its slope.
 #[test]
-fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
+fn friction_thresholds_of_a_rest_on_a_facet_equal_its_slope() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
     let problem = problem(text);
     let settings = JamsSettings { motions: Some(50), friction: 0.3, ..JamsSettings::default() };

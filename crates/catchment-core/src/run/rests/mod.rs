@@ -195,7 +195,7 @@ pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<R
         group.examined = Some(examined);
     }
     let depths = groups.iter_mut().collect();
-    depth::tell(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
+    depth::report(problem, depths, settings.resolution.as_ref(), settings.certified, exec)?;
     let free = problem.alignment().free;
     let ends = ends.into_iter().chain(std::iter::repeat(None));
     let place = |((group, cluster), end): ((RestGroup, &Cluster), Option<PoseError>)| {

@@ -11,7 +11,7 @@ fn problem(text: &str) -> Problem {
     Problem::of(read(text, Path::new("")).unwrap().design).unwrap()
 }
 
-fn found(problem: &Problem, motions: usize) -> Rests {
+fn rests(problem: &Problem, motions: usize) -> Rests {
     run(problem, &RestsSettings { motions: Some(motions), ..RestsSettings::default() }, &Exec::new()).unwrap()
 }
 
@@ -26,8 +26,8 @@ const CUBE: &str = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [
 
 /// Over an edge a cube is lifted from ½ to √2/2; pushed it rises about an edge, by D/2 per turn.
 #[test]
-fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
-    let found = found(&problem(CUBE), 600);
+fn the_escape_height_of_a_cube_is_that_over_its_edge() {
+    let found = rests(&problem(CUBE), 600);
     assert!(!found.rests.is_empty() && found.outcomes[&Outcome::Missed].count == 0, "{found:?}");
     for place in &found.rests {
         let turn = place.pose.pitch / FRAC_PI_2;
@@ -47,7 +47,7 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
 /// bodies does.
 #[cfg(feature = "drop")]
 #[test]
-fn a_rigid_body_comes_to_the_same_rests() {
+fn a_rigid_body_reaches_the_same_rests() {
     let problem = problem(CUBE);
     let drop = "drop".parse().unwrap();
     let poses = [0.5f64, 1.0].map(|pitch| PoseError { pitch, ..PoseError::default() });
@@ -65,7 +65,7 @@ fn a_rigid_body_comes_to_the_same_rests() {
 
 /// Rests in all five errors, wherever motion came from: first order, by the slope of the mated pose.
 #[test]
-fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
+fn a_flush_seat_has_the_same_slope_from_any_start() {
     for (family, slope) in
         [("pyramid\"\naspect_ratio = 0.5", 0.4549), ("x-face-3d\"\naspect_ratio = 0.57735", 0.2931)]
     {
@@ -117,7 +117,7 @@ fn ball_in_cone() -> String {
 #[test]
 fn a_ball_in_a_cone_leaves_over_its_rim() {
     let (slope, rim, radius) = (1.0f64, 0.5f64, 0.2f64);
-    let found = found(&problem(&ball_in_cone()), 60);
+    let found = rests(&problem(&ball_in_cone()), 60);
     let place = &found.rests[0];
     let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
     // The inscribed ball is smaller by up to the chord error, and its facets shift the contact by as much.
@@ -169,7 +169,7 @@ fn a_rigid_body_comes_back_to_every_kind_of_rest() {
         ("plate", plate_on_fingers(), tilts(0.05), 0.01),
     ] {
         let problem = problem(&text);
-        let found = found(&problem, 60);
+        let found = rests(&problem, 60);
         let rest = found.rests.iter().find(|place| place.docked > 0).unwrap().pose.to_array();
         let beside = pushes.map(|push| PoseError::from_array(std::array::from_fn(|k| rest[k] + push[k])));
         let (_, ends) = problem.follow_by(&"drop".parse().unwrap(), &beside, &Exec::new()).unwrap();
@@ -183,7 +183,7 @@ fn a_rigid_body_comes_back_to_every_kind_of_rest() {
 /// Over an edge of a cube, and over the rim of a V: the certified lower bound is hardly less than the climb
 /// of an existing path.
 #[test]
-fn certified_depths_are_below_those_of_ways_and_near_them() {
+fn certified_depths_are_close_below_those_of_paths() {
     let settings = RestsSettings { motions: Some(200), certified: true, ..RestsSettings::default() };
     let exec = Exec::new();
     for place in &run(&problem(CUBE), &settings, &exec).unwrap().rests {
@@ -200,8 +200,8 @@ fn certified_depths_are_below_those_of_ways_and_near_them() {
 
 /// Walls all around: it is lifted as high as the level ground beside the hole.
 #[test]
-fn a_peg_is_as_deep_as_its_hole() {
-    let found = found(&problem(PEG), 300);
+fn the_escape_height_of_a_peg_is_the_depth_of_its_hole() {
+    let found = rests(&problem(PEG), 300);
     let [home, ground] =
         [true, false].map(|docked| found.rests.iter().find(|place| (place.docked > 0) == docked).unwrap());
     assert!((depth(home) - ground.above_mated_d).abs() < 1e-4, "{home:?} {ground:?}");
@@ -210,7 +210,7 @@ fn a_peg_is_as_deep_as_its_hole() {
 
 /// The merge tree of a fine grid agrees, over an edge of a cube.
 #[test]
-fn the_merge_tree_agrees() {
+fn the_merge_tree_gives_the_same_depth() {
     let resolution = Some(Resolution::uniform(801).unwrap());
     let settings = RestsSettings { motions: Some(200), resolution, ..RestsSettings::default() };
     let found = run(&problem(CUBE), &settings, &Exec::new()).unwrap();
@@ -223,13 +223,13 @@ fn the_merge_tree_agrees() {
 
 /// The second-order result equals the rise for a displacement of a hundredth.
 #[test]
-fn curvature_is_the_rise_of_a_push() {
+fn curvature_predicts_the_rise_of_a_displacement() {
     let text = "[connector]\nwidth = 1.0\nfixed = { pieces = [[[0.2, -0.5, 1], [0.2, 0.5, 1], [0.22, -0.5, 0], [0.22, 0.5, 0], [0.18, -0.5, 0], \
                 [0.18, 0.5, 0]], [[-0.2, -0.5, 1], [-0.2, 0.5, 1], [-0.22, -0.5, 0], [-0.22, 0.5, 0], [-0.18, -0.5, 0], [-0.18, 0.5, 0]]] }\n\
                 moving = { pieces = [[[0, -0.5, 1.2], [0, 0.5, 1.2], [1, -0.5, 0.2], [1, 0.5, 0.2], [-1, -0.5, 0.2], [-1, 0.5, 0.2]]] }\n\
                 face_height = 1.0\n[alignment]\nfree = [\"x\", \"pitch\"]\nmount = \"y\"\ncenter_of_rotation = -0.2\nrotation_length = 0.5\n\
                 [errors]\nx = 0.05\npitch = \"10 deg\"\n";
-    let found = found(&problem(text), 100);
+    let found = rests(&problem(text), 100);
     let place = &found.rests[0];
     let examined = place.examined.unwrap();
     let held = examined.immobility.unwrap();
@@ -240,7 +240,7 @@ fn curvature_is_the_rise_of_a_push() {
 }
 
 #[test]
-fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
+fn threads_change_nothing_and_invalid_runs_are_refused() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
     let problem = problem(text);
     let settings = RestsSettings { motions: Some(200), ..RestsSettings::default() };

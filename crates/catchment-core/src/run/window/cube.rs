@@ -152,7 +152,7 @@ mod tests {
     use crate::problem::testing::problem;
 
     #[test]
-    fn a_box_reaches_no_further_than_what_each_error_alone_tolerates() {
+    fn a_box_stays_within_the_single_axis_limits() {
         let limit = |axis, minus, plus| Tolerance {
             axis,
             unit: ErrorUnit::of(axis),
@@ -176,7 +176,7 @@ mod tests {
     /// A search that has used its motions on the first directions is still certified by samples: other
     /// sampled poses of it dock, too, except for the few that the certificate permits.
     #[test]
-    fn a_box_is_certified_when_the_search_has_taken_its_motions() {
+    fn a_box_is_certified_after_the_search_spent_its_motions() {
         let problem = problem(Family::Pyramid, DofSet::ALL);
         let motions = descent::DescentSettings::default();
         let by = Effort { seed: 1, random: 200, motions: &motions };

@@ -15,7 +15,7 @@ fn quick() -> WindowSettings {
 
 /// V-Face, x alone: D/2 to either side, closed form.
 #[test]
-fn of_one_offset_it_is_the_closed_form() {
+fn the_window_of_one_offset_has_its_closed_form() {
     let result = run(&problem(Family::VFace, free(&[Dof::X])), &quick(), &Exec::new()).unwrap();
     let [side] = &result.sides[..] else { panic!("{result:?}") };
     assert!((side.half_width - 0.5).abs() < 1e-3 && side.half_width < 0.5, "{side:?}");
@@ -34,7 +34,7 @@ fn of_gallery(name: &str) -> Problem {
 /// For any given half-widths, and for halves with play, at least 999 in 1000 poses of the window dock, and a
 /// box 2 % larger along its tight error contains a failure.
 #[test]
-fn no_pose_of_it_fails_and_a_larger_one_does() {
+fn poses_of_the_window_dock_and_a_larger_window_fails() {
     const POSES: u64 = 1000;
     let exec = Exec::new();
     let all = DofSet::ALL;
@@ -100,7 +100,7 @@ fn the_centred_box_of_the_x_face_is_not_that_of_random_poses() {
 }
 
 #[test]
-fn what_is_given_stays_and_the_others_grow() {
+fn given_half_widths_stay_and_the_others_grow() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     let exec = Exec::new();
     let with = |x: f64| {
@@ -116,7 +116,7 @@ fn what_is_given_stays_and_the_others_grow() {
 }
 
 #[test]
-fn what_makes_no_window_is_refused() {
+fn invalid_window_settings_are_refused() {
     let problem = problem(Family::VFace, free(&[Dof::X, Dof::Pitch]));
     let refused = |settings: WindowSettings| run(&problem, &settings, &Exec::new()).unwrap_err().to_string();
     let fixed = |k: usize, value: f64| {
@@ -132,7 +132,7 @@ fn what_makes_no_window_is_refused() {
 }
 
 #[test]
-fn it_is_the_same_on_any_number_of_threads() {
+fn threads_do_not_change_the_window() {
     let problem = problem(Family::Pyramid, DofSet::ALL);
     let on = |threads: usize| {
         let exec = Exec::new().with_threads(threads).unwrap();
@@ -144,14 +144,14 @@ fn it_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn all_certificates_together_are_wrong_in_five_of_a_hundred_at_most() {
+fn all_certificates_together_are_wrong_in_at_most_five_percent() {
     let all: f64 = (0..100_000).map(chance).sum();
     assert!((0.0499..=0.05).contains(&all), "{all}");
     assert!((1.0 / chance(0)).ln() <= 3.0);
 }
 
 #[test]
-fn a_place_is_never_reported_as_nothing() {
+fn a_place_shows_at_least_its_largest_error() {
     let pose = |x: f64, yaw: f64| PoseError { x, yaw, ..PoseError::default() };
     assert_eq!(place(&pose(0.25, -1e-7)), "x = 0.2500 D");
     assert_eq!(place(&pose(-2e-6, 0.0)), "x = -2.0e-6 D");

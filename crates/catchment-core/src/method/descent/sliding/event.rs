@@ -275,7 +275,7 @@ impl Motion<'_> {
     fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize], wary: bool) -> Trial {
         let closed = CLOSED_BY * self.moved_by(state, &next);
         let closed = closed.min(self.horizon(at).1);
-        let reach = if self.pair.asks_trees() { closed.min(DEEPEST_MET) } else { closed };
+        let reach = if self.pair.has_trees() { closed.min(DEEPEST_MET) } else { closed };
         if let Some(event) = self.first_met(state, &next, reach) {
             return Trial::Passed(next, event, false);
         }

@@ -51,7 +51,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn the_fast_path_equals_the_judge((shape, heights, targets, tolerance) in landscapes(), rules in rules()) {
+    fn the_fast_path_equals_the_oracle((shape, heights, targets, tolerance) in landscapes(), rules in rules()) {
         prop_assert_eq!(
             fast(&shape, &heights, &targets, tolerance, rules),
             brute::divide(&shape, &heights, &targets, tolerance, rules)
@@ -76,7 +76,7 @@ proptest! {
 
     /// Outcomes on an error grid, with the mated pose of the design.
     #[test]
-    fn outcomes_equal_the_judges(
+    fn outcomes_equal_those_of_the_oracle(
         (shape, heights, _, tolerance) in landscapes(),
         rules in rules(),
         first in 0..5usize,
@@ -124,7 +124,7 @@ proptest! {
 }
 
 #[test]
-fn what_cannot_be_divided_is_refused() {
+fn invalid_shapes_and_targets_are_refused() {
     let refused = |shape: &[usize], targets: &[usize]| {
         divide(shape, &[0.0; 6], targets, 0.0, Rules::default(), &Exec::new()).unwrap_err()
     };
@@ -140,7 +140,7 @@ fn what_cannot_be_divided_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_flooded_is_refused() {
+fn bad_tolerances_and_budgets_are_refused() {
     let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
     let grid = Grid::over(&alignment, |_| 3);
     let landscape = Landscape { grid, heights: vec![1.0, 0.0, 1.0] };

@@ -186,7 +186,7 @@ fn halves_have_the_volume_of_their_surfaces() {
 }
 
 #[test]
-fn boxes_add_their_sides() {
+fn collision_solids_of_boxes_add_their_sides() {
     let brick = |size: DVec3, center: DVec3| {
         let corner = |k: u8| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) - 0.5;
         let corners: Vec<DVec3> = (0..8).map(|k| center + size * corner(k)).collect();
@@ -330,7 +330,7 @@ fn with_a_rotation_the_upper_side_is_first_contact_on_every_slice() {
 }
 
 #[test]
-fn what_has_no_shape_is_refused() {
+fn unsuitable_errors_and_settings_are_refused() {
     let ask = |free: &[Dof], subject| {
         let pair = pair(Family::Pyramid, 0.5, 0.0, free);
         shapes(&pair, subject, &PartitionSettings { slices: 3, strips: 1 }, &Exec::new()).unwrap_err()
