@@ -85,7 +85,7 @@ mod tests {
     use crate::write::faults::{self, Fault};
 
     #[test]
-    fn what_is_kept_is_found_and_what_is_spoilt_is_not() {
+    fn stored_designs_are_read_and_corrupt_ones_are_ignored() {
         let home = tempfile::tempdir().unwrap();
         let parts = FinishedDesigns::beside(&home.path().join("out"));
         let (key, found) = ("a".repeat(DIGITS), DesignResult::Refused("no".to_owned()));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_process_left_goes_with_it() {
+    fn leftovers_of_a_killed_process_are_cleared() {
         let home = tempfile::tempdir().unwrap();
         let parts = FinishedDesigns::beside(&home.path().join("out"));
         let (key, found) = ("b".repeat(DIGITS), DesignResult::Refused("no".to_owned()));

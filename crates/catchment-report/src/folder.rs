@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_the_same_study_wrote_is_replaced() {
+    fn only_results_of_the_same_study_are_replaced() {
         let home = tempfile::tempdir().unwrap();
         let path = &home.path().join("out");
         let [slices, other] = ["slices", "difference"].map(|name| StudyFolder { path, name });

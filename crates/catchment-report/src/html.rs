@@ -97,14 +97,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_cannot_leave_its_place() {
+    fn hostile_text_is_escaped() {
         let hostile = "</title><script>\"'&\u{1b}\u{202e}";
         let html = Html::default().fixed("<b title=\"").text(hostile).fixed("\">").number(7).into_string();
         assert_eq!(html, "<b title=\"&lt;/title&gt;&lt;script&gt;&quot;&#39;&amp;??\">7");
     }
 
     #[test]
-    fn json_cannot_end_its_element_and_says_the_same() {
+    fn json_cannot_end_its_element_and_reads_back_equal() {
         let hostile = serde_json::json!({ "</script>": "<!--<script>", "n": 1 });
         let html = Html::default().json(&hostile).unwrap().into_string();
         assert!(!html.contains('<'), "{html}");
@@ -113,7 +113,7 @@ mod tests {
 
     /// The hash of the empty text, as published with SHA-256.
     #[test]
-    fn a_policy_names_what_may_run() {
+    fn the_policy_lists_the_allowed_hashes() {
         let policy = policy(&[""], &["", "a"], false);
         let empty = "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='";
         assert!(policy.contains(&format!("script-src {empty} 'wasm-unsafe-eval';")), "{policy}");

@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_end_of_a_name_says_the_kind() {
+    fn the_extension_selects_the_kind() {
         let kind = |name: &str| SetFileKind::of(Path::new(name));
         assert_eq!(
             ["a.vti", "b/a.VTP", "a.csv"].map(kind),

@@ -157,7 +157,7 @@ mod tests {
     use catchment_core::pose::{Dof, DofSet};
 
     #[test]
-    fn it_fits_in_eighty_columns_and_says_what_it_guesses() {
+    fn the_table_fits_eighty_columns_and_marks_its_estimates() {
         let design = design(DofSet::ALL);
         let mut plane = design.clone();
         plane.alignment.free = [Dof::Pitch, Dof::Yaw].into_iter().collect();

@@ -313,7 +313,7 @@ mod tests {
 
     /// Poses of many yaws were drawn over the slice of the nearest of four: blue under crosses, grey under dots.
     #[test]
-    fn poses_are_drawn_over_their_own_slice_or_over_none() {
+    fn poses_are_drawn_only_over_their_own_slice() {
         let free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
         let problem = Problem::of(design(free)).unwrap();
         let accuracy = PoseError { x: 0.03, y: 0.03, yaw: 0.02, ..PoseError::default() };

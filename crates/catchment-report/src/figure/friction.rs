@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_and_what_sticks_are_drawn() {
+    fn the_curve_and_the_sticking_contacts_are_drawn() {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let settings = FrictionSettings { motions: Some(200), ..FrictionSettings::default() };
         let result = run(&problem, &settings, &Exec::new()).unwrap();

@@ -140,7 +140,7 @@ mod tests {
 
     /// H of `DejaVu` Sans: 1540 of 2048 units wide, its stems from 201 to 1339; at 20.48 a unit is a hundredth.
     #[test]
-    fn glyphs_stand_where_the_font_says() {
+    fn glyph_positions_follow_the_font_metrics() {
         for (anchor, origin) in [("start", 100.0), ("middle", 100.0 - 7.70), ("end", 100.0 - 15.40)] {
             let [left, right] = extent(anchor, "H");
             assert!(

@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn every_jam_is_drawn_with_what_touches() {
+    fn every_jam_is_drawn_with_its_contacts() {
         let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
         let picture = drawn(text).unwrap();
         look("jams", &picture);

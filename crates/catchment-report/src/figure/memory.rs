@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_beyond_the_budget_are_refused_with_what_helps() {
+    fn pictures_beyond_the_budget_are_refused_with_advice() {
         let exec = Exec::new().with_memory_budget(PAGE_BYTES + 100 * MAP_BYTES);
         assert!(ensure_fits(100, &exec).is_ok());
         let refused = ensure_fits(101, &exec).unwrap_err();

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_has_its_cell_and_nothing_has_none() {
+    fn every_number_has_a_cell_and_nan_is_left_blank() {
         let names = ["a", "b"].map(str::to_owned);
         let map = |colouring| NumberMap {
             marks: vec![([0, 0], "▲")],

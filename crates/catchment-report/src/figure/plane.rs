@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn it_passes_through_what_touches() {
+    fn the_plane_passes_through_the_contacts() {
         let contacts =
             [patch(&[[0.3, 0.1, 0.0]], [-0.7, 0.0, 0.7]), patch(&[[-0.2, 0.1, 0.0]], [0.7, 0.0, 0.7])];
         let plane = Plane::through(&pyramid(), &contacts);
@@ -253,7 +253,7 @@ mod tests {
 
     /// A peg beside its hole is cut in the direction of its offset, rotated or not.
     #[test]
-    fn what_carries_straight_up_is_cut_towards_where_it_should_be() {
+    fn contacts_with_vertical_normals_are_cut_along_the_offset() {
         let beside = |turn: DMat3, off: DVec3| {
             let points = [DVec3::new(0.3, 0.1, 0.0), DVec3::new(0.3, 0.11, 0.0)].map(|p| turn * p + off);
             Patch::new(points.to_vec(), DVec3::Z, (turn, off))
@@ -267,7 +267,7 @@ mod tests {
 
     /// A side that touches along the border of the halves, at which a cut shows a block and no other half.
     #[test]
-    fn where_next_to_nothing_would_be_seen_the_usual_cut_is_shown() {
+    fn an_almost_empty_cut_is_replaced_by_the_default_cut() {
         use crate::schema::testing::design;
         let design = design([Dof::X, Dof::Pitch].into_iter().collect());
         let mated = MovingHalfPose::mated(&design, 0.0);
@@ -282,7 +282,7 @@ mod tests {
 
     /// The 3-D X-Face is level along x and y.
     #[test]
-    fn a_profile_that_varies_is_looked_for() {
+    fn the_cut_turns_to_a_profile_that_varies() {
         use crate::schema::testing::design;
         let design = design(catchment_core::pose::DofSet::ALL);
         let mated = MovingHalfPose::mated(&design, 0.0);
@@ -298,7 +298,7 @@ mod tests {
 
     /// Two points of a feature on opposite sides of a plane are not in it; an edge straight across is.
     #[test]
-    fn only_what_lies_in_the_plane_is_in_it() {
+    fn only_features_that_meet_the_plane_lie_in_it() {
         let apart = patch(&[[0.3, -0.14, 0.0], [0.1, -0.38, 0.0]], [-0.7, 0.0, 0.7]);
         let strokes = apart.strokes(&DMat3::IDENTITY);
         assert_eq!(strokes.len(), 2);
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_usual_cut_shows_is_cut_there() {
+    fn contacts_visible_in_the_default_cut_keep_it() {
         // A tip drawn along y touches along its edge: y = 0 will do; and so will the layers.
         let edge = [patch(&[[0.3, -0.25, 0.0], [0.3, 0.25, 0.0]], [-0.7, 0.0, 0.7])];
         assert_eq!(Plane::through(&v_face(), &edge), Plane::across(&v_face()));

@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn one_pair_three_pairs_and_ten() {
+    fn every_pair_of_errors_has_a_map() {
         for (name, free, cells) in [
             ("slices-2", [Dof::X, Dof::Pitch].into_iter().collect(), 100),
             ("slices-3", [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect(), 40),
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slice_elsewhere_says_where() {
+    fn a_slice_off_zero_names_its_position() {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let at = PoseError { yaw: 0.5, ..PoseError::default() };
         let picture = drawn(&design, &blob(&design, 10), &[[Dof::X, Dof::Y]], &at).unwrap();

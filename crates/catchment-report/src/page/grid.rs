@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_packed_is_what_was_decided() {
+    fn packed_outcomes_unpack_equal() {
         let acceptance = blob(&design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect()), 9);
         let Chunks { cells, packed } = packed(&acceptance, &Exec::new()).unwrap();
         assert_eq!((cells, packed.len()), (729, 1));

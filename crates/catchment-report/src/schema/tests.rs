@@ -18,7 +18,7 @@ fn report() -> Report {
 }
 
 #[test]
-fn what_is_written_reads_back_equal() {
+fn written_reports_read_back_equal() {
     let report = report();
     let text = report.to_json().unwrap();
     assert_eq!(Report::from_json(&text).unwrap(), report);

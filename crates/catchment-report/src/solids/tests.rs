@@ -110,7 +110,7 @@ fn an_obj_file_has_a_group_for_every_body() {
 }
 
 #[test]
-fn the_report_tells_the_axes_and_their_units() {
+fn the_report_lists_the_axes_and_their_units() {
     let (design, shape) = shape(Family::VFace, &[Dof::X, Dof::Pitch], SolidShape::Collision);
     let report = SolidsReport::new(&design, &shape, Vec::new());
     let json: serde_json::Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();

@@ -130,7 +130,7 @@ fn two_axes_give_the_cells_themselves() {
 }
 
 #[test]
-fn what_cannot_be_shown_is_refused() {
+fn views_that_cannot_be_shown_are_refused() {
     let (acceptance, _) = four();
     let refused = |dofs: &[Dof], at: PoseError| {
         View::new(&acceptance, None, Some(axes(dofs)), &at).map(|_| ()).unwrap_err().to_string()

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_is_not_waited_for_longer_than_patience_lasts() {
+    fn a_lock_is_refused_after_the_timeout() {
         let (home, lock) = locked();
         let refused = claim(home.path(), Duration::ZERO, &Exec::new()).unwrap_err();
         let WriteError::Locked { by, seconds, .. } = &refused else { panic!("{refused}") };
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_folder_has_no_lock() {
+    fn a_missing_folder_has_no_lock() {
         let home = home();
         assert!(claim(&home.path().join("none"), AFTER, &Exec::new()).unwrap().is_none());
     }
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_holder_is_named_without_what_could_steer_a_terminal() {
+    fn control_characters_in_the_name_of_a_holder_are_escaped() {
         let by = Holder::Process { id: 7, name: "a\nb\u{1b}[2J".to_owned() };
         assert_eq!(by.to_string(), "process 7 (a\\nb\\u{1b}[2J)");
         assert_eq!(Holder::Unknown.to_string(), "another process");

@@ -158,7 +158,7 @@ fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
 
 /// Notes added to the old result while the new result is computed and written.
 #[test]
-fn what_comes_while_the_new_is_written_is_kept() {
+fn files_added_during_a_write_are_kept() {
     for exchange in [true, false] {
         for late in [false, true] {
             let home = home();
@@ -230,7 +230,7 @@ fn links_stay_and_so_do_permissions() {
 /// A user without access to the old result has no access to the new one while it is filled.
 #[cfg(unix)]
 #[test]
-fn what_is_unfinished_is_no_more_open_than_what_it_replaces() {
+fn an_unfinished_folder_has_no_wider_permissions() {
     use std::os::unix::fs::PermissionsExt;
     let home = home();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
@@ -259,7 +259,7 @@ fn what_is_unfinished_is_no_more_open_than_what_it_replaces() {
 
 #[cfg(unix)]
 #[test]
-fn what_is_no_ordinary_file_stays() {
+fn devices_and_pipes_are_not_replaced() {
     let home = home();
     let pipe = home.path().join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -279,7 +279,7 @@ fn what_is_no_ordinary_file_stays() {
 }
 
 #[test]
-fn left_overs_are_put_in_order_and_nothing_of_others_is() {
+fn leftovers_are_cleaned_up_and_foreign_files_stay() {
     let home = home();
     let at = |name: &str| home.path().join(name);
     // The old result stepped aside and the new result is incomplete: the old result returns.
@@ -363,7 +363,7 @@ fn a_process_without_memory_leaves_nothing_unfinished() {
 }
 
 #[test]
-fn many_write_to_one_place() {
+fn concurrent_writes_leave_one_whole_result() {
     let home = home();
     let path = &home.path().join("out");
     std::thread::scope(|scope| {
@@ -381,7 +381,7 @@ fn many_write_to_one_place() {
 
 /// A cleanup may remove a folder before its creator has locked it.
 #[test]
-fn what_is_unfinished_has_one_owner() {
+fn temporary_folders_survive_concurrent_cleanup() {
     let home = home();
     let path = &home.path().join("out");
     let stop = &std::sync::atomic::AtomicBool::new(false);

@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn written_arrays_read_back() {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("out.zarr");
         let (acceptance, heights) = run(&path, 6);

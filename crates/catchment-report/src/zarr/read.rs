@@ -95,7 +95,7 @@ mod tests {
     use catchment_core::pose::Dof;
 
     #[test]
-    fn what_was_written_is_read() {
+    fn written_groups_read_back() {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("out.zarr");
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());

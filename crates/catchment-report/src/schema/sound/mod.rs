@@ -133,7 +133,7 @@ mod tests {
     type Spoil = fn(&mut RunBody);
 
     #[test]
-    fn what_is_written_is_sound_and_what_cannot_be_is_named() {
+    fn valid_reports_pass_and_invalid_values_are_named() {
         let design = design([Dof::X, Dof::Yaw].into_iter().collect());
         let report =
             Report::new(&design, &blob(&design, 9), serde_json::Value::Null, None, &Exec::new()).unwrap();
