@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_slice_is_refused() {
+    fn impossible_slices_are_refused() {
         let problem = problem(Family::Pyramid, [Dof::X, Dof::Y].into_iter().collect());
         let error = |pairs: &[[Dof; 2]], exec: &Exec| run(&problem, &settings(9, pairs), exec).unwrap_err();
         assert!(matches!(error(&[[Dof::X, Dof::Yaw]], &Exec::new()), SlicesError::NotFree { dof: Dof::Yaw }));

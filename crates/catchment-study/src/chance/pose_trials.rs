@@ -144,7 +144,7 @@ impl Trials<'_> {
     }
 
     /// Whether friction varies from draw to draw.
-    pub(super) fn slips_otherwise(&self) -> bool {
+    pub(super) fn varies_friction(&self) -> bool {
         self.settings.dynamics.law(Circumstance::Friction).is_some_and(|law| !law.is_constant())
     }
 
@@ -193,7 +193,7 @@ impl Trials<'_> {
 
     /// Share of the draws of a pose that dock by exact motion.
     fn quasi_static(&self, error: &PoseError, exec: &Exec) -> Result<f64, ChanceError> {
-        let count = if self.slips_otherwise() { self.settings.trials } else { 1 };
+        let count = if self.varies_friction() { self.settings.trials } else { 1 };
         let draws = self.draws(error);
         let mut docks = 0;
         for trial in 0..count {

@@ -31,12 +31,12 @@ fn normal(x: f64, pitch: f64) -> Spread {
     Spread::normal(PoseError { x, pitch, ..PoseError::default() })
 }
 
-fn ask(problem: &Problem, requested: &Question, settings: &ChanceSettings) -> Chance {
+fn outcomes(problem: &Problem, requested: &Question, settings: &ChanceSettings) -> Chance {
     run(problem, requested, settings, &Exec::new()).unwrap()
 }
 
 fn of_poses(problem: &Problem, poses: &[PoseError], settings: &ChanceSettings) -> Vec<PoseChance> {
-    ask(problem, &Question { poses: poses.to_vec(), ..Question::default() }, settings).poses
+    outcomes(problem, &Question { poses: poses.to_vec(), ..Question::default() }, settings).poses
 }
 
 fn holds([lo, hi]: [f64; 2], value: f64) -> bool {
@@ -47,7 +47,7 @@ fn holds([lo, hi]: [f64; 2], value: f64) -> bool {
 /// 1/γ (here 50 times): of drifts uniform within 0 and 4 D/s, those below 2 D/s leave an offset of 0.3 D
 /// below D/2 at γ = 10/s.
 #[test]
-fn what_drifts_lands_where_the_closed_form_says() {
+fn a_drifting_half_lands_as_in_the_closed_form() {
     let dynamics = speed(0.1)
         .with(Circumstance::DriftX, ScalarDistribution::Uniform { from: 0.0, to: 4.0 })
         .with(Circumstance::Height, ScalarDistribution::constant(0.5));
@@ -69,7 +69,7 @@ fn slow_halves_have_the_probability_of_the_closed_form() {
     for seed in 0..20 {
         let settings =
             ChanceSettings { dynamics: speed(0.02), overall: 100, seed, ..ChanceSettings::default() };
-        let result = ask(&sliding(), &requested, &settings).overall.unwrap();
+        let result = outcomes(&sliding(), &requested, &settings).overall.unwrap();
         held += usize::from(holds(result.ci95, exact));
         assert!(holds(result.quasi_static_ci95, exact) || (result.quasi_static - exact).abs() < 0.02);
         assert!((result.outcomes.iter().sum::<f64>() - 1.0).abs() < 1e-9);
@@ -90,7 +90,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
         let settings = ChanceSettings { dynamics, overall: 300, ..ChanceSettings::default() };
         let errors = Some(normal(0.3, 0.5));
         let requested = Question { errors, times: vec![16.0, 0.01], ..Question::default() };
-        let result = ask(&problem, &requested, &settings);
+        let result = outcomes(&problem, &requested, &settings);
         let overall = result.overall.unwrap();
         let [slow, fast] = result.curve[..] else { panic!("{:?}", result.curve) };
         assert!((slow.factor, fast.factor) == (0.01, 16.0));
@@ -192,7 +192,7 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     assert_eq!(map.cells.len(), 6);
     assert!((map.cells[0].error.x + 0.4).abs() < 1e-12 && (map.cells[1].error.x).abs() < 1e-12);
     let other = ChanceSettings { seed: 2, ..settings };
-    assert_ne!(ask(&problem, &requested, &other).overall, one.overall);
+    assert_ne!(outcomes(&problem, &requested, &other).overall, one.overall);
 }
 
 /// Both sides of a symmetric half are as likely, within both intervals.
@@ -212,7 +212,7 @@ fn mirror_images_are_as_likely() {
 
 /// The majority of three is wrong if two or three of them are.
 #[test]
-fn the_majority_of_three_errs_seldom() {
+fn majority_of_three_has_its_closed_form() {
     for single in [0.0, 0.0008, 0.1, 0.5, 1.0f64] {
         let two_or_three = 3.0 * single * single * (1.0 - single) + single.powi(3);
         assert!((majority_of_three(single) - two_or_three).abs() < 1e-15);
@@ -223,7 +223,7 @@ fn the_majority_of_three_errs_seldom() {
 }
 
 #[test]
-fn what_is_asked_in_vain_is_refused() {
+fn invalid_questions_are_refused() {
     let problem = sliding();
     let pose = || Question { poses: vec![x(0.1)], ..Question::default() };
     let refused = |requested: &Question, settings: &ChanceSettings| {

@@ -41,7 +41,7 @@ use catchment_core::method::correction::Z95;
 use catchment_core::method::descent::{self, Follower, FrictionAmbiguity, FrictionOutOfRange, HARDLY};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
-use catchment_core::run::jams::{NamedFeature, Sticks, what_sticks};
+use catchment_core::run::jams::{NamedFeature, Sticks, stuck_pairs};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -261,7 +261,7 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
             .collect::<Result<_, Cancelled>>()
     })?;
     let first = first_lost(&poses, &ways);
-    let (poses, sticks) = what_sticks(problem, &first, exec)?;
+    let (poses, sticks) = stuck_pairs(problem, &first, exec)?;
     let features = sticks.into_iter().map(|pair| StickingPair::of(pair, poses)).collect();
     Ok(Friction {
         motions: ways.len(),

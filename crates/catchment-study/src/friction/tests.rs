@@ -5,7 +5,7 @@ use catchment_core::pose::{Dof, DofSet};
 
 /// Rotations locked, the critical friction of a facet is its slope: of every pose, and so of every share of them.
 #[test]
-fn on_facets_every_pose_is_lost_at_their_slope() {
+fn on_facets_the_critical_friction_is_the_slope() {
     for (family, ratio, slope) in [(Family::VFace, 0.1, 0.2), (Family::XFace, 0.3, 0.3)] {
         let text = format!(
             "[connector]\nfamily = \"{}\"\naspect_ratio = {ratio}\n[alignment]\nfree = [\"x\"]\n",
@@ -109,7 +109,7 @@ fn the_interval_of_a_quantile_holds_it() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn invalid_settings_are_refused() {
     let problem = problem(Family::VFace, [Dof::X].into_iter().collect());
     let refused = |settings: FrictionSettings| run(&problem, &settings, &Exec::new()).unwrap_err();
     let base = FrictionSettings { motions: Some(10), ..FrictionSettings::default() };

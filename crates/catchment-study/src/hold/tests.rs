@@ -13,7 +13,7 @@ fn problem(connector: &str, rest: &str) -> Problem {
     Problem::of(read(&text, Path::new("")).unwrap().design).unwrap()
 }
 
-fn found(problem: &Problem, settings: &HoldSettings) -> HoldingForces {
+fn holding_forces(problem: &Problem, settings: &HoldSettings) -> HoldingForces {
     run(problem, settings, &Exec::new()).unwrap()
 }
 
@@ -30,7 +30,7 @@ fn free(of: &LoadLimits) -> f64 {
 fn the_spatial_x_face_at_thirty_degrees() {
     let ratio = 3f64.sqrt().recip();
     let problem = problem(&format!("family = \"x-face-3d\"\naspect_ratio = {ratio}"), "");
-    let found = found(&problem, &HoldSettings::default());
+    let found = holding_forces(&problem, &HoldSettings::default());
     for side in &found.sideways {
         // |x| + |y| = AR bounds the holding force, as h = AR·max(|x|, |y|).
         let expected = ratio / (side.direction_rad.cos().abs() + side.direction_rad.sin().abs());
@@ -49,10 +49,10 @@ fn the_spatial_x_face_at_thirty_degrees() {
 /// With free tilt the holding force is at most that of guided motion, with friction at least that without,
 /// and equal in all directions for a face with four equal sides.
 #[test]
-fn columns_are_in_order_and_sides_alike() {
+fn holding_forces_are_ordered_and_symmetric() {
     let problem = problem("family = \"pyramid\"\naspect_ratio = 0.5", "center_of_rotation = 0.3\n");
     let settings = HoldSettings { friction: 0.2, directions: 24, ..HoldSettings::default() };
-    let found = found(&problem, &settings);
+    let found = holding_forces(&problem, &settings);
     let all =
         found.sideways.iter().map(|side| side.withstood).chain(found.torques.iter().map(|t| t.withstood));
     for withstood in all {
@@ -75,14 +75,14 @@ fn columns_are_in_order_and_sides_alike() {
 
 /// Pushed at the height of the centre of rotation a flat plate slides, far above it tips: D/2 over the lever.
 #[test]
-fn a_long_lever_tips_it() {
+fn a_long_lever_tips_the_half() {
     let text = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [2.0, 2.0, 0.5]\n[[connector.moving.parts]]\n\
                 box = [1.0, 1.0, 0.5]\n[alignment]\nrotation_length = 0.5\nfree = [\"x\", \"roll\", \"pitch\"]\n\
                 [docked]\nx = 1.0\n[errors]\nx = 0.1\n";
     let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
     let at = |lever: f64| {
         let settings = HoldSettings { lever, friction: 0.4, ..HoldSettings::default() };
-        found(&problem, &settings).sideways[0].withstood.rough.unwrap().free.unwrap()
+        holding_forces(&problem, &settings).sideways[0].withstood.rough.unwrap().free.unwrap()
     };
     // Slides at the friction, or tips about the edge.
     assert!((at(0.0) - 0.4).abs() < EXACT && (at(1.0) - 0.4).abs() < EXACT, "{} {}", at(0.0), at(1.0));
@@ -91,12 +91,12 @@ fn a_long_lever_tips_it() {
 
 /// Released at a pose error it comes to rest elsewhere, and is held there.
 #[test]
-fn a_half_is_held_where_it_comes_to_rest() {
+fn a_released_half_is_held_at_its_rest() {
     let problem = problem("family = \"v-face\"\naspect_ratio = 1.0", "");
     let pose = PoseError { x: 0.1, pitch: 0.05, ..PoseError::default() };
-    let home = found(&problem, &HoldSettings { pose: Some(pose), ..HoldSettings::default() });
+    let home = holding_forces(&problem, &HoldSettings { pose: Some(pose), ..HoldSettings::default() });
     assert_eq!(home.outcome, Outcome::Aligned);
-    let mated = found(&problem, &HoldSettings::default());
+    let mated = holding_forces(&problem, &HoldSettings::default());
     for (a, b) in home.sideways.iter().zip(&mated.sideways) {
         assert!((guided(&a.withstood) - guided(&b.withstood)).abs() < 1e-3, "{a:?} {b:?}");
     }
@@ -108,8 +108,11 @@ fn a_half_is_held_where_it_comes_to_rest() {
         let problem = self::problem(connector, "");
         for friction in [0.0, 0.2] {
             let settings = HoldSettings { friction, directions: 8, ..HoldSettings::default() };
-            let mated = found(&problem, &settings);
-            let home = found(&problem, &HoldSettings { pose: Some(PoseError::from_array(pose)), ..settings });
+            let mated = holding_forces(&problem, &settings);
+            let home = holding_forces(
+                &problem,
+                &HoldSettings { pose: Some(PoseError::from_array(pose)), ..settings },
+            );
             for (a, b) in home.sideways.iter().zip(&mated.sideways) {
                 let (a, b) = (guided(&a.withstood), guided(&b.withstood));
                 assert!((a - b).abs() < 1e-6, "{connector}, friction {friction}: {a} {b}");
@@ -122,7 +125,7 @@ fn a_half_is_held_where_it_comes_to_rest() {
 }
 
 #[test]
-fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
+fn threads_change_nothing_and_invalid_settings_are_refused() {
     let problem = problem("family = \"pyramid\"", "");
     let settings = HoldSettings { friction: 0.1, directions: 12, ..HoldSettings::default() };
     let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();

@@ -248,7 +248,7 @@ fn distances_are_mirrored() {
 }
 
 #[test]
-fn what_cannot_be_planned_is_refused() {
+fn invalid_plans_are_refused() {
     let problem = problem("v-face.toml");
     let accuracy = PoseError { x: 0.01, ..PoseError::default() };
     let grid = Pattern::Grid { steps: [Some(3), None, None, None, None], max: [None; 5] };
@@ -286,7 +286,7 @@ fn what_cannot_be_planned_is_refused() {
 /// The requested number of trials, for any distance of the border from zero or the error box; without
 /// repeated poses.
 #[test]
-fn a_bracket_has_the_trials_that_were_asked_for() {
+fn a_bracket_has_the_requested_number_of_trials() {
     let about = |size: f64| PoseError::from_array([size; 5]);
     for (design, accuracy, trials) in [
         ("pyramid.toml", about(0.02), 40),

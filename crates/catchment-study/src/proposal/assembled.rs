@@ -78,15 +78,15 @@ fn let_in(
     if let Ok(found) = drawn
         && near(&found)
     {
-        let mut found = found.found(sunk, 0);
-        found.ask(both.settings.free, both.display, exec);
+        let mut found = found.with_lattice(sunk, 0);
+        found.evaluate_seat(both.settings.free, both.display, exec);
         if matches!(found.seat, Some(Ok(_))) {
             return Ok(found);
         }
     }
     let lie = sunk.lie;
     judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.display)
-        .map(|found| found.found(sunk, 0))
+        .map(|found| found.with_lattice(sunk, 0))
         .map_err(|refusal| refusal.of(lie))
 }
 

@@ -1,6 +1,6 @@
 //! The design file of a proposal: the meaning of every line, and the reason for its value.
 
-use super::halves::{design_unit, file_unit, says_its_unit};
+use super::halves::{design_unit, file_unit, may_state_unit};
 use super::layout::PartLayout;
 use super::seat_check::{Seat, SeatCandidate};
 use super::{PartDetail, PartFile, ProposalSettings};
@@ -51,7 +51,7 @@ const MESHED: &str =
 
 /// The keys that name a file, and the unit of a file that does not state it.
 fn named(part: &PartFile, unit: LengthUnit) -> (String, Option<String>) {
-    let stated = (!says_its_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
+    let stated = (!may_state_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
     (format!("mesh = {}", quoted(&part.written)), stated)
 }
 

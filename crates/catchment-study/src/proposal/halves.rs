@@ -33,7 +33,7 @@ pub(super) fn read(
                 PartDetail::Part(_) => None,
             });
             let mut files = std::iter::once(part).chain(more);
-            if let Some(file) = files.find(|file| !says_its_unit(&file.path)) {
+            if let Some(file) = files.find(|file| !may_state_unit(&file.path)) {
                 let alone = of_half(&mesh(file, settings), HalfRole::Fixed, exec);
                 return Err(no_unit(file, &alone.unwrap_or_default()));
             }
@@ -90,7 +90,7 @@ fn mesh(part: &PartFile, settings: &ProposalSettings) -> HalfSpec {
     let unit = design_unit(settings).metres();
     let scale = file_unit(settings).metres() / unit;
     let mut spec = FileSpec::new(&part.path, scale);
-    if says_its_unit(&part.path) {
+    if may_state_unit(&part.path) {
         (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit);
     }
     spec.treatment.body = part.body;
@@ -112,8 +112,8 @@ pub(super) fn design_unit(settings: &ProposalSettings) -> LengthUnit {
 }
 
 /// Whether a file states its unit.
-pub(super) fn says_its_unit(path: &Path) -> bool {
-    FileSpec::new(path, 1.0).may_say_its_unit()
+pub(super) fn may_state_unit(path: &Path) -> bool {
+    FileSpec::new(path, 1.0).may_state_unit()
 }
 
 /// The unit in which a part of this size is between a pea and a door, if it is a common unit.

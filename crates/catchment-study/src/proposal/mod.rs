@@ -385,7 +385,7 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<SeatCandidate, Rejec
             Some(&sunk),
             both.display,
         )
-        .map(|found| found.found(sunk, class))
+        .map(|found| found.with_lattice(sunk, class))
         .map_err(|refusal| refusal.of(sunk.lie))
     }))
 }
@@ -436,7 +436,7 @@ fn rank(
         let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
             return Ok(());
         };
-        next.ask(free, display, exec);
+        next.evaluate_seat(free, display, exec);
         sort(judged);
     }
 }

@@ -139,7 +139,7 @@ impl SeatCandidate {
     }
 
     /// Adds the lattice result with which it was found.
-    pub(super) fn found(self, sunk: Sunk, class: usize) -> Self {
+    pub(super) fn with_lattice(self, sunk: Sunk, class: usize) -> Self {
         Self { sunk: Some(sunk), class, ..self }
     }
 
@@ -153,7 +153,7 @@ impl SeatCandidate {
     }
 
     /// Evaluates its seat, which takes the longest.
-    pub(super) fn ask(&mut self, free: Option<DofSet>, display: DisplayUnit, exec: &Exec) {
+    pub(super) fn evaluate_seat(&mut self, free: Option<DofSet>, display: DisplayUnit, exec: &Exec) {
         if self.seat.is_none() {
             let display = DisplayUnit { scale: display.scale * self.width, ..display };
             self.seat = Some(seat(&self.connector, free, display, exec));

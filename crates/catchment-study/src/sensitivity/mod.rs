@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_that_fare_alike_cancel() {
+    fn poses_with_equal_outcomes_cancel() {
         // Ten of a thousand poses change sides, eight to the better: (8 − 2)/1000, and the variance of that.
         let discordance = Discordance { poses: 1000, gained: 8, lost: 2 };
         assert_eq!(discordance.difference(), 0.006);
@@ -421,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
+    fn threads_change_nothing_and_every_parameter_is_varied() {
         let settings = SensitivitySettings {
             poses: Some(200),
             rotation_lengths: vec![2.0, 0.25],
@@ -456,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_refused() {
+    fn invalid_settings_are_refused() {
         let refused = |settings: SensitivitySettings, exec: &Exec| {
             run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err()
         };

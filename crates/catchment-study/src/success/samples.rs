@@ -234,7 +234,7 @@ mod tests {
 
     /// Two strata of 900 and 100 errors, of which the second runs out.
     #[test]
-    fn weights_are_the_shares_of_what_poses_stand_for() {
+    fn weights_are_the_shares_that_poses_represent() {
         let labels = (0..1000).map(|k| u8::from(k % 10 == 0)).collect();
         let mut drawn = DrawnErrors::new(labels, false);
         for given in [[20, 60], [30, 60]] {
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_plain_motions_have_as_wide_an_interval() {
+    fn plain_motions_invert_the_wilson_interval() {
         for (probability, count) in [(0.5, 1000.0), (0.99, 40_000.0), (1.0, 250.0)] {
             let result = plain_motions(probability, wilson95(probability, count));
             assert!((result / count - 1.0).abs() < 1e-6, "{result} for {count}");

@@ -70,7 +70,7 @@ fn strata(problem: &Problem, spread: &Spread) -> Strata {
 /// Without rotations a V-Face corrects offsets up to D/2: P = erf(1/(2σ√2)), dP/dσ = −2·φ(1/2σ)/(2σ²), and half of σ halves the argument's
 /// inverse.
 #[test]
-fn of_one_offset_everything_is_the_closed_form() {
+fn a_normal_offset_agrees_with_the_closed_form() {
     let problem = problem(Family::VFace, free(&[Dof::X]));
     let p = |sigma: f64| libm::erf(0.5 / (sigma * 2f64.sqrt()));
     let result = run(&problem, &one(of(0.3, 0.0, &[], false)), &quick(), &Exec::new()).unwrap();
@@ -96,7 +96,7 @@ fn of_one_offset_everything_is_the_closed_form() {
 /// Uniform within ±h: P = 1/(2h) and dP/dh = −P/h, because faces always fail; with h halved all errors are
 /// within the V.
 #[test]
-fn of_uniform_offsets_too() {
+fn a_uniform_offset_agrees_with_the_closed_form() {
     let problem = problem(Family::VFace, free(&[Dof::X]));
     let half_width = PoseError { x: 0.8, ..PoseError::default() };
     let spread = Spread::Uniform { mean: PoseError::default(), half_width };
@@ -171,7 +171,7 @@ fn slopes_are_those_of_finite_differences() {
 
 /// A singular covariance has no density: no slopes, but a probability.
 #[test]
-fn errors_that_follow_from_each_other_have_no_slopes() {
+fn fully_correlated_errors_have_no_slopes() {
     let problem = v_face();
     let sigma = PoseError { x: 0.2, pitch: 0.3, ..PoseError::default() };
     let mut correlation = IDENTITY;
@@ -184,7 +184,7 @@ fn errors_that_follow_from_each_other_have_no_slopes() {
 }
 
 #[test]
-fn it_is_the_same_on_any_number_of_threads() {
+fn threads_do_not_change_the_window() {
     let problem = pyramid();
     let robots = one(of(0.2, 0.3, &[Dof::Yaw], true));
     let on = |threads: usize| {
@@ -199,7 +199,7 @@ fn it_is_the_same_on_any_number_of_threads() {
 
 /// The pyramid has fourfold symmetry: the gains of x and y are equal, within the uncertainty of the sample.
 #[test]
-fn alike_errors_gain_alike() {
+fn symmetric_errors_have_equal_gains() {
     let result = run(&pyramid(), &one(of(0.3, 0.1, &[Dof::Yaw], true)), &quick(), &Exec::new()).unwrap();
     let gain = |axis: Dof| result.robots[0].improve.iter().find(|improve| improve.axis == axis).unwrap();
     let (x, y) = (gain(Dof::X), gain(Dof::Y));
@@ -208,7 +208,7 @@ fn alike_errors_gain_alike() {
 }
 
 #[test]
-fn what_is_asked_in_vain_is_refused() {
+fn invalid_robots_and_settings_are_refused() {
     let problem = v_face();
     let refused = |robots: &[Robot], settings: &SuccessSettings| {
         run(&problem, robots, settings, &Exec::new()).unwrap_err().to_string()
@@ -229,7 +229,7 @@ fn what_is_asked_in_vain_is_refused() {
 }
 
 #[test]
-fn a_mean_that_does_not_dock_is_said() {
+fn a_mean_that_does_not_dock_is_reported() {
     let mean = PoseError { x: 0.7, ..PoseError::default() };
     let sigma = PoseError { x: 0.05, ..PoseError::default() };
     let spread = Spread::Normal { mean, sigma, correlation: IDENTITY };
@@ -358,7 +358,7 @@ const REFERENCE: usize = 500_000;
 /// Offsets alone on facets of a slope of 0.2: with less friction the result is the frictionless one, with
 /// more only poses that start in the seat dock.
 #[test]
-fn friction_above_the_slope_leaves_what_starts_in_the_seat() {
+fn friction_above_the_slope_docks_only_poses_in_the_seat() {
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
     let problem = Problem::of(catchment_core::design::read(text, ".".as_ref()).unwrap().design).unwrap();
     let errors = Spread::normal(PoseError { x: 0.25, ..PoseError::default() });

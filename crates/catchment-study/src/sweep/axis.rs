@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn invalid_axes_are_reported() {
         let refusal = |text: &str| text.parse::<SweepAxis>().unwrap_err().to_string();
         assert!(refusal("aspect_ratio").contains("KEY=VALUE"));
         assert!(refusal("=1").contains("KEY=VALUE"));

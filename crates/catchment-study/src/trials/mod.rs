@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_sides_are_counted_apart_and_their_interval_holds_the_share() {
+    fn disagreements_are_counted_by_side_with_an_interval() {
         let problem = problem(Family::XFace3d, XY);
         let grid = Grid::over(problem.alignment(), |_| 10);
         let trial = |k: usize| {
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_refused() {
+    fn invalid_comparisons_are_refused() {
         let both = problem(Family::XFace3d, XY);
         let refused = |settings: &TrialsSettings| run(&both, settings, &Exec::new()).unwrap_err();
         assert!(matches!(refused(&settings("transport", &[5])), TrialsError::Method { method: "transport" }));

@@ -113,7 +113,7 @@ fn as_predicted(runs: u64) {
 
 /// A centre of rotation that is 0.3 D away from that of the design, or friction of 0.5: hardly ever
 /// consistent. (Friction of 0.3 changes none of these outcomes: the faces are steeper than it can hold.)
-fn otherwise(runs: u64) {
+fn assert_rarely_consistent(runs: u64) {
     let problem = problem("bench-pyramid-arc.toml");
     let cor = problem.alignment().center_of_rotation;
     let (poses, accuracy) = arc(&problem);
@@ -137,13 +137,13 @@ fn otherwise(runs: u64) {
 }
 
 #[test]
-fn robots_that_do_as_predicted_are_found_consistent() {
+fn robots_as_predicted_are_consistent() {
     as_predicted(20);
 }
 
 #[test]
-fn robots_that_do_otherwise_are_found_inconsistent() {
-    otherwise(10);
+fn robots_unlike_the_prediction_are_inconsistent() {
+    assert_rarely_consistent(10);
 }
 
 /// The same, 200 runs each: minutes.
@@ -151,7 +151,7 @@ fn robots_that_do_otherwise_are_found_inconsistent() {
 #[ignore = "minutes"]
 fn verdicts_hold_in_200_runs() {
     as_predicted(200);
-    otherwise(200);
+    assert_rarely_consistent(200);
 }
 
 /// A V-Face of which only x is free: the border is at 0.5.
@@ -221,7 +221,7 @@ fn a_trial_within_one_accuracy_of_the_border_is_no_disagreement() {
 }
 
 #[test]
-fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
+fn one_failure_far_inside_refutes_but_one_near_the_limit_does_not() {
     let inside = |seen| {
         let mut rows = vec![(0.1, seen)];
         rows.extend([0.2, 0.25, 0.3, 0.35].map(|x| (x, DOCKED)));
@@ -299,7 +299,7 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
 /// A pyramid that docks rotated by a quarter turn docks if its design declares this symmetry, and fails if
 /// not.
 #[test]
-fn docked_elsewhere_is_docked_where_the_design_says_so() {
+fn a_symmetric_pose_docks_if_the_design_declares_it() {
     let fourfold = problem("bench-pyramid.toml");
     let accuracy = PoseError { x: 0.002, y: 0.002, ..PoseError::default() };
     let tried: Vec<RobotTrial> =

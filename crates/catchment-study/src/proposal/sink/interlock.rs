@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn an_undercut_is_what_walls_would_have_to_give_way_by() {
+    fn an_undercut_is_the_required_wall_deflection() {
         // A hole of 10.6 mm with a lip that leaves 9.2 mm, and a square pin of 10 mm with a neck of 9 mm.
         let mut socket = Triangles::new();
         for (half, low, high) in [(5.3, -12.0, -2.0), (4.6, -2.0, 0.0)] {

@@ -82,7 +82,7 @@ fn a_plate_is_flat_and_a_hole_without_a_floor_lets_pass() {
 }
 
 #[test]
-fn a_turned_pin_is_found_with_its_twin() {
+fn a_turned_pin_enters_by_its_headless_ends() {
     let plate = plate(5.3, 12.0, [3.0, -2.0]);
     // The pin lies along x, at an arbitrary place; its head distinguishes its ends.
     let lying =
@@ -111,7 +111,7 @@ fn a_turned_pin_is_found_with_its_twin() {
 
 /// The same plate, drawn at 45 degrees: no axis enters its hole.
 #[test]
-fn what_is_drawn_at_45_degrees_is_found_along_diagonals() {
+fn a_pair_drawn_at_45_degrees_sinks_along_a_diagonal() {
     let turned = |part: &Triangles| -> Triangles {
         let by = DMat3::from_rotation_x(std::f64::consts::FRAC_PI_4);
         part.iter().map(|triangle| triangle.map(|p| by * p)).collect()
@@ -133,7 +133,7 @@ fn what_is_drawn_at_45_degrees_is_found_along_diagonals() {
 }
 
 #[test]
-fn what_two_parts_share_is_measured() {
+fn the_overlap_of_two_parts_is_measured() {
     let fixed = block([0.0; 3], [10.0, 10.0, 10.0]);
     let lapped = together([&fixed, &block([5.0, 5.0, 5.0], [15.0, 15.0, 15.0])], GRAIN);
     assert!((lapped.shared - 0.125).abs() < 0.01 && (lapped.inside - 0.125).abs() < 1e-12, "{lapped:?}");
