@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_right_is_read() {
+    fn valid_values_are_read() {
         assert_eq!(refusals("[a]\nlength = 0.3\ncount = 2\n").lines().count(), 1);
         assert_eq!(
             refusals("[a]\nlength='1 in'\ncount=2\nkind='Square'\n"),

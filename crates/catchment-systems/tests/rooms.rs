@@ -22,7 +22,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_room_knows_another() {
+fn modules_do_not_import_each_other() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let tour = fs::read_to_string(src.join("lib.rs")).unwrap();
     let rooms: Vec<&str> =
@@ -42,7 +42,7 @@ fn no_room_knows_another() {
 }
 
 #[test]
-fn the_library_knows_none() {
+fn library_crates_do_not_depend_on_systems() {
     for name in ["catchment", "catchment-core", "catchment-study", "catchment-report"] {
         let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name);
         let manifest = fs::read_to_string(library.join("Cargo.toml")).unwrap();

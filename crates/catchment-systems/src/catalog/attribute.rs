@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_attribute_is_found_by_its_names() {
+    fn every_attribute_resolves_by_its_names() {
         for (k, (attribute, key, others, _)) in NAMES.iter().enumerate() {
             assert_eq!((attribute.index(), CatalogAttribute::ALL[k]), (k, *attribute));
             assert_eq!(CatalogAttribute::named(&key.to_uppercase()), Some(*attribute));

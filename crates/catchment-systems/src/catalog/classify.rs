@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn families_are_what_the_field_calls_them() {
+    fn families_are_classified_as_published() {
         for (family, degree, gendering, longest) in [
             (Family::XFace3d, Degree::High, "Ungendered", 2.0),
             (Family::Pyramid, Degree::High, "Gendered", 1.0),

@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_data_says_its_line() {
+    fn broken_data_is_reported_with_its_line() {
         let refused = |text: &str| zraa_rows(text).unwrap_err().to_string();
         let head = "system,normalized_zraa_sum,estimated\n";
         assert!(

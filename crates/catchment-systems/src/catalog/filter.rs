@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn conditions_hold_together_and_those_of_one_attribute_are_alternatives() {
+    fn attributes_combine_by_and_their_values_by_or() {
         assert_eq!(names(&["gendering=Ungendered", "degree=High"]), ["DRAGON", "SINGO", "Vacuubes", "DFA"]);
         assert_eq!(names(&["TYPE=magnet"]), ["Fracta 2D"]);
         // The normal form takes its odd spelling along.
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unknown_is_answered_with_what_is_known() {
+    fn unknown_names_list_the_known_ones() {
         let refusal = |error: &UnknownError| format!("{error} {}", error.help().unwrap_or_default());
         let condition = |text: &str| refusal(&catalog().condition(text).unwrap_err());
         assert!(condition("gendering").contains("write attribute=value"));

@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_table_is_reported_in_its_place() {
+    fn table_defects_are_reported_in_their_places() {
         let read = |text: &str| table(&SourceText::new("t.csv", text));
         assert_eq!(read("time_s,module_2\n0,0\n1,slack\n").unwrap().len(), 2);
         let commanded = |text: &str| read(text).unwrap_err().to_string();

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_area_overlaps_by_nothing() {
+    fn a_region_without_area_has_no_overlap() {
         let line = Bracket::exact(Region::segment(DVec2::ZERO, DVec2::X));
         let disc = SweptShape::Disc { radius: 3.0 }.bracket(DVec2::ZERO, 0.01);
         let result = peak(&line, &disc, &Exec::new()).unwrap().unwrap();

@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_beside_its_pivot_sweeps_what_the_polar_integral_says() {
+    fn an_off_pivot_turn_sweeps_the_area_of_the_polar_integral() {
         // A square whose sides pass the pivot: ∫ r (width of the square at r, in angle, + the turn) dr, per radius.
         let square = SweptShape::Box { width: 2.0, height: 2.0 }.bracket(DVec2::new(4.0, 0.5), 1.0);
         let turn = 0.4;

@@ -347,7 +347,7 @@ proptest! {
 }
 
 #[test]
-fn two_connectors_add_up_their_own_search() {
+fn a_connectors_region_and_a_square_add_up() {
     let pyramid = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\n[alignment]\nfree = [\"x\", \"y\"]\n";
     let read = |text: &str| read(SourceText::new("p.toml", text), &Exec::new()).unwrap();
     let connector = read(pyramid);
@@ -368,7 +368,7 @@ fn two_connectors_add_up_their_own_search() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_is_said_in_its_place() {
+fn file_defects_are_reported_in_their_places() {
     let error_of = |name: &str, text: &str| match read(SourceText::new(name, text), &Exec::new()) {
         Ok(_) => "nothing".to_owned(),
         Err(error) => error.to_string(),

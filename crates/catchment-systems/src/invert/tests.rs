@@ -77,7 +77,7 @@ fn the_envelope_is_the_height_of_first_contact() {
 /// Heights lower than the pair's stops are wanted, over a small square of offsets: they are unattainable, and
 /// the result gives their place.
 #[test]
-fn heights_lowered_anywhere_are_not_reached_and_it_says_where() {
+fn lowered_heights_are_unattainable_and_located() {
     for name in ["pyramid", "x-face-3d", "v-face"] {
         let problem = family(name);
         let heights = own_heights(&problem);
@@ -150,7 +150,7 @@ fn outside(polygon: &[DVec2], region: &[DVec2]) -> Vec<Vec<DVec2>> {
 }
 
 #[test]
-fn a_flat_wish_over_a_flat_plate_is_a_plate() {
+fn constant_wanted_heights_give_a_plate() {
     // Over the pyramid's socket, whose rim is at H/2 = 0.25, constant wanted heights: the moving half makes
     // contact with its deepest point only. g(u) = max f − h* wherever the rim can come over u: a plate.
     let problem = family("pyramid");
@@ -165,7 +165,7 @@ fn a_flat_wish_over_a_flat_plate_is_a_plate() {
 }
 
 #[test]
-fn turns_that_the_half_keeps_ask_for_nothing_more() {
+fn rotations_already_satisfied_change_nothing() {
     let problem = family("pyramid");
     let plain = inverted(&problem, own_heights(&problem), &InvertSettings::default());
     let settings = InvertSettings { yaw: vec![-0.3, 0.3], ..InvertSettings::default() };
@@ -184,7 +184,7 @@ fn turns_that_the_half_keeps_ask_for_nothing_more() {
 /// Higher heights are wanted, and at a rotation the old heights: without the rotation the half comes out too
 /// deep for it.
 #[test]
-fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
+fn heights_at_a_rotation_hold_only_if_requested() {
     let problem = family("pyramid");
     let (turn, higher) = (0.3, 0.2);
     let mut wanted = own_heights(&problem);
@@ -237,7 +237,7 @@ fn the_result_is_a_design_that_runs() {
 }
 
 #[test]
-fn what_is_wrong_with_a_table_is_said_in_its_place() {
+fn table_defects_are_reported_in_their_places() {
     let error_of = |text: &str| wanted_from_table(SourceText::new("w.csv", text)).unwrap_err().to_string();
     assert!(error_of("x,y,z\n0,0,0\n").contains("w.csv:1:1: the columns are not x,y,height"));
     assert!(error_of("x,y,height\n0,0,nan\n").contains("w.csv:2:1: the line is not three finite numbers"));

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dxf_reads_back_as_what_was_drawn() {
+    fn a_dxf_reads_back_as_drawn() {
         let latch = latch();
         let geometry = Geometry::of(&latch).unwrap();
         for sheet in Sheet::all(&latch, &geometry) {

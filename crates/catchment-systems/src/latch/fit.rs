@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn stiffness_in_tension_follows_a_power_law_and_in_compression_none() {
+    fn only_tension_stiffness_follows_a_power_law() {
         let rows = table().unwrap();
         let points = |of: fn(&Measured) -> f64| -> Vec<MeasuredForce> {
             rows.iter().map(|r| MeasuredForce { o: r.overhang_mm, t: r.neck_mm, force: of(r) }).collect()

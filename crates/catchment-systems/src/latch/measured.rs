@@ -105,7 +105,7 @@ mod tests {
 
     /// The dissertation's sentences about the table, whether they are true or not.
     #[test]
-    fn what_the_text_says_about_the_table() {
+    fn claims_of_the_text_are_checked_on_the_table() {
         let rows = table().unwrap();
         let at = |o: f64, t: f64| *rows.iter().find(|r| r.overhang_mm == o && r.neck_mm == t).unwrap();
         assert!(at(2.5, 3.8).k_compression_n_per_mm < at(2.5, 3.0).k_compression_n_per_mm);

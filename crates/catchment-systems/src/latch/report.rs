@@ -335,7 +335,7 @@ mod tests {
     /// The record of a press comes from springs and friction alone, and stays below the measured force: the
     /// report gives the ratio.
     #[test]
-    fn a_record_below_the_measured_force_says_so() {
+    fn a_record_below_the_measured_force_is_reported() {
         let usual = report(&LatchDesign::default());
         let press = &usual.press;
         assert_eq!(press.measured_latching_n, Some(16.36));

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_work_is_doubted() {
+    fn borderline_values_raise_warnings() {
         let d = LatchDesign::default;
         assert_eq!(doubted(&LatchDesign { overhang: 1.27, ..d() }), ["overhang"]);
         assert_eq!(doubted(&LatchDesign { separator: 3.0, ..d() }), ["separator"]);

@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_fits_a_terminal_and_says_what_is_contradictory() {
+    fn the_table_fits_a_terminal_and_states_its_fits() {
         let report = super::report(&Forces::new().unwrap());
         let text = report.table();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");

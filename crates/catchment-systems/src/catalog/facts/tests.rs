@@ -92,7 +92,7 @@ fn where_the_geometry_is_given_the_area_agrees_within_two_per_mille() {
 }
 
 #[test]
-fn closed_forms_are_what_the_program_computes() {
+fn closed_forms_agree_with_computed_areas() {
     // The saddle and the pyramid are polygons: exact.
     let (_, zraa, square) = computed(FamilySpec::new(Family::XFace3d));
     assert!((area(&zraa) - AcceptanceShape::Diamond(1.0).area()).abs() < 1e-9);

@@ -12,7 +12,7 @@ fn joints(degrees: f64) -> ChainErrors {
 
 /// Every number of the specification's table, to its last digit (half a unit and its rounding).
 #[test]
-fn the_table_of_lateral_and_heading_deviations_is_ours() {
+fn lateral_and_heading_deviations_match_the_table() {
     let modules = [2, 3, 4, 6, 8, 12, 16, 20];
     let rows = [
         (0.5, [0.0200, 0.0374, 0.0580, 0.1070, 0.1650, 0.3035, 0.4675, 0.6534]),
@@ -98,7 +98,7 @@ fn the_ring_closes_with_the_published_covariance() {
 
 /// In a latched loop nothing is wrong: of the second latch only the joints outside of the first count.
 #[test]
-fn what_a_latch_holds_cannot_be_wrong() {
+fn joints_in_a_latched_loop_add_no_error() {
     let of = |reading| {
         let angles = ChainShape::Block { reading }.angles();
         let latches = latches(&angles);

@@ -84,7 +84,7 @@ fn tilts() -> InvertSettings {
 }
 
 #[test]
-fn what_is_wanted_at_rotations_is_kept_there_and_not_elsewhere() {
+fn heights_at_rotations_hold_only_if_requested() {
     let (problem, kept) = raised(&tilts());
     let (_, free) = raised(&InvertSettings::default());
     assert_eq!((kept.turns, free.turns), (6, 0));
@@ -137,7 +137,7 @@ fn between_the_rotations_the_excess_is_bounded() {
 }
 
 #[test]
-fn rotations_that_cannot_be_asked_for_are_refused() {
+fn invalid_rotations_are_refused() {
     let planar = family("v-face");
     let settings = InvertSettings { roll: vec![0.1], ..InvertSettings::default() };
     assert_eq!(settings.turns(planar.design()), Err(InvertError::Planar));

@@ -121,7 +121,7 @@ fn separators_do_not_meet() {
 }
 
 #[test]
-fn what_has_no_outline_is_refused() {
+fn impossible_outlines_are_refused() {
     // A cut-out as high as that puts P above the hook.
     let refuse = |latch: LatchDesign| Geometry::of(&latch).unwrap_err().key();
     assert_eq!(refuse(LatchDesign { slit_distance: 2.0, ..LatchDesign::default() }), "slit_distance");
