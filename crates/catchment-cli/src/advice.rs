@@ -52,7 +52,7 @@ mod tests {
     use catchment::method::drop::DropError;
 
     #[test]
-    fn advice_inside_of_an_error_is_found() {
+    fn advice_nested_in_an_error_is_returned() {
         let needs = |advice: Vec<Advice>| {
             let small = Exec::new().with_memory_budget(1);
             let refused = small.ensure_fits("a grid", 2, |_| advice).unwrap_err();

@@ -40,7 +40,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     #[test]
-    fn a_panic_on_any_thread_is_a_failure_that_says_where_to_report_it() {
+    fn a_panic_on_any_thread_is_a_failure_and_names_the_repository() {
         assert_eq!(caught(|| ExitStatus::Done), ExitStatus::Done);
         let heard = Arc::new(Mutex::new(String::new()));
         let listener = Arc::clone(&heard);

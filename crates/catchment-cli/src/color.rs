@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_choice_of_a_command_line_is_found_before_it_is_read() {
+    fn the_color_option_is_read_before_the_command_line_is_parsed() {
         let of = |line: &str| {
             let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
             Color::of_words(&words)

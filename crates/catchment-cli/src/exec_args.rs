@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_asked_for_is_started() {
+    fn requested_threads_and_memory_are_applied() {
         let args = ExecArgs { threads: Some(2), memory: Some(1000), quiet: true };
         let running = args.start().unwrap();
         assert_eq!(running.exec.threads(), 2);
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_has_one_line_per_tenth_of_what_takes_long() {
+    fn a_log_has_one_line_per_tenth_of_a_long_stage() {
         let mut log = Log::new();
         assert_eq!(log.line(0.5, "cells"), None);
         log.started -= 2 * Log::SILENT;

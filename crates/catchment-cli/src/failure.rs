@@ -73,7 +73,7 @@ impl Failure {
         let mut stderr = std::io::stderr().lock();
         // If stderr itself is closed, the message is lost.
         if let Some(status) = signals::received() {
-            let _ = writeln!(stderr, "interrupted; {}", output::what_was_written());
+            let _ = writeln!(stderr, "interrupted; {}", output::written_items());
             return status;
         }
         for report in &self.reports {

@@ -49,7 +49,7 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
         }
         let cli = match args::parse(words) {
             Ok(cli) => cli,
-            Err(usage) => return usage::tell(usage),
+            Err(usage) => return usage::print(usage),
         };
         if let Err(failure) = loaded {
             return failure.show();

@@ -191,7 +191,7 @@ pub(crate) fn kept(what: &str) {
 }
 
 /// The completed files and folders, for the message of a command that stopped early.
-pub(crate) fn what_was_written() -> String {
+pub(crate) fn written_items() -> String {
     let written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     if written.is_empty() {
         "nothing was written".to_owned()
@@ -246,7 +246,7 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints data on stdout and notes on stderr.
-pub(crate) fn tell(data: &str, notes: &[String]) -> Result<ExitStatus, Failure> {
+pub(crate) fn print(data: &str, notes: &[String]) -> Result<ExitStatus, Failure> {
     to_stdout(data)?;
     to_stderr(notes);
     Ok(ExitStatus::Done)
@@ -273,7 +273,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_file_by_two_names_is_found() {
+    fn two_paths_to_one_file_are_detected() {
         let dir = tempfile::tempdir().unwrap();
         let at = |name: &str| dir.path().join(name);
         std::fs::create_dir(at("in")).unwrap();
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_replaced_only_when_asked_and_nothing_is_left_behind() {
+    fn a_file_is_replaced_only_with_force_and_no_leftovers_stay() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("out");
         write_file(&path, b"one", false).unwrap();

@@ -11,7 +11,7 @@
 //! A signal that the parent process set to be ignored (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
-use crate::output::what_was_written;
+use crate::output::written_items;
 use catchment::report::write;
 use std::io::{self, Write};
 #[cfg(unix)]
@@ -75,7 +75,7 @@ fn receive(status: ExitStatus, cancel: &AtomicBool) {
     if let Some(tidy) = &*may_leave() {
         tidy();
         // If stderr itself is closed, the message is lost.
-        let _ = writeln!(io::stderr(), "interrupted; {}", what_was_written());
+        let _ = writeln!(io::stderr(), "interrupted; {}", written_items());
         leave(status);
     }
 }

@@ -9,7 +9,7 @@ use std::error::Error;
 use std::io::{self, Write};
 
 /// Prints it: help and version on stdout, errors on stderr.
-pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
+pub(crate) fn print(mut usage: clap::Error) -> ExitStatus {
     if usage.use_stderr() {
         advise(&mut usage);
         silence(&mut usage);

@@ -177,7 +177,7 @@ mod tests {
 
     /// Exact values have their own tests: they take half a minute per table.
     #[test]
-    fn exact_values_are_computed_where_they_are_asked_for() {
+    fn exact_and_markdown_request_exact_values() {
         let exact = |words: &str| {
             let command = ReproduceArgs::augment_args(clap::Command::new("reproduce"));
             let read = command.try_get_matches_from(words.split(' ')).unwrap();

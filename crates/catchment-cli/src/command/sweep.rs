@@ -79,7 +79,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let base = plan.base().clone();
     let parts = args.result.output().map(FinishedDesigns::beside);
     let (kept_so_far, designs) = (parts.clone(), plan.len());
-    running.may_be_left_after(move || tell_kept(kept_so_far.as_ref(), designs));
+    running.may_be_left_after(move || report_finished(kept_so_far.as_ref(), designs));
     let results = compute(plan, parts.as_ref(), exec)?;
     signals::must_stay();
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
@@ -133,13 +133,13 @@ fn compute(plan: SweepPlan, parts: Option<&FinishedDesigns>, exec: &Exec) -> Res
     let designs = plan.len();
     let keep: &dyn DesignStore = parts;
     plan.run(keep, exec).map_err(|error| {
-        tell_kept(Some(parts), designs);
+        report_finished(Some(parts), designs);
         refused(error)
     })
 }
 
 /// Reports the number of finished, stored designs.
-fn tell_kept(parts: Option<&FinishedDesigns>, designs: usize) {
+fn report_finished(parts: Option<&FinishedDesigns>, designs: usize) {
     let Some((parts, finished)) = parts.map(|parts| (parts, parts.count())).filter(|(_, count)| *count > 0)
     else {
         return;

@@ -51,7 +51,7 @@ fn json_is_the_same_for_any_number_of_threads() {
 
 /// A time budget sets only the number of descents, which depends on the machine.
 #[test]
-fn a_budget_or_a_tolerance_gives_what_as_many_samples_give() {
+fn a_budget_or_tolerance_matches_the_same_sample_count() {
     let home = home();
     let report = |how: [&str; 2], method: &str| {
         let args = [
@@ -130,7 +130,7 @@ fn requirements_decide_the_exit_code() {
 }
 
 #[test]
-fn what_cannot_be_computed_is_refused_and_nothing_is_left() {
+fn infeasible_runs_are_refused_and_leave_no_files() {
     let home = home();
     let refuse = |args: &[&str]| {
         let mut all = vec!["run", "v.toml", "-o", "out"];
@@ -198,7 +198,7 @@ fn a_folder_holds_report_pictures_and_group() {
 }
 
 #[test]
-fn what_is_not_ours_is_kept_and_found_before_anything_is_computed() {
+fn foreign_files_stay_and_bad_outputs_are_refused_first() {
     let home = home();
     fs::create_dir(home.path().join("thesis")).unwrap();
     fs::write(home.path().join("thesis/chapter.tex"), "years of work").unwrap();
@@ -257,7 +257,7 @@ fn an_interrupt_ends_the_run_and_leaves_nothing() {
 }
 
 #[test]
-fn a_partition_says_how_large_it_is_and_draws_its_outline() {
+fn a_partition_reports_its_sum_and_draws_its_outline() {
     let home = home();
     let how = ["--method", "partition", "--slices", "8", "--strips", "4", "--json", "-o", "out"];
     let report = super::json(home.path(), &[&["run", "v.toml"], &how[..]].concat());
@@ -270,7 +270,7 @@ fn a_partition_says_how_large_it_is_and_draws_its_outline() {
 }
 
 #[test]
-fn a_certificate_tells_three_parts_of_the_error_box_and_how_well_the_seat_holds() {
+fn a_certificate_reports_three_error_box_shares_and_the_retention() {
     let home = home();
     let how = ["run", "v.toml", "--method", "certified", "--boxes", "8000", "--resolution", "32"];
     let report = super::json(home.path(), &[&how[..], &["--json"]].concat());

@@ -125,7 +125,7 @@ fn has_codes(home: &Path, args: &[String]) -> bool {
 }
 
 #[test]
-fn every_bad_input_of_the_catalogue_is_refused_as_it_says() {
+fn every_bad_input_of_the_catalogue_is_refused_as_listed() {
     let cases: Vec<Case> =
         include_str!("../bad_inputs.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert!(cases.len() >= CASES, "{} cases", cases.len());

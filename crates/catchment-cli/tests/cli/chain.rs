@@ -25,7 +25,7 @@ fn code(folder: &Path, args: &[&str]) -> Option<i32> {
 }
 
 #[test]
-fn the_p_latches_as_table_6_2_says() {
+fn the_p_latches_as_in_table_6_2() {
     let report = json(&systems(), &["chain", "p-sequence.toml", "--json", "--chains", "100"]);
     let names: Vec<&str> = report.as_object().unwrap().keys().map(String::as_str).collect();
     assert_eq!(
@@ -104,7 +104,7 @@ fn the_ring_closes_and_its_corners_are_ranked() {
 }
 
 #[test]
-fn both_readings_of_the_block_latch_and_say_which_they_are() {
+fn both_readings_of_the_block_latch_and_are_named() {
     for (reading, pairs, printout) in
         [("A", [[2, 5], [1, 6]], "reading A"), ("B", [[3, 6], [1, 6]], "reading B")]
     {

@@ -19,7 +19,7 @@ fn json_of(folder: &Path, args: &[&str]) -> Value {
 
 /// With drifts uniform in 0 to 200 mm/s, those below 100 mm/s leave 15 mm below 25 mm, if the half falls for long: u/γ at γ = 10/s.
 #[test]
-fn it_tells_the_closed_form_in_millimetres() {
+fn the_probability_matches_the_closed_form_in_millimetres() {
     let home = home();
     let laws = ["--draw", "speed=5 mm/s", "--draw", "drift_x=0..200 mm/s", "--draw", "height=25 mm"];
     let args = [&laws[..], &["--pose", "x=15 mm", "--pose", "x=-15 mm", "--trials", "200"]].concat();
@@ -84,7 +84,7 @@ fn every_file_is_written_and_requirements_are_judged() {
 }
 
 #[test]
-fn the_preset_says_what_stays_unknown() {
+fn the_preset_lists_its_unknown_parameters() {
     let home = home();
     let args = ["chance", "v.toml", "--preset", "gazebo-2014", "--pose", "x=0", "--trials", "2"];
     let printed = run(home.path(), &args);
@@ -96,7 +96,7 @@ fn the_preset_says_what_stays_unknown() {
 }
 
 #[test]
-fn the_way_of_a_trial_is_reported_and_drawn() {
+fn the_trajectory_of_a_trial_is_reported_and_drawn() {
     let home = home();
     let args = [
         "trace",
@@ -130,7 +130,7 @@ fn the_way_of_a_trial_is_reported_and_drawn() {
 
 /// The file that ships with the program.
 #[test]
-fn the_laws_that_come_with_the_program_are_sound() {
+fn the_shipped_dynamics_file_is_valid() {
     let report = json(
         &designs(),
         &[

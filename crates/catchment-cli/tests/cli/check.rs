@@ -37,7 +37,7 @@ fn six_problems_are_reported_at_once() {
 }
 
 #[test]
-fn files_that_are_no_designs() {
+fn files_that_are_not_designs_are_refused() {
     insta::assert_snapshot!("empty_file", check(b"", &[]));
     insta::assert_snapshot!("binary_file", check(b"\x7fELF\x02\x01\x01\0\xff\xfe\xfd", &[]));
     insta::assert_snapshot!("garbage", check(b"\x01\x02]] = [\n}}\x00", &[]));
@@ -106,7 +106,7 @@ fn halves_that_do_not_mate_are_drawn() {
 const BOX: &str = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";
 
 #[test]
-fn geometry_is_complained_about_in_its_place() {
+fn geometry_errors_are_reported_with_their_place() {
     let flat = format!(
         "[connector]\nface_height = 1\n\n[connector.fixed]\npieces = [\n  {BOX},\n  \
          [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]],\n]\n\n[connector.moving]\npieces = [{BOX}]\n"
@@ -120,7 +120,7 @@ fn geometry_is_complained_about_in_its_place() {
 }
 
 #[test]
-fn a_mesh_that_is_none_is_refused_and_nothing_is_left() {
+fn an_empty_mesh_is_refused_and_no_files_are_left() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("half.stl"), b"").unwrap();
     let text = "[connector]\nface_height = 0.5\nfixed.mesh = \"half.stl\"\nmoving.mesh = \"half.stl\"\n";
@@ -130,7 +130,7 @@ fn a_mesh_that_is_none_is_refused_and_nothing_is_left() {
 }
 
 #[test]
-fn changes_obey_the_rules_of_the_file() {
+fn options_are_validated_like_the_file() {
     let planar = b"[connector]\nfamily = \"v-face\"\n";
     insta::assert_snapshot!("free_leaves_the_plane", check(planar, &["--free", "x,yaw"]));
     insta::assert_snapshot!("ratio_out_of_range", check(planar, &["--aspect-ratio", "-1"]));
@@ -152,7 +152,7 @@ fn balls_in_grooves_are_checked_and_answered() {
 
 /// A drawing, a file of two overlapping bodies, and a primitive: one half.
 #[test]
-fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
+fn a_half_of_files_and_primitives_lists_its_parts() {
     let dir = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
     let rows = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -29,7 +29,7 @@ fn closed_forms_come_out_of_the_program() {
 /// Two discs of 50 mm: their overlap is largest at a single offset that is not a grid point, and they meet up to 100
 /// mm.
 #[test]
-fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
+fn the_bounds_of_two_discs_enclose_the_exact_values() {
     let home = home();
     fs::write(home.path().join("disc.toml"), "[sweep]\nshape = \"disc\"\nradius = 50\n").unwrap();
     let result = json(home.path(), &["compose", "disc.toml", "disc.toml", "--json"]);
@@ -114,7 +114,7 @@ fn two_connectors_add_up() {
 }
 
 #[test]
-fn nothing_is_written_of_what_is_refused() {
+fn a_refused_composition_writes_no_files() {
     let home = home();
     fs::write(home.path().join("bow.csv"), "x,y\n0,0\n2,2\n2,0\n0,2\n").unwrap();
     let before = entries(home.path());

@@ -39,7 +39,7 @@ fn a_folder_of_results_is_not_a_result() {
 }
 
 #[test]
-fn what_a_person_made_stays() {
+fn files_of_the_user_are_kept() {
     let home = home();
     let at = |name: &str| home.path().join(name);
     fs::create_dir(at("mine")).unwrap();
@@ -73,7 +73,7 @@ fn what_a_person_made_stays() {
 
 #[cfg(unix)]
 #[test]
-fn devices_pipes_and_links_stay_what_they_are() {
+fn devices_pipes_and_links_are_preserved() {
     use std::os::unix::fs::{FileTypeExt, symlink};
     let home = home();
     let at = |name: &str| home.path().join(name);
@@ -94,7 +94,7 @@ fn devices_pipes_and_links_stay_what_they_are() {
 /// The design has an error as well: the message about the output comes first because the output is checked
 /// first.
 #[test]
-fn a_place_that_cannot_work_is_refused_before_anything_is_read() {
+fn invalid_output_paths_are_refused_before_the_design_is_read() {
     let home = home();
     let long = "n".repeat(250);
     let [long_group, long_file] = [format!("{long}.zarr"), format!("{long}.csv")];
@@ -147,7 +147,7 @@ fn a_name_that_is_not_utf8_is_refused_where_grids_are_stored() {
 
 /// The next run cleans up the leftovers of a killed run.
 #[test]
-fn left_overs_of_a_killed_run_go() {
+fn leftovers_of_a_killed_run_are_cleaned_up() {
     let home = home();
     let whole = [&["run", "v.toml", "-o", "out"], &FAST[..]].concat();
     does(home.path(), &whole);

@@ -61,7 +61,7 @@ fn a_requirement_decides_the_exit_code() {
 
 /// A friction coefficient of zero leaves every result bit-identical.
 #[test]
-fn friction_of_nothing_is_none() {
+fn zero_friction_changes_no_result() {
     let home = home();
     fs::write(home.path().join("poses.csv"), "x\n0.1\n-0.3\n0.45\n").unwrap();
     let calls: [&[&str]; 6] = [

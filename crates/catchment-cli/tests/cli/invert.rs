@@ -7,7 +7,7 @@ use std::fs;
 const PYRAMID: &str = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n[alignment]\nfree = [\"x\", \"y\"]\n";
 
 #[test]
-fn a_pyramid_comes_back_and_accepts_what_it_accepted() {
+fn an_inverted_pyramid_keeps_its_area_of_acceptance() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
     let printed = run(home.path(), &["invert", "p.toml", "-o", "q.toml"]);
@@ -22,7 +22,7 @@ fn a_pyramid_comes_back_and_accepts_what_it_accepted() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_said_with_its_place() {
+fn unattained_heights_are_reported_with_their_polygon() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
     fs::copy(designs().join("systems/wanted-bowl.csv"), home.path().join("w.csv")).unwrap();
@@ -101,7 +101,7 @@ fn a_foreign_mesh_gives_a_half_that_the_program_takes() {
 }
 
 #[test]
-fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
+fn pitch_and_yaw_accept_ranges_and_lists() {
     let home = home();
     fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
     fs::copy(designs().join("systems/wanted-bowl.csv"), home.path().join("w.csv")).unwrap();

@@ -103,7 +103,7 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 
 /// The equivalent quarter turns of a pyramid, and the jams that only friction holds.
 #[test]
-fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
+fn friction_jams_and_docking_with_symmetry_are_reported() {
     let home = home();
     fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
     let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "-o", "jams.json"];
@@ -132,7 +132,7 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
 
 /// `run` reports the same jams as `jams` does for the same number of poses.
 #[test]
-fn a_run_tells_of_jams_what_the_command_does() {
+fn run_and_jams_report_the_same_jams() {
     let home = home();
     let requested =
         ["run", "v.toml", "--resolution", "9", "--seed", "7", "--error-sigma", "x=10 mm", "--jams"];

@@ -104,7 +104,7 @@ fn the_budget_counts_pictures() {
 }
 
 #[test]
-fn a_process_limit_takes_threads_and_changes_no_result() {
+fn a_process_limit_changes_no_result() {
     let home = home();
     let dir = home.path();
     let args = "run v.toml --method flood --resolution 30 --json";
@@ -150,7 +150,7 @@ fn threads_that_cannot_be_had_are_named() {
 
 /// A thousand million threads, as a typing error may request.
 #[test]
-fn threads_that_the_environment_asks_for_in_vain_are_refused() {
+fn invalid_thread_counts_in_the_environment_are_refused() {
     let home = home();
     let run = |value: &str, args: &[&str]| {
         let output = catchment(home.path()).env("RAYON_NUM_THREADS", value).args(args).output().unwrap();
@@ -200,7 +200,7 @@ fn a_process_without_descriptors_leaves_nothing_behind() {
 }
 
 #[test]
-fn help_that_cannot_be_written_says_so() {
+fn a_failed_write_to_stdout_is_reported() {
     let home = home();
     for args in ["--help", "--version", "run --help", "check v.toml", "schema", "completions bash", "man"] {
         let output = limited(home.path(), "true", &format!("{args} > /dev/full"));
@@ -266,7 +266,7 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
 
 /// The cost of a message about a text is bounded by the excerpt it shows.
 #[test]
-fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory() {
+fn inputs_full_of_errors_are_refused_quickly_in_little_memory() {
     let home = home();
     let put = |name: &str, text: String| fs::write(home.path().join(name), text).unwrap();
     let many = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
@@ -319,7 +319,7 @@ fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory()
 
 /// A pipe in place of a file may be intended (`<(…)`), and it may never receive a writer.
 #[test]
-fn who_waits_for_a_pipe_listens() {
+fn a_signal_ends_the_wait_for_a_pipe() {
     let home = home();
     let dir = home.path();
     for name in ["pipe.stl", "pipe.csv", "pipe.toml"] {
@@ -364,7 +364,7 @@ fn who_waits_for_a_pipe_listens() {
 }
 
 #[test]
-fn names_that_every_row_would_repeat_are_counted() {
+fn column_names_repeated_in_json_count_in_the_budget() {
     let home = home();
     // A megabyte of commas, and a gigabyte of names as JSON.
     let mut names = String::new();
@@ -383,7 +383,7 @@ fn names_that_every_row_would_repeat_are_counted() {
 }
 
 #[test]
-fn what_is_no_file_is_not_waited_for() {
+fn pipes_and_huge_files_in_a_stored_grid_are_refused() {
     let home = home();
     let dir = home.path();
     fs::create_dir(dir.join("e.zarr")).unwrap();
@@ -403,7 +403,7 @@ fn what_is_no_file_is_not_waited_for() {
 }
 
 #[test]
-fn extreme_but_allowed_alignments_end() {
+fn extreme_alignments_end_within_a_minute() {
     let home = home();
     let far = fs::read_to_string(home.path().join("v.toml")).unwrap()
         + "[errors]\nx = 100.0\npitch = \"180 deg\"\n";

@@ -77,7 +77,7 @@ fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
 
 /// `flock` hands its lock down, or keeps it with -o: in both cases it waits for the program.
 #[test]
-fn a_program_that_was_started_with_the_lock_says_so() {
+fn a_lock_held_by_the_parent_process_is_reported() {
     let home = exported();
     for own in [&[][..], &["-o"]] {
         let output = starter("flock")

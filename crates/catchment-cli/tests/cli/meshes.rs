@@ -200,7 +200,7 @@ fn a_spoilt_mesh_is_repaired_and_reported() {
 }
 
 #[test]
-fn a_simplified_mesh_says_how_far_it_moved() {
+fn mesh_simplification_is_reported() {
     let dir = folder(|_| ());
     let design = DESIGN.replace("plug.stl\",", "plug.stl\", simplify = \"0.01 mm\",");
     fs::write(dir.path().join("design.toml"), design).unwrap();

@@ -25,7 +25,7 @@ fn every_starting_point_is_a_good_design() {
 }
 
 #[test]
-fn the_pyramid_and_what_check_says_of_it() {
+fn the_new_pyramid_and_its_check_match_snapshots() {
     let dir = tempfile::tempdir().unwrap();
     insta::assert_snapshot!("new_pyramid", run(dir.path(), &["new", "pyramid"]));
     run(dir.path(), &["new", "pyramid", "-o", "design.toml"]);

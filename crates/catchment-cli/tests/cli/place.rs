@@ -27,7 +27,7 @@ fn outcomes(folder: &Path, design: &str) -> String {
 }
 
 #[test]
-fn two_files_become_a_design_that_answers() {
+fn two_files_give_a_design_with_the_known_outcomes() {
     let home = home();
     let printed = run(home.path(), &[&PARTS[..], &["-o", "design.toml", "--figure", "pair.svg"]].concat());
     insta::assert_snapshot!("place_pyramid", printed);
@@ -74,7 +74,7 @@ fn an_assembly_is_recognised_and_paths_lead_from_the_design() {
 }
 
 #[test]
-fn a_design_is_replaced_only_when_asked() {
+fn a_design_is_replaced_only_with_force() {
     let home = home();
     fs::write(home.path().join("mine.toml"), "precious").unwrap();
     let again = |more: &[&str]| run(home.path(), &[&PARTS[..], &["-o", "mine.toml"], more].concat());
@@ -158,7 +158,7 @@ fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
 /// A wedge drawn turned by 2.5 degrees in its groove: the report on settling gives the angle and advises a
 /// check.
 #[test]
-fn what_settles_says_how_far() {
+fn the_settling_angle_is_reported() {
     let groove = [[-40., 0.], [40., 0.], [40., 36.], [30., 32.], [0., 2.], [-30., 32.], [-40., 36.]];
     let turn = |[x, z]: [f64; 2]| {
         let (sin, cos) = 2.5f64.to_radians().sin_cos();
@@ -173,7 +173,7 @@ fn what_settles_says_how_far() {
 
 /// An input file is never overwritten, whichever option names it.
 #[test]
-fn what_belongs_to_a_half_is_not_written_over() {
+fn input_files_of_a_half_are_never_overwritten() {
     let home = home();
     let ball = "parts/assembled-plug.ply";
     let bytes = fs::read(home.path().join(ball)).unwrap();
@@ -225,7 +225,7 @@ fn files_are_placed_with_fewer_triangles() {
 /// A part drawn on its axis but above its seat slides along the approach; a few millimetres cause no
 /// diagnostic, more do.
 #[test]
-fn what_is_drawn_apart_slides_to_first_contact() {
+fn parts_drawn_apart_slide_to_first_contact() {
     let fixed = on_a_plate(&socket(10.2));
     for (apart, doubt) in [(0.0, false), (3.8, false), (5.5, false)] {
         let home = two_parts(&fixed, &plug(10.0, [apart, 20.0 + apart]));

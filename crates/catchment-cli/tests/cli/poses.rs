@@ -57,7 +57,7 @@ fn poses_with_units_come_back_with_their_outcomes() {
 
 /// In the valley of a pyramid of AR ½, Coulomb's law leaves stiction undetermined from 0.577 to 0.612.
 #[test]
-fn with_friction_a_column_says_what_may_have_stuck() {
+fn with_friction_a_column_marks_possible_stiction() {
     let home = tempfile::tempdir().unwrap();
     fs::write(home.path().join("poses.csv"), "x,y\n0.2,0.2\n0.05,0\n").unwrap();
     let design = designs().join("pyramid.toml").display().to_string();
@@ -94,7 +94,7 @@ fn the_same_poses_as_json_for_any_number_of_threads() {
 }
 
 #[test]
-fn everything_that_is_wrong_with_a_table_at_once() {
+fn all_errors_of_a_table_are_reported_at_once() {
     let dir = tempfile::tempdir().unwrap();
     let table = "x,Pitch,rol,y_ft,x_mm,outcome\n0,0,0\n0.1,0,0,0,nan,0\n-5 mm,0,0,0,0,0\n";
     fs::write(dir.path().join("poses.csv"), table).unwrap();
@@ -129,7 +129,7 @@ fn everything_that_is_wrong_with_a_table_at_once() {
 }
 
 #[test]
-fn a_trace_tells_the_whole_way() {
+fn a_trace_reports_the_whole_trajectory() {
     let folder = designs();
     let pose = ["trace", "pyramid-stl.toml", "--pose", "x=8 mm,pitch=10 deg"];
     let report = json(&folder, &[&pose[..], &["--json"]].concat());
@@ -172,7 +172,7 @@ fn a_trace_is_drawn_and_written() {
 }
 
 #[test]
-fn everything_that_is_wrong_with_a_pose_at_once() {
+fn all_errors_of_a_pose_are_reported_at_once() {
     let pose = "x=0.1,pich=3,yaw=0.2,pitch=400 deg,x=2,y,roll=1 mm";
     insta::assert_snapshot!("trace_bad_pose", run(&designs(), &["trace", "v-face.toml", "--pose", pose]));
 }
@@ -244,7 +244,7 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
 }
 
 #[test]
-fn equal_rows_meet_the_same_end_in_drop_tests() {
+fn equal_rows_have_equal_outcomes_in_drop_tests() {
     // On the border of the accepted set, where the perturbation determines the outcome.
     let table = "x_mm,yaw_deg\n".to_owned() + &"25,30\n".repeat(12);
     let output = outcome(&table, &["--method", "drop"]);
@@ -254,7 +254,7 @@ fn equal_rows_meet_the_same_end_in_drop_tests() {
 }
 
 #[test]
-fn near_names_are_refused_and_carried_columns_named() {
+fn misspelt_columns_are_refused_and_carried_ones_are_named() {
     for name in ["x mm", "dx", "X_mm", "rol", "delta_x", "x.mm", "x\0"] {
         let output = outcome(&format!("{name},yaw\n9,0\n"), &[]);
         let stderr = String::from_utf8(output.stderr).unwrap();
@@ -274,7 +274,7 @@ fn near_names_are_refused_and_carried_columns_named() {
 }
 
 #[test]
-fn offsets_are_measured_where_it_is_said() {
+fn offsets_are_measured_at_the_chosen_point() {
     let locked = ["--free", "x,pitch,yaw", "--cor", "0.5"];
     // The face centre lies at cor · sin(yaw) · sin(pitch) beside the locked plane.
     let y = 0.5 * 0.2f64.sin() * 0.3f64.sin();
@@ -317,7 +317,7 @@ fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::pr
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
+fn outcomes_before_an_interrupt_are_kept_beside_the_result() {
     use std::fmt::Write;
     const POSES: usize = 300_000;
     let home = super::home();

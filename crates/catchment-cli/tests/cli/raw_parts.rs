@@ -46,7 +46,7 @@ fn a_grid_cup_docks_within_its_closed_form() {
 /// In the error box of five free errors, the region that docks with three is smaller than a cell: the program uses random poses and
 /// advises how to resolve more.
 #[test]
-fn a_grid_that_sees_nothing_is_not_taken() {
+fn a_too_coarse_grid_is_replaced_by_random_poses() {
     let home = placed(&[]);
     let printed = run(home.path(), &["run", "d.toml", "--free=x,y,yaw", "--samples=400"]);
     assert!(printed.starts_with("exit 0"), "{printed}");
@@ -59,7 +59,7 @@ fn a_grid_that_sees_nothing_is_not_taken() {
 /// A tapered hole of 10.6 to 12 mm in a block, and a tapered plug with a tip of 10 mm, both turned by 45° about x, the plug placed elsewhere and turned by 90° more.
 /// The tip enters within (12 − 10)/2 = 1 mm, and at a rotation ψ as long as 5 (cos ψ + sin ψ) ≤ 6.
 #[test]
-fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
+fn parts_drawn_at_45_degrees_dock_within_their_closed_form() {
     const SIGNS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let obj = |rings: &[(f64, f64)], faces: &str, degrees: f64, [x, y, z]: [f64; 3]| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -109,7 +109,7 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
 
 /// Files in metres: the design and every result are in millimetres. The grid cup again, a thousandth as large in its files.
 #[test]
-fn what_is_drawn_in_metres_is_answered_in_millimetres() {
+fn files_in_metres_give_results_in_millimetres() {
     let home = tempfile::tempdir().unwrap();
     for (from, to) in [("grid-baseplate.stl", "plate.obj"), ("grid-cup.stl", "cup.obj")] {
         let bytes = fs::read(designs().join("meshes").join(from)).unwrap();

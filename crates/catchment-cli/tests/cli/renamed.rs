@@ -59,7 +59,7 @@ fn outcome_is_trace_of_a_table() {
 }
 
 #[test]
-fn what_a_table_of_poses_does_not_have_is_refused() {
+fn options_unsupported_by_a_pose_table_are_refused() {
     let home = home();
     let table = ["trace", "v.toml", "--poses", "p.csv"];
     for (more, why) in [

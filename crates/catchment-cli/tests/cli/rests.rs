@@ -15,7 +15,7 @@ fn home() -> tempfile::TempDir {
 }
 
 #[test]
-fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
+fn the_escape_height_of_a_cube_matches_the_closed_form() {
     let home = home();
     let report = json(home.path(), &["rests", "cube.toml", "--motions", "300", "--json"]);
     // (√2 − 1)/2; the search samples the path at every thousandth of its radius.

@@ -5,7 +5,7 @@ use serde_json::json;
 use std::fs;
 
 #[test]
-fn a_requirement_on_what_the_method_itself_finds_is_judged() {
+fn requirements_on_results_of_the_method_are_judged() {
     let home = home();
     let args =
         ["run", "v.toml", "--method", "partition", "--resolution", "8", "--slices", "4", "--strips", "1"];
@@ -73,7 +73,7 @@ fn the_picture_of_five_dimensions_shows_the_sum_of_its_table() {
 }
 
 #[test]
-fn a_report_says_what_a_mesh_held() {
+fn a_report_records_the_size_and_hash_of_a_mesh() {
     let home = home();
     let mesh = designs().join("pyramid-stl.toml");
     let report =

@@ -70,7 +70,7 @@ fn a_peg_on_the_rim_of_its_hole_is_not_docked() {
 }
 
 #[test]
-fn a_seated_peg_with_play_is_docked_and_says_how_far_off_it_rests() {
+fn a_peg_with_play_docks_and_reports_its_residual_misalignment() {
     // 0.5 mm of play, 1.47 mm of chamfer: the tip enters from within 1.97 mm of the axis.
     let home = home(&peg(12.0, 6.0, 5.5, 1.47, 5.0).replace("4 mm", "2.5 mm"));
     let report = json(home.path(), &["run", "peg.toml", "--json"]);
@@ -95,7 +95,7 @@ fn refused(folder: &Path) -> String {
 }
 
 #[test]
-fn a_seat_that_leaves_an_error_free_says_what_to_write() {
+fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
     let text = peg(12.0, 6.0, 5.9, 1.0, 5.0);
     let with = |free: &str| refused(home(&text.replace("\"x\", \"y\"]", free)).path());
     insta::assert_snapshot!(
@@ -111,7 +111,7 @@ fn a_seat_that_leaves_an_error_free_says_what_to_write() {
 }
 
 #[test]
-fn a_limit_below_the_play_is_a_warning_and_one_above_is_none() {
+fn only_a_docking_tolerance_below_the_play_gives_a_warning() {
     let text = peg(12.0, 6.0, 5.5, 1.0, 5.0);
     let printout = |limit: &str| {
         let home = home(&format!("{text}[docked]\nx = \"{limit}\"\n"));

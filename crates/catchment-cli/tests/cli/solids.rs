@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Files are complete or absent: a second run needs `--force` and writes the same bytes.
 #[test]
-fn shapes_are_written_as_the_end_of_the_name_says() {
+fn shapes_are_written_in_the_format_of_the_extension() {
     let home = home();
     let read = |name: &str| fs::read_to_string(home.path().join(name)).unwrap();
     let to = |name: &str, more: &[&str]| {
@@ -106,7 +106,7 @@ fn drop_trials_stand_beside_the_exact_region() {
 
 /// All settings of the preset, with one of them replaced.
 #[test]
-fn a_preset_sets_what_is_not_said_beside_it() {
+fn explicit_options_override_a_preset() {
     let home = home();
     fs::write(home.path().join("p.csv"), "x\n0.02\n").unwrap();
     let settings = |more: &[&str]| {

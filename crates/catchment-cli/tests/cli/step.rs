@@ -33,7 +33,7 @@ fn words(report: &str) -> String {
 }
 
 #[test]
-fn without_python_it_is_said_what_to_install() {
+fn missing_python_is_reported_with_install_advice() {
     let dir = folder();
     let commands: [&[&str]; 4] = [
         &["check", "design.toml", "-o", "pair.svg"],
@@ -89,7 +89,7 @@ fn python(folder: &Path, script: &str) -> PathBuf {
 
 #[cfg(unix)]
 #[test]
-fn what_another_program_meshes_is_a_half_like_any_other() {
+fn externally_meshed_halves_give_the_same_results() {
     let dir = folder();
     let meshes = designs().join("meshes");
     for (name, stl) in [("socket", "socket.stl"), ("plug", "plug.stl")] {
@@ -139,7 +139,7 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
 
 #[cfg(unix)]
 #[test]
-fn whatever_the_program_does_it_is_a_message() {
+fn every_failure_of_the_mesher_is_reported() {
     let dir = folder();
     let cases = [
         (
@@ -177,7 +177,7 @@ fn whatever_the_program_does_it_is_a_message() {
 
 #[cfg(unix)]
 #[test]
-fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
+fn a_signal_ends_the_command_and_its_mesher() {
     use std::process::Stdio;
     use std::time::{Duration, Instant};
     let dir = folder();
@@ -226,7 +226,7 @@ fn real_python() -> Option<PathBuf> {
 /// is relative as well.
 #[cfg(unix)]
 #[test]
-fn what_lies_beside_a_design_is_never_run() {
+fn python_files_beside_a_design_are_never_run() {
     let Some(python) = real_python() else { return };
     let dir = folder();
     let ran = dir.path().join("ran");
@@ -260,7 +260,7 @@ fn what_lies_beside_a_design_is_never_run() {
 /// Python finds modules that the user installed for every folder: an absolute entry of `PYTHONPATH`, and packages of the user.
 #[cfg(unix)]
 #[test]
-fn packages_of_the_person_are_found() {
+fn python_packages_of_the_user_are_imported() {
     let Some(python) = real_python() else { return };
     let dir = folder();
     // A stand-in for OpenCASCADE that reports its import.

@@ -141,7 +141,7 @@ fn meshes_of_a_design_from_stdin_lie_in_the_current_folder() {
 }
 
 #[test]
-fn what_is_wrong_with_stdin_is_said_of_stdin() {
+fn errors_in_stdin_name_stdin() {
     let home = home();
     let large = vec![b'#'; (4 << 20) + 1];
     for (stdin, says) in [
@@ -161,7 +161,7 @@ fn what_is_wrong_with_stdin_is_said_of_stdin() {
 
 /// With --force every command replaces a file; without it a command replaces only a folder that catchment wrote.
 #[test]
-fn what_exists_is_replaced_by_one_rule() {
+fn existing_files_are_replaced_only_with_force() {
     let home = home();
     let folder = home.path();
     let quick = "run v.toml --free x --resolution 6 --samples 0";

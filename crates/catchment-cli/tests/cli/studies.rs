@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs;
 
 #[test]
-fn slices_of_a_planar_design_are_its_run() {
+fn a_slice_of_a_planar_design_equals_its_run() {
     let home = home();
     insta::assert_snapshot!("slices_planar", run(home.path(), &["slices", "v.toml", "--resolution", "21"]));
     let slices = json(home.path(), &["slices", "v.toml", "--resolution", "21", "--json"]);
@@ -53,7 +53,7 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
 }
 
 #[test]
-fn slices_that_cannot_be_are_refused() {
+fn invalid_slices_are_refused() {
     let home = home();
     let refuse = |args: &[&str]| {
         let mut all = vec!["slices", "v.toml", "-o", "out"];
@@ -72,7 +72,7 @@ fn slices_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn refinement_says_when_it_is_stable() {
+fn refinement_reports_when_it_is_stable() {
     let home = home();
     let args = ["run", "v.toml", "--converge", "--tolerance", "10%", "--time-limit", "100 h"];
     let report = json(home.path(), &[&args[..], &["--json"]].concat());
@@ -99,7 +99,7 @@ fn refinement_says_when_it_is_stable() {
 }
 
 #[test]
-fn what_stops_refinement_is_said() {
+fn an_early_stop_of_refinement_is_reported() {
     let home = home();
     let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "2 MB"];
     let printed = run(home.path(), &args);
@@ -163,7 +163,7 @@ fn a_study_takes_no_options_of_a_run() {
 }
 
 #[test]
-fn slices_and_runs_by_drop_tests_say_so() {
+fn slices_and_runs_report_the_drop_method() {
     let home = home();
     let args = ["--resolution", "5", "--method", "drop", "--trials", "1"];
     let slices = json(home.path(), &[&["slices", "v.toml", "--json"], &args[..]].concat());

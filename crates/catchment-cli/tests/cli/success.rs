@@ -20,7 +20,7 @@ fn json_of(folder: &Path, args: &[&str]) -> Value {
 }
 
 #[test]
-fn it_tells_the_closed_form_in_millimetres() {
+fn the_success_probability_matches_the_closed_form() {
     let home = home();
     // 25 mm are 2 σ: 95.45 %.
     let report = json_of(home.path(), &["--free", "x", "--error-sigma", "x=12.5 mm"]);
@@ -39,7 +39,7 @@ fn it_tells_the_closed_form_in_millimetres() {
 }
 
 #[test]
-fn robots_of_a_file_are_asked_one_by_one_and_the_worst_stands_first() {
+fn each_robot_of_a_file_is_evaluated_and_the_worst_is_reported() {
     let home = home();
     let text = "[[robot]]\nname = \"good\"\nsigma = { x = \"5 mm\", pitch = \"5 deg\" }\n\
         [[robot]]\nname = \"bad\"\ncovariance = { axes = [\"x\", \"pitch\"], units = [\"mm\", \"deg\"], \

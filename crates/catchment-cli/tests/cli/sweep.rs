@@ -82,7 +82,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 #[cfg(unix)]
 #[test]
-fn stopped_and_resumed_it_writes_what_it_would_have_written() {
+fn a_resumed_sweep_writes_the_same_result() {
     let home = home();
     let sweep = |out: &'static str| {
         let axes = ["--over", "aspect_ratio=0.5,1", "--over", "cor=-1..1/8", "--resolution", "12"];

@@ -42,7 +42,7 @@ fn a_page_of_a_result_is_that_of_its_design() {
 
 /// A setting that is changed for a page applies to everything in it.
 #[test]
-fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
+fn a_page_uses_the_requested_errors_and_friction() {
     let home = home();
     let changes = ["--free", "x", "--cor", "0.2", "--friction", "0.1", "--resolution", "40"];
     let printed = run(home.path(), &[&["run", "v.toml", "--jams", "-o", "out"], &changes[..]].concat());
@@ -106,7 +106,7 @@ impl Server {
         String::from_utf8_lossy(&text).into_owned()
     }
 
-    fn ask(&self, method: &str, path: &str, more: &str, body: &str) -> String {
+    fn request(&self, method: &str, path: &str, more: &str, body: &str) -> String {
         let Self { port, token, .. } = self;
         let length = body.len();
         self.raw(
@@ -118,7 +118,7 @@ impl Server {
     }
 
     fn wait(&self) {
-        while self.ask("GET", "progress", "", "").contains("\"running\"") {
+        while self.request("GET", "progress", "", "").contains("\"running\"") {
             std::thread::sleep(Duration::from_millis(50));
         }
     }
@@ -137,25 +137,25 @@ fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
     let server = Server::start(home.path());
     assert_eq!(server.token.len(), 32);
     server.wait();
-    let page = server.ask("GET", "", "", "");
+    let page = server.request("GET", "", "", "");
     assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("\"served\":true"), "{}", &page[..300]);
     assert!(page.contains("Cache-Control: no-store") && page.contains("frame-ancestors 'none'"));
     assert!(page.contains("script-src 'sha256-") && page.contains("connect-src 'self'"));
     assert!(!page.split("\r\n\r\n").next().unwrap().contains("unsafe-inline"));
     assert!(page.contains("\"cells\":6"));
     fs::write(home.path().join("v.toml"), DESIGN.replace("a </script> V", "changed")).unwrap();
-    assert!(server.ask("POST", "run", "", "7").starts_with("HTTP/1.1 202"));
+    assert!(server.request("POST", "run", "", "7").starts_with("HTTP/1.1 202"));
     server.wait();
-    let page = server.ask("GET", "", "", "");
+    let page = server.request("GET", "", "", "");
     assert!(page.contains("<title>changed ·") && page.contains("\"cells\":7"));
     // A defect of the design is reported, and the previous page stays.
     fs::write(home.path().join("v.toml"), "[connector]\nfamily = \"w-face\"\n").unwrap();
-    assert!(server.ask("POST", "run", "", "").starts_with("HTTP/1.1 202"));
+    assert!(server.request("POST", "run", "", "").starts_with("HTTP/1.1 202"));
     server.wait();
-    let progress = server.ask("GET", "progress", "", "");
+    let progress = server.request("GET", "progress", "", "");
     assert!(progress.contains("\"failed\"") && progress.contains("w-face"), "{progress}");
-    assert!(server.ask("GET", "", "", "").contains("<title>changed ·"));
-    assert!(server.ask("POST", "run", "", "many").starts_with("HTTP/1.1 400"));
+    assert!(server.request("GET", "", "", "").contains("<title>changed ·"));
+    assert!(server.request("POST", "run", "", "many").starts_with("HTTP/1.1 400"));
 }
 
 /// The server serves the newest request, whether the older ones have ended or not.
@@ -164,17 +164,17 @@ fn a_running_computation_is_replaced_by_a_newer_one() {
     let home = home();
     let server = Server::over(home.path(), "2000");
     for cells in ["1999", "7"] {
-        let printed = server.ask("POST", "run", "", cells);
+        let printed = server.request("POST", "run", "", cells);
         assert!(printed.starts_with("HTTP/1.1 202"), "{printed}");
     }
     server.wait();
-    let page = server.ask("GET", "", "", "");
+    let page = server.request("GET", "", "", "");
     assert!(page.contains("\"cells\":7"), "{}", &page[..300]);
 }
 
 /// Clients whose requests never end, that read nothing, and that stay to the end of the test.
 #[test]
-fn two_hundred_slow_clients_hold_up_nobody() {
+fn two_hundred_slow_clients_do_not_block_others() {
     let home = home();
     let server = Server::start(home.path());
     server.wait();
@@ -188,14 +188,14 @@ fn two_hundred_slow_clients_hold_up_nobody() {
         slow.push(stream);
     }
     for _ in 0..20 {
-        let page = server.ask("GET", "", "", "");
+        let page = server.request("GET", "", "", "");
         assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.ends_with("</html>\n"), "{}", &page[..200]);
-        assert!(server.ask("GET", "progress", "", "").contains("\"ready\""));
+        assert!(server.request("GET", "progress", "", "").contains("\"ready\""));
     }
 }
 
 #[test]
-fn whoever_should_not_ask_is_refused() {
+fn unauthorized_requests_are_refused() {
     let home = home();
     let server = Server::start(home.path());
     let Server { port, token, .. } = &server;
@@ -220,9 +220,9 @@ fn whoever_should_not_ask_is_refused() {
     assert_eq!(get(&format!("/{token}/../v.toml"), &here, ""), "404");
     // A head that is too long, a body that is too long, bytes that are not a request.
     assert_eq!(get(&own, &here, &format!("X: {}\r\n", "x".repeat(20_000))), "413");
-    assert_eq!(status(&server.ask("POST", "run", "", &"1".repeat(300))), "413");
+    assert_eq!(status(&server.request("POST", "run", "", &"1".repeat(300))), "413");
     assert_eq!(status(&server.raw(b"\x16\x03\x01\x00\r\n\r\n")), "400");
-    assert_eq!(status(&server.ask("DELETE", "run", "", "")), "405");
+    assert_eq!(status(&server.request("DELETE", "run", "", "")), "405");
     // The server still responds.
     assert_eq!(get(&own, &here, ""), "200");
 }

@@ -17,7 +17,7 @@ fn half_width(report: &Value, axis: &str) -> f64 {
 }
 
 #[test]
-fn it_tells_the_closed_form_in_millimetres_and_draws_nothing() {
+fn the_window_matches_the_closed_form_and_writes_no_files() {
     let home = home();
     let printed = run(home.path(), &["window", "v.toml", "--free", "x", "--motions", "2000"]);
     assert!(printed.contains("±24.97"), "{printed}");
@@ -29,7 +29,7 @@ fn it_tells_the_closed_form_in_millimetres_and_draws_nothing() {
 }
 
 #[test]
-fn what_is_given_stays_and_threads_change_nothing() {
+fn fixed_half_widths_stay_and_threads_change_nothing() {
     let home = home();
     let given = |threads: &str, x: &str| {
         let fix = format!("x={x}");
@@ -68,7 +68,7 @@ fn a_requirement_decides_the_exit_code_and_files_are_whole() {
 
 /// `run` and `window` report the same window under the same names.
 #[test]
-fn a_run_tells_of_the_window_what_the_command_does() {
+fn run_and_window_report_the_same_window() {
     let home = home();
     let requested = ["run", "v.toml", "--free", "x", "--resolution", "9", "--samples", "50", "--seed", "3"];
     // 300 000 motions each: one run for all.

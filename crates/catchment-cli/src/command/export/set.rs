@@ -3,7 +3,7 @@
 use super::ExportArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_place, tell, write_file};
+use crate::output::{check_place, print, write_file};
 use crate::source::is_stream;
 use catchment::exec::Exec;
 use catchment::pose::PoseError;
@@ -52,11 +52,11 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     let view = View::new(&acceptance, heights.as_deref(), args.axes, &at)?;
     let bytes = kind.bytes(&view, &acceptance, heights.as_deref(), exec)?;
     if is_printed {
-        return tell(&String::from_utf8_lossy(&bytes), &[]);
+        return print(&String::from_utf8_lossy(&bytes), &[]);
     }
     write_file(&args.output, &bytes, args.force)?;
     let words = if kind == SetFileKind::Table { String::new() } else { view.table() };
-    tell(&words, &[format!("wrote {}", shown(&args.output))])
+    print(&words, &[format!("wrote {}", shown(&args.output))])
 }
 
 /// The first option given that applies only to a drop test.

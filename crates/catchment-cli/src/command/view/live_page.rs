@@ -1,7 +1,7 @@
 //! The newest page, and the computation of the next page.
 //!
 //! ```text
-//!   ask ──▶ next: only the newest request ───▶ one thread: compute ──▶ page
+//!   request ──▶ next: only the newest request ───▶ one thread: compute ──▶ page
 //!            │                                     ▲
 //!            └── cancels the running computation ──┘
 //! ```
@@ -57,11 +57,11 @@ struct State {
 const WAITING_STYLE: &str = ":root{color-scheme:light dark}body{font:16px system-ui,sans-serif;margin:20vh auto;max-width:40rem;padding:0 1rem;\
     white-space:pre-wrap}";
 const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
-    const ask=async()=>{const p=await(await fetch('progress')).json();\
+    const poll=async()=>{const p=await(await fetch('progress')).json();\
     if(p.state==='ready')location.reload();\
     else{said.textContent=p.state==='failed'?p.message+'\\n\\nChange the design file and load this page again.':\
     `computing … ${p.stage} ${Math.round(100*p.share)} %`;\
-    setTimeout(ask,300)}};ask();";
+    setTimeout(poll,300)}};poll();";
 
 /// Placeholder page before the first result: it polls the progress and loads the page once it is ready.
 static WAITING: LazyLock<ServedPage> = LazyLock::new(|| {
@@ -116,7 +116,7 @@ impl LivePage {
     ///
     /// # Errors
     /// The text is not a number of cells.
-    pub(super) fn ask(self: &Arc<Self>, cells: &str) -> Result<bool, String> {
+    pub(super) fn request(self: &Arc<Self>, cells: &str) -> Result<bool, String> {
         let resolution = match cells.trim() {
             "" => None,
             text => Some(text.parse::<Resolution>().map_err(|error| error.to_string())?),
@@ -235,20 +235,20 @@ mod tests {
         assert!(!desk.start(None));
         assert_eq!(begins.recv().unwrap(), "own");
         assert!(desk.progress().contains("\"running\""));
-        assert!(desk.ask("many").is_err());
-        let (older, newer) = (desk.ask("7"), desk.ask("9"));
+        assert!(desk.request("many").is_err());
+        let (older, newer) = (desk.request("7"), desk.request("9"));
         assert!(older.unwrap() && newer.is_ok());
         until(&desk, "ready");
         assert_eq!(&*desk.page().html, "9");
         let rest: Vec<String> = begins.try_iter().collect();
         // 7 may have begun before the request for 9.
         assert!(rest == ["9"] || rest == ["7", "9"], "{rest:?}");
-        assert!(!desk.ask("").unwrap(), "nothing ran");
+        assert!(!desk.request("").unwrap(), "nothing ran");
         desk.close();
     }
 
     #[test]
-    fn what_fails_is_reported_and_the_page_before_stays() {
+    fn a_failure_is_reported_and_the_last_page_stays() {
         let desk = Arc::new(LivePage::new(1, |resolution, _: &Exec| match cells(resolution).as_str() {
             "own" => Err("no design".to_owned()),
             "13" => panic!("a bug"),
@@ -257,9 +257,9 @@ mod tests {
         desk.start(None);
         until(&desk, "failed");
         assert!(desk.progress().contains("no design"));
-        desk.ask("5").unwrap();
+        desk.request("5").unwrap();
         until(&desk, "ready");
-        desk.ask("13").unwrap();
+        desk.request("13").unwrap();
         until(&desk, "failed");
         assert!(desk.progress().contains("a bug of the program"));
         assert_eq!(&*desk.page().html, "5");

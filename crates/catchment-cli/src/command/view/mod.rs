@@ -105,7 +105,7 @@ fn respond(request: &Request, desk: &Arc<LivePage>) -> Response {
     match (request.method.as_str(), request.path.as_str()) {
         ("GET", "") => Response::page(desk.page()),
         ("GET", "progress") => Response::json(&desk.progress()),
-        ("POST", "run") => match desk.ask(&request.body) {
+        ("POST", "run") => match desk.request(&request.body) {
             Ok(true) => Response::text(202, "started in place of the one that was being computed"),
             Ok(false) => Response::text(202, "started"),
             Err(why) => Response::text(400, &why),
