@@ -36,7 +36,7 @@ for (const [design, ...given] of [
     ["gallery/peg-in-hole", "--resolution", "20", "--leave-out", "window,jams"],
     ["pyramid-stl", "--resolution", "4", "--leave-out", "window,jams"],
 ]) {
-    test(`${design}: clicks play the motions of trace; nothing is asked for elsewhere`, async () => {
+    test(`${design}: clicks play the motions of trace; no other request leaves the page`, async () => {
         const { page, said } = await open(browser, written(design, ...given));
         let shown = await page.evaluate(() => window.catchment.motion());
         const outcomes = new Set();
@@ -59,7 +59,7 @@ for (const [design, ...given] of [
     });
 }
 
-test("sliders, pickers and keys do what they say", async () => {
+test("sliders, pickers and keys act as labelled", async () => {
     const { page, said } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
     let shown = await page.evaluate(() => window.catchment.motion());
     await page.locator("#number-x").fill("0.2");
@@ -136,7 +136,7 @@ test("a browser that draws nothing in space answers all the same", async () => {
     }
 });
 
-test("all is drawn when the page says so, and stays dark on white on paper", async () => {
+test("the page reports the end of drawing, and prints dark on white", async () => {
     const { page } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"), { colorScheme: "dark" });
     for (const name of ["canvas.stage", "canvas.volume"]) {
         const inked = await page.locator(name).evaluate((canvas) => {
@@ -185,7 +185,7 @@ test("a page of 30³ cells is small, as is one of five errors", () => {
     assert.ok(five < 2, `8⁵: ${five} MB`);
 });
 
-test("how fast a page of 30³ cells is, which is printed", async (told) => {
+test("speed of a page of 30³ cells, printed", async (told) => {
     const page = await (await browser.newContext({ viewport: { width: 1400, height: 1000 } })).newPage();
     await page.addInitScript(() => {
         window.frozen = [];
@@ -208,7 +208,7 @@ test("a jam that is clicked is shown where it rests", async () => {
     assert.match(await page.locator("#verdict").textContent(), /Jams: at rest on \d+ contact/);
 });
 
-test("motions have the friction that is asked for, and the page says where the set has another", async () => {
+test("motions use the chosen friction, and the page reports another friction of the set", async () => {
     const { page } = await open(browser, written("v-face", "--resolution", "30", "--friction", "0.2", "--leave-out", "window"));
     assert.match(await page.locator("header").textContent(), /friction 0.2/);
     let shown = await page.evaluate(() => window.catchment.motion());
@@ -226,7 +226,7 @@ test("motions have the friction that is asked for, and the page says where the s
     await page.waitForFunction(() => /with friction 0.237/.test(document.querySelector("#verdict").textContent));
 });
 
-test("a served page computes a changed design again, and says what is wrong with it", async () => {
+test("a served page recomputes a changed design and reports its defects", async () => {
     const path = join(home, "changed.toml");
     const design = (name) => writeFileSync(path, readFileSync(join(root, "designs/v-face.toml"), "utf8").replace(/^name = .*$/m, `name = "${name}"`));
     design("before");

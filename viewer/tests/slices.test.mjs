@@ -80,7 +80,7 @@ for (const [design, ...given] of [
     });
 }
 
-test("slices say what they draw", async () => {
+test("slices are labelled", async () => {
     const given = ["--free", "x,y,yaw", "--resolution", "8", "--leave-out", "jams,window"];
     const { page } = await open(browser, written("x-face-3d", ...given));
     const captions = () => page.locator("figure.slice .drawn").allTextContents();
@@ -103,7 +103,7 @@ test("slices say what they draw", async () => {
     assert.match(await plain.locator("figure.slice .drawn").first().textContent(), /^cells of the grid at yaw = \d/);
 });
 
-test("an empty surface says why", async () => {
+test("an empty surface gives the reason", async () => {
     const { page } = await open(browser, written("pyramid", "--resolution", "8", "--leave-out", "jams,window,slices"));
     const caption = page.locator("figure.volume .drawn");
     assert.match(await caption.textContent(), /^cells of the grid at pitch = [\d.]+°, yaw = [\d.]+°$/);
@@ -115,7 +115,7 @@ test("an empty surface says why", async () => {
     assert.equal(counts.reduce((a, b) => a + b, 0), 512);
 });
 
-test("a surface of what no cell is says so", async () => {
+test("a surface of an absent outcome is reported", async () => {
     // A cone in its seat never jams.
     const { page } = await open(browser, written("cone", "--free", "x,y,pitch", "--resolution", "6", "--leave-out", "jams,window,slices"));
     const { report } = JSON.parse(readFileSync(written("cone", "--free", "x,y,pitch", "--resolution", "6", "--leave-out", "jams,window,slices"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
@@ -126,7 +126,7 @@ test("a surface of what no cell is says so", async () => {
     assert.equal(await page.locator("figure.volume .drawn").textContent(), `empty: no cell of the result is ${OUTCOMES[none]}`);
 });
 
-test("a rest that looks docked says why it is not", async () => {
+test("a rest that looks docked gives the reason why it is not", async () => {
     const { page } = await open(browser, written("pyramid", "--free", "x,yaw", "--resolution", "12", "--leave-out", "window"));
     const shown = await page.evaluate(() => window.catchment.motion());
     await page.evaluate(() => window.catchment.choose([0, 0, 0, 0, Math.PI / 2 - 0.2]));

@@ -110,6 +110,6 @@ def test_results_travel_to_a_worker_and_back(client: Client) -> None:
     assert back.problem == problem
 
 
-def test_what_cannot_be_divided_is_said(client: Client) -> None:
+def test_indivisible_work_is_refused(client: Client) -> None:
     with pytest.raises(catchment.Error, match="cannot be divided"):
         catchment.load("designs/v-face.toml").run(client=client)

@@ -49,7 +49,7 @@ def test_arrays_and_trimeshes_are_alike() -> None:
     assert arrays == problem(socket, plug)
 
 
-def test_where_nothing_is_said_it_is_found() -> None:
+def test_a_missing_placement_is_proposed() -> None:
     socket, plug = halves()
     found = catchment.Problem(fixed=socket, moving=plug, error_box={"x": "10 mm"})
     assert found.design["width"] == 50.0 and found.design["unit"] == "mm"
@@ -66,7 +66,7 @@ def test_where_nothing_is_said_it_is_found() -> None:
         ((np.zeros((4, 3)), np.full((1, 3), 9)), "from 0 to 3"),
     ],
 )
-def test_what_is_no_mesh_is_said(mesh: object, said: str) -> None:
+def test_an_invalid_mesh_is_reported(mesh: object, said: str) -> None:
     with pytest.raises(catchment.ArgumentError, match=f"fixed: .*{said}"):
         catchment.Problem(fixed=mesh, moving=mesh, width=1.0)
 

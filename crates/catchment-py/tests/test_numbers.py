@@ -50,7 +50,7 @@ def test_a_run_is_that_of_the_program(design: str, options: list[str], arguments
     assert bytes_of(result.json) == bytes_of(program("run", path, "--json", *options))
 
 
-def test_what_is_changed_in_a_design_is_changed_alike() -> None:
+def test_changed_designs_agree_with_the_program() -> None:
     path = "designs/v-face.toml"
     options = ["--cor", "0.3", "--aspect-ratio", "0.7", "--rotation-length", "0.4", "--resolution", "21"]
     told = bytes_of(program("run", path, "--json", *options))
@@ -70,7 +70,7 @@ def test_threads_change_no_bit(threads: int) -> None:
 
 
 @pytest.mark.parametrize(("method", "count"), [("descent", 2000), ("drop", 60)])
-def test_poses_end_where_the_program_says(method: str, count: int, tmp_path: object) -> None:
+def test_final_poses_agree_with_the_program(method: str, count: int, tmp_path: object) -> None:
     problem = catchment.load("designs/x-face-3d.toml")
     random = np.random.default_rng(3)
     half = np.array([problem.error_box[axis] for axis in ("x", "y", "roll", "pitch", "yaw")])

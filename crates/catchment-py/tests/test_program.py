@@ -46,7 +46,7 @@ except KeyboardInterrupt:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT for one process")
 @pytest.mark.parametrize("what", ["python", "program"])
-def test_ctrl_c_ends_it(what: str) -> None:
+def test_ctrl_c_ends_a_computation(what: str) -> None:
     own = str(Path(sys.executable).with_name("catchment"))
     words = {
         "python": [sys.executable, "-c", LONG],
@@ -113,7 +113,7 @@ def test_a_problem_out_of_a_pickle_is_built_when_it_is_needed() -> None:
     assert again.follow("x=1 mm").outcome == problem.follow("x=1 mm").outcome
 
 
-def test_the_wheel_has_the_licences_of_what_is_compiled_in() -> None:
+def test_the_wheel_has_the_licences_of_compiled_packages() -> None:
     files = {Path(str(file)).name: file for file in importlib.metadata.files("catchment") or []}
     assert {"LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.txt"} <= set(files)
     text = files["LICENSE-THIRD-PARTY.txt"].read_text()
@@ -163,13 +163,13 @@ def test_types_are_whole() -> None:
     assert (PACKAGE / "py.typed").exists()
 
 
-def test_stubs_say_what_is_compiled() -> None:
+def test_stubs_agree_with_the_compiled_module() -> None:
     stubtest = pytest.importorskip("mypy.stubtest")
     words = ["catchment._catchment", "--ignore-disjoint-bases", "--concise"]
     assert stubtest.test_stubs(stubtest.parse_options(words)) == 0
 
 
-def test_every_public_name_says_what_it_is() -> None:
+def test_every_public_name_is_documented() -> None:
     for name in catchment.__all__:
         if name not in ("OUTCOMES", "__version__"):
             assert getattr(catchment, name).__doc__, name

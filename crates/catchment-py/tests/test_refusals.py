@@ -34,7 +34,7 @@ def test_geometry_that_is_none_is_a_refusal_of_its_own() -> None:
     assert isinstance(caught.value, catchment.DesignError) and "fixed half" in str(caught.value)
 
 
-def test_a_file_that_is_not_there_is_said() -> None:
+def test_a_missing_file_is_reported() -> None:
     with pytest.raises(catchment.DesignError, match="no-such.toml"):
         catchment.load("no-such.toml")
 
@@ -109,7 +109,7 @@ def test_counts_of_studies_name_their_argument(name: str) -> None:
         problem.trace("x=0.1", friction="ice")  # type: ignore[arg-type]
 
 
-def test_what_is_masked_is_no_number() -> None:
+def test_masked_values_are_refused() -> None:
     problem = catchment.load("designs/v-face.toml")
     poses = np.zeros((3, 5))
     hidden = np.ma.masked_array(poses, mask=np.zeros((3, 5), dtype=bool))
@@ -136,7 +136,7 @@ def test_names_may_hold_any_character(name: str) -> None:
     assert pyramid(name).name == name
 
 
-def test_what_is_no_text_names_its_argument() -> None:
+def test_a_wrong_type_names_its_argument() -> None:
     with pytest.raises(catchment.ArgumentError, match="^name: character 1 is half of a surrogate pair"):
         pyramid("a\ud800")
     with pytest.raises(catchment.ArgumentError, match="^text: character 8 is half of a surrogate pair"):
@@ -181,7 +181,7 @@ def pyramid(name: str) -> catchment.Problem:
     return catchment.Problem(fixed=(pit, np.array(sides + roof)), moving=(plug, np.array(sides + roof)), width=2.0, name=name)
 
 
-def test_what_does_not_fit_into_memory_is_not_begun() -> None:
+def test_a_run_beyond_the_memory_is_refused() -> None:
     with pytest.raises(catchment.MemoryLimitError, match="more than") as caught:
         catchment.load("designs/pyramid.toml").run(resolution=40, memory=1_000_000)
     assert isinstance(caught.value, MemoryError) and "cells per axis fit" in str(caught.value)

@@ -45,7 +45,7 @@ def test_cells_are_where_the_coordinates_say(result: catchment.Result) -> None:
         result.outcomes[0, 0] = 1
 
 
-def test_xarray_has_what_the_file_has(result: catchment.Result, tmp_path: Path) -> None:
+def test_xarray_equals_the_file(result: catchment.Result, tmp_path: Path) -> None:
     dataset = result.to_xarray()
     result.save(tmp_path / "out.zarr")
     stored = xarray.open_zarr(tmp_path / "out.zarr", mask_and_scale=False)
@@ -139,7 +139,7 @@ def test_a_pickle_needs_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert len(report["designs"]) == 2 and all("figures" in trial for trial in report["designs"])
 
 
-def test_progress_is_told_and_may_be_a_bar(capfd: pytest.CaptureFixture[str]) -> None:
+def test_progress_is_reported_and_may_be_a_bar(capfd: pytest.CaptureFixture[str]) -> None:
     told: list[tuple[float, str]] = []
     catchment.load("designs/x-face.toml").run(progress=lambda share, stage: told.append((share, stage)))
     assert told and all(0.0 <= share <= 1.0 and stage for share, stage in told)
