@@ -46,7 +46,7 @@ fn fate(problem: &Problem, error: PoseError) -> (Outcome, Option<FailureReason>)
 
 /// The default value, written explicitly, equals the default to the bit.
 #[test]
-fn the_default_layers_are_what_they_were() {
+fn the_default_layers_are_unchanged() {
     let halves = |layers| problem(&[Dof::X, Dof::Pitch], layers, 0.0).connector().clone();
     let default = halves(None);
     assert_eq!(default, halves(Some([XFace::DEFAULT_LAYER_THICKNESS, XFace::DEFAULT_LAYER_GAP])));
@@ -108,7 +108,7 @@ proptest! {
 
     /// No loss while |y| is less than the gap: a pose has the outcome of its planar pose.
     #[test]
-    fn flat_errors_within_the_gap_cost_nothing(
+    fn y_errors_within_the_gap_change_no_outcome(
         x in -1.0f64..1.0, y in -0.999f64..0.999, pitch in -1.3f64..1.3,
     ) {
         let solid = problem(&[Dof::X, Dof::Y, Dof::Pitch], Some([THICK, GAP]), GAP);

@@ -122,7 +122,7 @@ fn all_problems_of_both_halves_come_at_once() {
 }
 
 #[test]
-fn a_mesh_in_the_wrong_unit_is_reported_what_to_check() {
+fn a_mesh_in_the_wrong_unit_is_reported_with_advice() {
     let folder = tempfile::tempdir().unwrap();
     let mut design = meshes(stl::StlEncoding::Binary, folder.path(), 50.0);
     // 50 mm, read with a width D of 50 m.

@@ -109,7 +109,7 @@ fn corners(shape: &ShapeSpec) -> Vec<DVec3> {
 /// Turned, moved and upright: a ball, a cylinder, a cone, a truncated cone, a box and a prism are the convex hulls of their
 /// corners.
 #[test]
-fn primitives_are_what_pieces_of_their_corners_are() {
+fn primitives_equal_the_hulls_of_their_corners() {
     let hexagon: Vec<[f64; 2]> = (0..6)
         .map(|k| DVec3::from((glam::DVec2::from_angle(f64::from(k) * 1.047) * 0.2, 0.0)))
         .map(|p| [p.x, p.y])
@@ -253,7 +253,7 @@ fn a_mesh_with_primitives_has_the_heights_of_the_definition() {
 
 /// Every change of a part changes the digest.
 #[test]
-fn every_number_of_a_part_counts() {
+fn every_change_of_a_part_changes_the_digest() {
     let files = [("a.svg", b"<svg><circle r='1'/></svg>".to_vec()), ("a.stl", stl_of(&pyramid()[0]))];
     let digest = |part: PartSpec| {
         let design =

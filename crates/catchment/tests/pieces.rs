@@ -36,7 +36,7 @@ fn outcome(pair: &Pair, [x, y, roll, pitch, yaw]: [f64; 5]) -> Outcome {
 /// Outcomes of poses of these designs as closed meshes that another program made of the same pieces. As pieces, the first once came to rest on a seam
 /// of the guide with a downhill slope of 0.6, and the others hung on seams of the key's slot.
 #[test]
-fn seams_hold_nothing() {
+fn motions_do_not_rest_on_seams() {
     let (connector, alignment) = read("dovetail");
     let dovetail = Pair::new(&connector, &alignment);
     assert_eq!(
@@ -82,7 +82,7 @@ fn designs_are_one_surface() {
 
 /// The union of their pieces itself, and as loose triangles in memory, which are welded and merged again.
 #[test]
-fn designs_fare_as_their_triangles() {
+fn triangles_keep_the_outcomes_of_designs() {
     const POSES: usize = 40;
     for name in ["keyway", "dovetail", "dish", "cross"] {
         let (connector, alignment) = read(name);

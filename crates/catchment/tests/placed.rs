@@ -129,7 +129,7 @@ proptest! {
 
     /// An assembly in any frame, drawn slightly apart or overlapping: mated at first contact, with the face centre computed.
     #[test]
-    fn an_assembly_is_found_in_any_frame(a in turn(), s in prop::array::uniform3(-20.0..20.0f64), apart in -0.04..0.04f64) {
+    fn an_assembly_is_located_in_any_frame(a in turn(), s in prop::array::uniform3(-20.0..20.0f64), apart in -0.04..0.04f64) {
         let world = affine(a, s);
         let own = problem(assembled(&world, apart)).unwrap();
         let origin = own.connector().origin;
@@ -146,7 +146,7 @@ proptest! {
 
 /// Facing +z, the heights of the face centres are computed, also if the two files have them at different heights.
 #[test]
-fn the_face_height_is_found() {
+fn the_face_height_is_computed() {
     let [fixed, moving] = drawn();
     let up = |z: f64| DAffine3::from_translation(DVec3::new(0.0, 0.0, z));
     let own = OwnSpec {
@@ -209,7 +209,7 @@ fn halves_that_run_off_do_not_settle() {
 }
 
 #[test]
-fn whatever_places_a_half_changes_the_digest() {
+fn every_placement_change_changes_the_digest() {
     let digest = |change: &dyn Fn(&mut OwnSpec)| {
         let mut own = plain();
         change(&mut own);
@@ -294,7 +294,7 @@ fn noisy_funnel(seed: u64, settle: bool) -> SourceText {
 /// Scanned halves do not rest exactly as drawn: a run returns a result, or refuses with the distance to the rest and the remedy, and never returns a Sum of 0.
 /// With the remedy every run returns a result.
 #[test]
-fn a_noisy_mesh_answers_or_says_where_it_settles() {
+fn a_noisy_mesh_has_a_result_or_reports_its_rest() {
     let quick =
         Run { over: Over::Grid(Resolution::uniform(3).unwrap()), sample: Sample::None, ..Run::default() };
     let sum = |problem: &Problem| {

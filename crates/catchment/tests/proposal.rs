@@ -134,24 +134,24 @@ fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, fr
 }
 
 #[test]
-fn a_pyramid_comes_back() {
+fn a_pyramid_is_recovered() {
     comes_back(&family("pyramid", ""), Some(1.0), 1e-6, 1, &BOTH);
 }
 
 #[test]
-fn a_spatial_x_face_comes_back() {
+fn a_spatial_x_face_is_recovered() {
     comes_back(&family("x-face-3d", ""), Some(1.0), 1e-6, 2, &BOTH);
 }
 
 #[test]
-fn pins_come_back() {
+fn pins_are_recovered() {
     // The seat has play: the proposal puts the part in its middle, to the accuracy to which the play is
     // known.
     comes_back(&family("pin-hole", "chord_error = 0.01\nclearance = 0.02"), None, 1e-3, 3, &BOTH);
 }
 
 #[test]
-fn a_cone_comes_back_and_its_yaw_does_not_matter() {
+fn a_cone_is_recovered_and_its_yaw_does_not_matter() {
     let truth = family("cone", "chord_error = 0.01");
     comes_back(&truth, None, 1e-3, 4, &BOTH);
     let folder = tempfile::tempdir().unwrap();
@@ -171,7 +171,7 @@ fn a_cone_comes_back_and_its_yaw_does_not_matter() {
 
 /// As an assembly: from the two files alone the balls could as well hang between the blocks, where they rest more stably.
 #[test]
-fn balls_in_grooves_come_back() {
+fn balls_in_grooves_are_recovered() {
     let text =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml"));
     let text =
@@ -182,7 +182,7 @@ fn balls_in_grooves_come_back() {
 /// A peg that rattles in its tray, by more play than a seat may have undeclared. A direction bounded by walls is free, and the play is the docking
 /// tolerance.
 #[test]
-fn what_walls_hold_far_apart_is_docked_within_the_play() {
+fn a_half_loose_between_walls_docks_within_the_play() {
     let (peg, hole, outside) = (DVec2::new(0.2, 0.17), DVec2::new(0.23, 0.2), 0.6);
     let hull = |points: Vec<DVec3>| convex_hull(&points).unwrap();
     let ring = |size: DVec2, z: f64| {
@@ -252,7 +252,7 @@ fn a_pinned_choice_is_kept() {
 }
 
 #[test]
-fn a_unit_that_nobody_says_is_asked_for() {
+fn a_missing_unit_is_requested() {
     let truth = family("pyramid", "");
     let folder = tempfile::tempdir().unwrap();
     let part = write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY);

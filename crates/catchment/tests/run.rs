@@ -93,7 +93,7 @@ fn settings_are_changed_by_name_and_others_are_refused() {
 }
 
 #[test]
-fn a_run_is_data() {
+fn a_run_survives_serialization() {
     let full = Run {
         errors: Some(Distribution::Normal {
             mean: PoseError::default(),
@@ -188,7 +188,7 @@ proptest! {
 }
 
 #[test]
-fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
+fn only_unanswerable_requirements_are_refused() {
     let asks = |method: &str, requirement: &str| {
         let run = Run { requirements: vec![requirement.parse().unwrap()], ..run(method, 8, 0) };
         check_requirements(&run, &planar())
@@ -210,7 +210,7 @@ fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
 }
 
 #[test]
-fn a_grid_outside_its_own_sample_has_a_warning_and_so_has_no_sample() {
+fn biased_grids_and_missing_samples_raise_warnings() {
     let kinds = |run: Run| {
         let answer = run.on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
         assert_eq!(answer.sum(), Report::of_answer(&answer).acceptance.sum);
@@ -224,7 +224,7 @@ fn a_grid_outside_its_own_sample_has_a_warning_and_so_has_no_sample() {
 }
 
 #[test]
-fn what_would_not_fit_is_refused_before_it_is_computed() {
+fn oversized_runs_are_refused_before_computation() {
     let small = Exec::new().with_memory_budget(1000);
     for entry in REGISTRY {
         let refused = run(entry.info.name, 100, 0).on(&planar(), &small).unwrap_err();
@@ -243,7 +243,7 @@ fn final_poses_are_places_of_rest() {
 }
 
 #[test]
-fn undecided_random_motions_are_said() {
+fn undecided_sampled_motions_are_reported() {
     use catchment::method::descent::DescentSettings;
     let problem = problem(Family::XFace3dLocking, DofSet::ALL);
     // A budget that suffices for some of the motions.
@@ -283,7 +283,7 @@ fn the_pyramid_over_x_y_and_yaw_measures_half_pi() {
 /// Practically all poses sampled from the largest cube, and from the largest cube around zero, dock. A cube 2 % larger holds a pose that does not. Two
 /// to five free errors, with a sharp seat and with play.
 #[test]
-fn what_a_run_claims_docks_and_hardly_more_does() {
+fn reported_cubes_dock_and_larger_ones_do_not() {
     let planar = [Dof::X, Dof::Pitch].into_iter().collect::<DofSet>();
     let turned = [Dof::X, Dof::Yaw].into_iter().collect::<DofSet>();
     for (family, free, cells) in [
@@ -328,7 +328,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
 
 /// A pyramid that cannot tilt corrects offsets up to D/2 and a yaw up to 45° as single-axis limits.
 #[test]
-fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
+fn five_error_runs_report_the_limits_without_tilt() {
     let answer = run("confluence", 4, 200).on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
     let upright = answer.upright.as_ref().unwrap();
     let limits: Vec<(Dof, f64)> = upright.tolerances.iter().map(|t| (t.axis, t.symmetric())).collect();
@@ -350,7 +350,7 @@ fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
 
 /// If an affordable grid is too coarse, the default samples poses instead; an explicit grid is kept.
 #[test]
-fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
+fn sampled_poses_replace_a_grid_that_is_too_coarse() {
     let problem = problem(Family::PinHole, DofSet::ALL);
     let few = Run { sample: Sample::Until(Stop::Samples(20)), ..Run::default() };
     let plan = few.plan(&problem).unwrap();

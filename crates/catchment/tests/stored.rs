@@ -107,7 +107,7 @@ fn a_newer_layout_is_refused_with_advice_whatever_its_form() {
 
 /// The version appears in pages, tables and files for other programs.
 #[test]
-fn a_version_that_is_none_is_refused() {
+fn an_invalid_version_is_refused() {
     for hostile in ["0.1.0\"><script>alert(1)</script>", "", "0.1", "0.1.0\u{1b}[2J"] {
         let mut report = old_json();
         report["catchment"] = hostile.into();
@@ -117,7 +117,7 @@ fn a_version_that_is_none_is_refused() {
 }
 
 #[test]
-fn a_warning_of_a_kind_that_is_not_known_stays_a_sentence() {
+fn a_warning_of_unknown_kind_becomes_a_note() {
     let mut report = old_json();
     report["warnings"] = json!([{ "warning": { "kind": "moon-phase" }, "message": "the moon is full" }]);
     let report = Report::from_json(&report.to_string()).unwrap();

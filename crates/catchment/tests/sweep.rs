@@ -137,7 +137,7 @@ fn run(plan: SweepPlan, keep: &dyn DesignStore, threads: usize) -> Sweep {
 }
 
 #[test]
-fn threads_and_what_was_kept_change_nothing() {
+fn threads_and_stored_results_change_nothing() {
     let axes = ["aspect_ratio=0.5,1,2", "cor=-1,0,1"];
     let memory = Memory::default();
     let whole = run(small(&axes), &memory, 1);
@@ -175,7 +175,7 @@ fn a_design_of_a_sweep_is_a_run() {
 
 /// This memory holds one design, but not two together. A design that does not fit at all is an error, not a refused design.
 #[test]
-fn what_does_not_fit_side_by_side_is_computed_alone() {
+fn designs_that_do_not_fit_together_run_alone() {
     let fine = || plan(&family("x-face", "['x', 'pitch']"), &["cor=-1,0.5"], "40", 50).unwrap();
     let ample = run(fine(), &NoStore, 1);
     let within = |bytes: u64, threads: usize| {
@@ -191,7 +191,7 @@ fn what_does_not_fit_side_by_side_is_computed_alone() {
 }
 
 #[test]
-fn what_cannot_be_built_is_reported_and_stops_nothing() {
+fn an_unbuildable_design_is_reported_and_skipped() {
     let text = family("pyramid", "['x', 'yaw']");
     let plan = plan(&text, &["family=pyramid,cone"], "5", 10).unwrap();
     let base = plan.base().clone();
@@ -210,7 +210,7 @@ fn what_cannot_be_built_is_reported_and_stops_nothing() {
 }
 
 #[test]
-fn what_nobody_can_sweep_is_refused() {
+fn impossible_sweeps_are_refused() {
     let text = family("v-face", "['x']");
     let refused = |axes: &[&str]| plan(&text, axes, "5", 10).unwrap_err().to_string();
     assert!(

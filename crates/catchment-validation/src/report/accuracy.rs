@@ -168,7 +168,7 @@ mod tests {
     use catchment::pose::Dof;
 
     #[test]
-    fn the_list_covers_what_it_says() {
+    fn the_cases_cover_the_stated_range() {
         let has = |test: &dyn Fn(&Case) -> bool| CASES.iter().filter(|case| test(case)).count();
         assert!(CASES.len() >= 8);
         for errors in [2, 3, 5] {

@@ -9,14 +9,14 @@ fn comparison(table: &str) -> TableComparison {
 }
 
 #[test]
-fn the_text_marks_what_does_not_match_and_says_why() {
+fn the_text_marks_and_explains_mismatches() {
     let text = comparison("5.6").to_string();
     assert!(text.contains("as printed: 24 of 25"), "{text}");
     assert!(text.contains("1.129*") && text.contains("* (0.5, 0): the square is one cell larger"), "{text}");
 }
 
 #[test]
-fn the_page_has_every_table_and_what_is_left_out() {
+fn the_page_lists_every_table_and_omission() {
     let tables = [comparison("3.3"), comparison("5.2"), comparison("5.6")];
     let page = page(&tables, None, "It took no time.").unwrap();
     for words in ["## 3.3:", "## 5.2:", "0.3828 / 0.3355", "measured forces", "(1.13\\*)", "| 3.3 V-Face"] {

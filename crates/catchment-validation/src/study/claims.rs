@@ -60,19 +60,19 @@ struct ClaimQuestion {
     says: &'static str,
     counted: &'static str,
     tables: &'static [&'static str],
-    ask: fn(&[Rows]) -> ClaimCheck,
+    check: fn(&[Rows]) -> ClaimCheck,
     /// Whether the claim applies to the exact values as well.
     of_docking: bool,
 }
 
 /// In chapter 5 aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
-const ASKED: &[ClaimQuestion] = &[
+const CLAIMS: &[ClaimQuestion] = &[
     ClaimQuestion {
         section: "3.1.3",
         says: "the X-Face accepts more than the V-Face in almost every case, but near r_p = 0 and H/D = 1",
         counted: "entries of 3.2 above those of 3.3",
         tables: &["3.3", "3.2"],
-        ask: |t| each(t, |v, x| x > v),
+        check: |t| each(t, |v, x| x > v),
         of_docking: true,
     },
     ClaimQuestion {
@@ -80,7 +80,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "and more than the S-Face",
         counted: "entries of 3.2 above those of 3.4",
         tables: &["3.4", "3.2"],
-        ask: |t| each(t, |s, x| x > s),
+        check: |t| each(t, |s, x| x > s),
         of_docking: true,
     },
     ClaimQuestion {
@@ -88,7 +88,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "most areas are larger for the X-Face than for the V-Face, four are not",
         counted: "entries of 5.3 above those of 5.2",
         tables: &["5.2", "5.3"],
-        ask: |t| each(t, |v, x| x > v),
+        check: |t| each(t, |v, x| x > v),
         of_docking: true,
     },
     ClaimQuestion {
@@ -96,7 +96,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "by a factor of up to two",
         counted: "entries of 5.3 at most twice those of 5.2",
         tables: &["5.2", "5.3"],
-        ask: |t| each(t, |v, x| x <= 2.0 * v),
+        check: |t| each(t, |v, x| x <= 2.0 * v),
         of_docking: true,
     },
     ClaimQuestion {
@@ -104,7 +104,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "with few exceptions the discrete results are within 80 % of those of partitioning",
         counted: "entries of 5.4, 5.5 that differ from 5.2, 5.3 by at most 80 %",
         tables: &["5.2", "5.3", "5.4", "5.5"],
-        ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.8),
+        check: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.8),
         of_docking: false,
     },
     ClaimQuestion {
@@ -112,7 +112,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "more than half are within 20 %",
         counted: "entries that differ by at most 20 %",
         tables: &["5.2", "5.3", "5.4", "5.5"],
-        ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.2),
+        check: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.2),
         of_docking: false,
     },
     ClaimQuestion {
@@ -120,7 +120,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "and typically larger",
         counted: "entries of 5.4, 5.5 above those of 5.2, 5.3",
         tables: &["5.2", "5.3", "5.4", "5.5"],
-        ask: |t| each(t, |slices, discrete| discrete > slices),
+        check: |t| each(t, |slices, discrete| discrete > slices),
         of_docking: false,
     },
     ClaimQuestion {
@@ -128,7 +128,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "the ONAA is smaller than the Sum",
         counted: "entries of 5.6, 5.7 below those of 5.4, 5.5",
         tables: &["5.4", "5.5", "5.6", "5.7"],
-        ask: |t| each(t, |sum, onaa| onaa < sum),
+        check: |t| each(t, |sum, onaa| onaa < sum),
         of_docking: true,
     },
     ClaimQuestion {
@@ -136,7 +136,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "the ONAA reaches its maximum in the right-hand column",
         counted: "rows of 5.6, 5.7 whose largest entry is the last",
         tables: &["5.6", "5.7"],
-        ask: |t| count(t.iter().flatten().map(|row| row.iter().all(|value| value <= &row[row.len() - 1]))),
+        check: |t| count(t.iter().flatten().map(|row| row.iter().all(|value| value <= &row[row.len() - 1]))),
         of_docking: true,
     },
     ClaimQuestion {
@@ -144,7 +144,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "a more positive COR generally means a higher AA",
         counted: "neighbours along the rows of 5.8 to 5.11 that rise",
         tables: PYRAMIDS,
-        ask: |t| count(t.iter().flatten().flat_map(|row| rises(row))),
+        check: |t| count(t.iter().flatten().flat_map(|row| rises(row))),
         of_docking: true,
     },
     ClaimQuestion {
@@ -152,7 +152,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "higher AR often increases AA for high COR",
         counted: "neighbours down the last columns of 5.8 to 5.11 that rise",
         tables: PYRAMIDS,
-        ask: |t| count(t.iter().flat_map(|rows| rises(&column(rows, 4)))),
+        check: |t| count(t.iter().flat_map(|rows| rises(&column(rows, 4)))),
         of_docking: true,
     },
     ClaimQuestion {
@@ -160,7 +160,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "but decreases AA for negative COR",
         counted: "neighbours down the columns COR −1 and −½ of 5.8 to 5.11 that fall",
         tables: PYRAMIDS,
-        ask: |t| {
+        check: |t| {
             let falls =
                 |rows: &Rows, k| rises(&column(rows, k)).into_iter().map(|rises| !rises).collect::<Vec<_>>();
             count(t.iter().flat_map(|rows| [falls(rows, 0), falls(rows, 1)].concat()))
@@ -172,7 +172,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "lower AR values yield AA that vary less with COR",
         counted: "rows of 5.8 to 5.11 whose largest entry is fewer times the least than in the next row",
         tables: PYRAMIDS,
-        ask: |t| {
+        check: |t| {
             count(
                 t.iter().flat_map(|rows| {
                     rises(&rows.iter().map(|row| most(row) / least(row)).collect::<Vec<_>>())
@@ -186,7 +186,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "in (x, y, pitch) the minimum occurs at low AR rather than high AR",
         counted: "tables of 5.8 whose least entry is in the first row",
         tables: &["5.8"],
-        ask: |t| count(t.iter().map(|rows| lowest_row(rows) == 0)),
+        check: |t| count(t.iter().map(|rows| lowest_row(rows) == 0)),
         of_docking: true,
     },
     ClaimQuestion {
@@ -194,7 +194,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "in the other cases at high AR",
         counted: "tables 5.9 to 5.11 whose least entry is in the last row",
         tables: &["5.9", "5.10", "5.11"],
-        ask: |t| count(t.iter().map(|rows| lowest_row(rows) + 1 == rows.len())),
+        check: |t| count(t.iter().map(|rows| lowest_row(rows) + 1 == rows.len())),
         of_docking: true,
     },
     ClaimQuestion {
@@ -202,7 +202,7 @@ const ASKED: &[ClaimQuestion] = &[
         says: "the largest value of (x, y, pitch) is 42 points above the one at the highest COR and AR",
         counted: "their difference, in cells of 16π/31³",
         tables: &["5.8"],
-        ask: |t| {
+        check: |t| {
             let most = t[0].iter().map(|row| most(row)).fold(0.0, f64::max);
             ClaimCheck::Number { value: (most - t[0][4][4]) / (16.0 * PI / f64::from(31 * 31 * 31)) }
         },
@@ -216,24 +216,24 @@ const PYRAMIDS: &[&str] = &["5.8", "5.9", "5.10", "5.11"];
 /// The claims of the text whose tables were all computed.
 pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
     let named = |name: &str| tables.iter().find(|table| table.table == name);
-    ASKED
+    CLAIMS
         .iter()
-        .filter_map(|requested| {
-            let used: Vec<_> = requested.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
-            let ask = |value: fn(&ReproducedEntry) -> Option<f64>| {
+        .filter_map(|claim| {
+            let used: Vec<_> = claim.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
+            let number = |value: fn(&ReproducedEntry) -> Option<f64>| {
                 let rows = |table: &&TableComparison| {
                     table.entries.iter().map(|row| row.iter().map(value).collect()).collect::<Option<Rows>>()
                 };
-                used.iter().map(rows).collect::<Option<Vec<Rows>>>().map(|tables| (requested.ask)(&tables))
+                used.iter().map(rows).collect::<Option<Vec<Rows>>>().map(|tables| (claim.check)(&tables))
             };
-            let exact = || ask(|entry| entry.exact.map(|exact| exact.value));
+            let exact = || number(|entry| entry.exact.map(|exact| exact.value));
             Some(Claim {
-                section: requested.section,
-                says: requested.says,
-                counted: requested.counted,
-                printed: ask(|entry| Some(entry.published))?,
-                ours: ask(|entry| entry.ours),
-                exact: requested.of_docking.then(exact).flatten(),
+                section: claim.section,
+                says: claim.says,
+                counted: claim.counted,
+                printed: number(|entry| Some(entry.published))?,
+                ours: number(|entry| entry.ours),
+                exact: claim.of_docking.then(exact).flatten(),
             })
         })
         .collect()
@@ -287,25 +287,25 @@ mod tests {
             .collect()
     }
 
-    fn found<'a>(claims: &'a [Claim], says: &str) -> &'a Claim {
+    fn claim<'a>(claims: &'a [Claim], says: &str) -> &'a Claim {
         claims.iter().find(|claim| claim.says.contains(says)).unwrap()
     }
 
     #[test]
-    fn of_tables_that_are_not_there_nothing_is_said() {
+    fn missing_tables_yield_no_claims() {
         assert_eq!(claims(&tables(&["3.3", "5.2"])), []);
     }
 
     /// Counted by hand in the printed tables.
     #[test]
-    fn what_the_text_says_of_the_planar_tables() {
+    fn claims_about_the_planar_tables_are_checked() {
         let claims = claims(&tables(&["5.4", "5.5", "5.6", "5.7"]));
-        let onaa = found(&claims, "smaller than the Sum");
+        let onaa = claim(&claims, "smaller than the Sum");
         // AR 2, COR −1 of the V-Face: 0.061575 after 0.0339; AR 4, COR −½: 0.045239 after 0.0440: the printed numbers
         // contradict the claim.
         assert_eq!(onaa.printed, ClaimCheck::Count { holds: 48, of: 50 });
         // X-Face, AR 1/4: 0.7854 at COR −½.
-        let right = found(&claims, "right-hand column");
+        let right = claim(&claims, "right-hand column");
         assert_eq!(right.printed, ClaimCheck::Count { holds: 9, of: 10 });
         assert_eq!(right.ours, Some(right.printed));
         assert_eq!(right.exact, None);
@@ -313,9 +313,9 @@ mod tests {
 
     /// Counted by hand in the printed tables: five entries of 3.2 are below 3.3; four of 3.4 are above, and one is equal.
     #[test]
-    fn what_the_text_says_of_the_kinematic_tables() {
+    fn claims_about_the_kinematic_tables_are_checked() {
         let claims = claims(&tables(&["3.2", "3.3", "3.4"]));
-        let [v, s] = ["than the V-Face in almost every", "than the S-Face"].map(|says| found(&claims, says));
+        let [v, s] = ["than the V-Face in almost every", "than the S-Face"].map(|says| claim(&claims, says));
         assert_eq!(v.printed, ClaimCheck::Count { holds: 116, of: 121 });
         assert_eq!(s.printed, ClaimCheck::Count { holds: 116, of: 121 });
         // Stepped by one contact, the X-Face is below the bounds of the other two far more often.
@@ -325,12 +325,12 @@ mod tests {
     }
 
     #[test]
-    fn what_the_text_says_of_the_pyramid() {
+    fn claims_about_the_pyramid_are_checked() {
         let claims = claims(&tables(&["5.8"]));
         assert_eq!(claims.len(), 2);
-        let ClaimCheck::Number { value } = found(&claims, "42 points").printed else { panic!("a number") };
+        let ClaimCheck::Number { value } = claim(&claims, "42 points").printed else { panic!("a number") };
         assert!((value - 42.0).abs() < 1.0, "{value}");
-        let low = found(&claims, "at low AR");
+        let low = claim(&claims, "at low AR");
         assert_eq!((low.printed, low.ours), (ClaimCheck::Count { holds: 1, of: 1 }, Some(low.printed)));
     }
 }

@@ -4,7 +4,7 @@ use catchment::prelude::*;
 use catchment::run::jams::{Jams, JamsSettings, Stability, run};
 use std::path::Path;
 
-fn found(problem: &Problem, motions: usize) -> Jams {
+fn jams(problem: &Problem, motions: usize) -> Jams {
     run(problem, &JamsSettings { motions: Some(motions), ..JamsSettings::default() }, &Exec::new()).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn a_peg_stands_on_the_plate() {
     let text = "[connector]\nfamily = \"pin-hole\"\nwidth = 50.0\nunit = \"mm\"\npins = 1\ncircle_radius = 0\n\
                 pin_radius = \"5 mm\"\nclearance = \"0.5 mm\"\nchamfer = \"3 mm\"\n[alignment]\n\
                 free = [\"x\", \"y\", \"roll\", \"pitch\"]\n[errors]\nx = \"12 mm\"\ny = \"12 mm\"\nroll = \"20 deg\"\npitch = \"20 deg\"\n";
-    let found = found(&written(text), 200);
+    let found = jams(&written(text), 200);
     let (names, share) = foremost(&found);
     assert_eq!(names, "top on top");
     assert!(share > 0.8, "{share}");
@@ -40,7 +40,7 @@ fn a_ball_lies_on_a_block() {
     let mut design = problem.design().clone();
     design.alignment.free = [Dof::X, Dof::Y].into_iter().collect();
     let problem = problem.with(design).unwrap();
-    let found = found(&problem, 80);
+    let found = jams(&problem, 80);
     let (names, share) = foremost(&found);
     assert_eq!(names, "rounded surface on top");
     assert!(share > 0.5, "{share}");
@@ -61,7 +61,7 @@ fn pointed_pins_stand_on_the_plate() {
     let mut design = problem.design().clone();
     design.alignment.free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
     let problem = problem.with(design).unwrap();
-    let found = found(&problem, 100);
+    let found = jams(&problem, 100);
     let named = |fixed: &str, moving: &str| {
         found.features.iter().any(|pair| pair.fixed.name == fixed && pair.moving.name == moving)
     };

@@ -141,7 +141,7 @@ fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
 
 /// A landing pad on four cones: in the drawing the mouths of the funnels are 17.9 mm wider than the tips of the legs.
 #[test]
-fn four_cones_take_what_one_takes() {
+fn four_cones_accept_the_offset_of_one() {
     const D: f64 = 140.0;
     let (mouth, tip, places) = (22.4, 4.5, [[50.0, 50.0], [-50.0, 50.0], [-50.0, -50.0], [50.0, -50.0]]);
     let (mut fixed, mut legs) = (Vec::new(), Vec::new());
@@ -216,7 +216,7 @@ fn kelvin() -> [Pieces; 2] {
 
 /// A Kelvin coupling has one rest in all five errors; a ball must stand over its seat, up to 3.6 mm to either side.
 #[test]
-fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
+fn a_kelvin_coupling_accepts_poses_over_its_seats() {
     const D: f64 = 60.0;
     let [fixed, moving] = kelvin();
     let lateral =
@@ -360,7 +360,7 @@ fn petals() -> Pieces {
 /// Three petals between three others: the gap between the tips limits the yaw. All initial conditions that IDSS
 /// requires dock.
 #[test]
-fn three_petals_take_the_gap_between_their_tips() {
+fn three_petals_accept_the_gap_between_their_tips() {
     const D: f64 = 1200.0;
     let flat = problem(petals(), petals(), D, &[Dof::X, Dof::Y, Dof::Yaw], |a| {
         a.half_ranges = [0.15, 0.15, 1.0, 1.0, 0.5];

@@ -52,7 +52,7 @@ fn replay(name: &str, reader: fn(&[u8])) {
 }
 
 #[test]
-fn what_is_spoilt_is_read_or_refused() {
+fn mutated_inputs_are_read_or_refused() {
     for (name, reader) in targets::TARGETS {
         replay(name, *reader);
     }

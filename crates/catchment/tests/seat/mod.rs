@@ -108,7 +108,7 @@ fn the_play_is_that_of_the_walls() {
 }
 
 #[test]
-fn on_the_rim_is_not_docked_and_seated_with_play_is() {
+fn a_pose_on_the_rim_jams_and_one_seated_with_play_docks() {
     let peg = Peg { deep: 0.4, ..Peg::new(32, 0.505 / 3.0, 0.005 / 3.0, 0.0) };
     let problem = peg.problem(&LATERAL, 0.1, |_| ()).unwrap();
     // 0.3 mm of error at D = 30 mm, on the rim 12 mm above the seat.
@@ -185,7 +185,7 @@ fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
 
 /// A dimple on a ridge, 0.0015 D deep where seats reach 0.002 D above the mated pose: a pose deep enough may lie beyond its rim, and slides off.
 #[test]
-fn what_slides_over_a_low_rim_is_missed() {
+fn a_pose_beyond_a_low_rim_is_missed() {
     const RIM: f64 = 0.05;
     let text = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nprofile = [[-0.5, -0.2], [0.5, -0.2], [0.5, 0.0], [0.05, 0.3], [0, 0.2985], [-0.05, 0.3], \
                 [-0.5, 0.0]]\nheight = 0.4\naxis = \"-y\"\nat = [0, 0.2, 0]\n[[connector.moving.parts]]\nprofile = [[-0.1, 0.0], [0.1, 0.0], [0.0, 0.3]]\n\
@@ -240,7 +240,7 @@ fn drops_agree_with_motions() {
 /// Face slides on face down to the rim, where walls become flush: the outcome there must not depend on the last digit of a
 /// drawing.
 #[test]
-fn equal_chamfers_let_in_what_is_over_the_mouth() {
+fn equal_chamfers_accept_poses_over_the_mouth() {
     let drawn = [(4, 1.0, 3), (4, 2f64.sqrt(), 9), (6, 1.0, 6), (7, 1.0, 6), (16, 1.0, 9), (32, 1.0, 6)];
     for (sides, slope, digits) in drawn {
         let peg = Chamfered { sides, slope, digits };
@@ -341,7 +341,7 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
 /// A bar with two corners over a truncated V: the middle of the bar keeps its distance from the apex, so its height falls
 /// either way. At rest one corner is at the end of the floor: cos(45° + p) = 0.4 / (0.42 √2).
 #[test]
-fn a_mated_pose_that_runs_off_is_said_to() {
+fn a_mated_pose_that_runs_off_is_reported() {
     let block = |corners: &[(f64, f64)]| -> Vec<DVec3> {
         corners.iter().flat_map(|&(x, z)| [-0.1, 0.1].map(|y| DVec3::new(x, y, z))).collect()
     };
@@ -372,7 +372,7 @@ fn a_mated_pose_that_runs_off_is_said_to() {
 
 /// A plate around a hole is level: flooding drains it, and reports over how many cells.
 #[test]
-fn flooding_says_that_level_ground_drains() {
+fn flooding_reports_draining_level_ground() {
     let peg = Peg::new(8, 0.3, 0.02, 0.05);
     let problem = peg.problem(&LATERAL, 0.3, loose).unwrap();
     for method in ["flood", "steepest", "meyer"] {
