@@ -223,6 +223,13 @@ impl Panel {
     }
 }
 
+/// Panels beside each other.
+struct Row {
+    panels: Vec<Panel>,
+    /// Its panel may reach over all columns.
+    is_wide: bool,
+}
+
 /// A page: its head, its panels and its legend.
 #[derive(Default)]
 pub struct Layout {
@@ -230,7 +237,7 @@ pub struct Layout {
     /// On the right of the title.
     design: String,
     story: Vec<String>,
-    rows: Vec<Vec<Panel>>,
+    rows: Vec<Row>,
     legend: Legend,
 }
 
@@ -266,7 +273,14 @@ impl Layout {
     /// Panels beside each other, below those before them.
     #[must_use]
     pub fn row(mut self, panels: impl IntoIterator<Item = Panel>) -> Self {
-        self.rows.push(panels.into_iter().collect());
+        self.rows.push(Row { panels: panels.into_iter().collect(), is_wide: false });
+        self
+    }
+
+    /// A panel below those before it that may reach over all columns.
+    #[must_use]
+    pub fn wide(mut self, panel: Panel) -> Self {
+        self.rows.push(Row { panels: vec![panel], is_wide: true });
         self
     }
 
@@ -275,8 +289,8 @@ impl Layout {
     pub fn grid(mut self, columns: usize, panels: impl IntoIterator<Item = Panel>) -> Self {
         for panel in panels {
             match self.rows.last_mut() {
-                Some(row) if row.len() < columns => row.push(panel),
-                _ => self.rows.push(vec![panel]),
+                Some(row) if row.panels.len() < columns => row.panels.push(panel),
+                _ => self.rows.push(Row { panels: vec![panel], is_wide: false }),
             }
         }
         self
@@ -291,30 +305,34 @@ impl Layout {
 
     /// Draws all but the content of the panels, whose frames are returned row by row.
     pub fn open(self) -> (Svg, Vec<Rect>) {
-        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let widest = |k: usize, of: fn(&Panel) -> f64| {
-            self.rows.iter().filter_map(|row| row.get(k)).map(of).fold(0.0, f64::max)
+        let columns = self.rows.iter().map(|row| row.panels.len()).max().unwrap_or(0);
+        let largest = |k: usize, of: fn(&Row, &Panel) -> f64| {
+            let panels = self.rows.iter().filter_map(|row| row.panels.get(k).map(|panel| of(row, panel)));
+            panels.fold(0.0, f64::max)
         };
+        let left_of = |k| largest(k, |_, panel| panel.left);
         let mut right = MARGIN;
         let left: Vec<f64> = (0..columns)
             .map(|k| {
                 let gap = if k == 0 { 0.0 } else { GAP[0] };
-                let x = right + gap + widest(k, |panel| panel.left);
-                right = x + widest(k, Panel::extent);
+                let x = right + gap + left_of(k);
+                right = x + largest(k, |row, panel| if row.is_wide { 0.0 } else { panel.extent() });
                 x
             })
             .collect();
+        let wide = self.rows.iter().filter(|row| row.is_wide).flat_map(|row| &row.panels);
+        right = wide.map(|panel| left[0] + panel.extent()).fold(right, f64::max);
         let mut bottom = TITLE_LINE + LINE * self.story.len() as f64;
         let mut frames = Vec::new();
         for row in &self.rows {
-            let y = bottom + GAP[1] + row.iter().map(Panel::rise).fold(0.0, f64::max);
-            frames.extend(row.iter().zip(&left).map(|(panel, x)| {
+            let y = bottom + GAP[1] + row.panels.iter().map(Panel::rise).fold(0.0, f64::max);
+            frames.extend(row.panels.iter().zip(&left).map(|(panel, x)| {
                 let [w, h] = panel.size;
                 Rect { x: *x, y, w, h }
             }));
-            bottom = y + row.iter().map(Panel::depth).fold(0.0, f64::max);
+            bottom = y + row.panels.iter().map(Panel::depth).fold(0.0, f64::max);
         }
-        let framed = (0..columns).find(|k| widest(*k, |panel| panel.left) > 0.0).unwrap_or(0);
+        let framed = (0..columns).find(|k| left_of(*k) > 0.0).unwrap_or(0);
         let legend_at = [left.get(framed).copied().unwrap_or(MARGIN), bottom + GAP[1]];
         if !self.legend.entries.is_empty() {
             bottom = legend_at[1];
@@ -334,7 +352,7 @@ impl Layout {
         for (k, line) in self.story.iter().enumerate() {
             svg.text([MARGIN, TITLE_LINE + 3.0 + LINE * (k + 1) as f64], LABEL, Anchor::Start, SOFT, line);
         }
-        for (panel, rect) in self.rows.iter().flatten().zip(&frames) {
+        for (panel, rect) in self.rows.iter().flat_map(|row| &row.panels).zip(&frames) {
             panel.lines(&mut svg, *rect);
         }
         self.legend.draw(&mut svg, legend_at);
@@ -382,6 +400,19 @@ mod tests {
         };
         assert!(number("width") >= second.x + second.w + MARGIN);
         assert!(number("height") >= third.y + third.h + MARGIN);
+    }
+
+    #[test]
+    fn a_wide_panel_reaches_over_all_columns() {
+        let columns = || [Panel::of([50.0, 40.0]), Panel::of([30.0, 40.0])];
+        let (_, narrow) = Layout::titled("t").row(columns()).open();
+        let (svg, frames) = Layout::titled("t").row(columns()).wide(Panel::of([300.0, 20.0])).open();
+        assert_eq!(
+            frames[..2].iter().map(|r| r.x).collect::<Vec<_>>(),
+            narrow.iter().map(|r| r.x).collect::<Vec<_>>()
+        );
+        let end = (frames[2].x + 300.0 + MARGIN).ceil();
+        assert!(svg.finish().contains(&format!("width=\"{end}\"")));
     }
 
     #[test]

@@ -5,7 +5,8 @@ use catchment::connector::Half;
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{self, hex, mix};
-use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use catchment::report::figure::draw::layout::{Layout, Legend, Panel};
+use catchment::report::figure::draw::svg::{INK, JOIN, Rect, SOFT, Svg, polyline};
 use catchment::tolerance::SINGLE;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
@@ -114,12 +115,6 @@ pub(super) fn face(svg: &mut Svg, view: &View, half: &Half, factor: f64) {
 pub fn cone_over_x_face() -> Picture {
     /// Offsets shown, in D.
     const REACH: f64 = 1.15;
-    let rect = Rect { x: 78.0, y: 74.0, w: 420.0, h: 420.0 };
-    let mut svg = Svg::new(540.0, rect.y + rect.h + 150.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, "Cone and 3-D X-Face, offsets corrected without rotation");
-    let story = "faces compared by the unit square; either scaling of the cone";
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
-    let view = View::new(rect, REACH);
     let cone = mix(colour::FIXED, colour::FIXED_EDGE, 0.5);
     let (around, inside) = (AcceptanceShape::Disc(FRAC_1_SQRT_2), AcceptanceShape::Disc(0.5));
     let styles = [
@@ -127,24 +122,26 @@ pub fn cone_over_x_face() -> Picture {
         (around, format!(r#"fill="{0}" fill-opacity="0.35" stroke="{0}" stroke-width="1.6""#, hex(cone))),
         (inside, format!(r#"fill="{0}" fill-opacity="0.45" stroke="{0}" stroke-width="1.6""#, hex(cone))),
     ];
+    let words = [
+        "3-D X-Face: |x| + |y| < D, 2.0 D², ONAA 1.0 D",
+        "cone around the unit square: π/2 = 1.5708 D², ONAA 1.0 D (X-Face: + 27.3 %)",
+        "cone inside it: π/4 = 0.7854 D², ONAA 0.7071 D",
+    ];
+    let square = "largest axis-parallel square of the first two, edge D";
+    let panel = styles.iter().zip(words).fold(Panel::with_axes([420.0; 2]), |panel, ((_, style), words)| {
+        panel.under(Legend::default().square(style, words))
+    });
+    let (mut svg, frames) = Layout::titled("Cone and 3-D X-Face, offsets corrected without rotation")
+        .story("faces compared by the unit square; either scaling of the cone")
+        .row([panel.under(Legend::default().line(dashed(), square))])
+        .open();
+    let rect = frames[0];
+    let view = View::new(rect, REACH);
     for (shape, style) in &styles {
         view.path(&mut svg, &corners(*shape), style);
     }
     view.square(&mut svg, DVec2::ZERO, 1.0, &dashed());
     let scale = |name: &str| AxisScale::new(format!("{name} [D]"), -REACH, REACH, false);
     PlotFrame { rect, x: scale("x"), y: scale("y") }.draw(&mut svg);
-    let words = [
-        "3-D X-Face: |x| + |y| < D, 2.0 D², ONAA 1.0 D",
-        "cone around the unit square: π/2 = 1.5708 D², ONAA 1.0 D (X-Face: + 27.3 %)",
-        "cone inside it: π/4 = 0.7854 D², ONAA 0.7071 D",
-    ];
-    for (k, ((_, style), words)) in styles.iter().zip(words).enumerate() {
-        let y = rect.y + rect.h + 58.0 + 21.0 * k as f64;
-        svg.rect(Rect { x: 24.0, y: y - 10.0, w: 16.0, h: 12.0 }, style);
-        svg.text([48.0, y], 11.0, Anchor::Start, INK, words);
-    }
-    let y = rect.y + rect.h + 121.0;
-    svg.line([24.0, y - 4.0], [40.0, y - 4.0], &dashed());
-    svg.text([48.0, y], 11.0, Anchor::Start, INK, "largest axis-parallel square of the first two, edge D");
     Picture::of(svg)
 }

@@ -16,6 +16,7 @@ mod rows;
 mod scale;
 
 pub use cells::cone_over_x_face;
+use rows::{CELLS, Row};
 
 use super::data::Catalog;
 use super::designs::DesignText;
@@ -23,7 +24,7 @@ use catchment::design::SourceText;
 use catchment::exec::{Cancelled, Exec};
 use catchment::method::zraa::ZraaError;
 use catchment::problem::{Draft, Problem, ProblemError};
-use catchment::report::figure::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
+use catchment::report::figure::draw::layout::Layout;
 use catchment::report::figure::{FigureError, Picture};
 
 /// Why a picture is not drawn.
@@ -49,11 +50,10 @@ fn problem(name: &str) -> Result<Problem, ProblemError> {
     Draft::read(SourceText::new(format!("{name}.toml"), text))?.build()
 }
 
-/// Rows of a block, blocks side by side.
+/// Rows of a block; blocks stand side by side.
 const ROWS: usize = 5;
-/// Height of a row, width of a block.
-const ROW: f64 = 136.0;
-const BLOCK: f64 = 560.0;
+/// Width of the names before the rows and before the scale.
+const NAMES: f64 = 165.0;
 
 /// Figure 2.1: connectors, cross-sections and zero-rotation areas of acceptance, at a common scale.
 ///
@@ -61,34 +61,19 @@ const BLOCK: f64 = 560.0;
 /// If a region cannot be computed, or the computation is cancelled.
 pub fn comparison(catalog: &Catalog, exec: &Exec) -> Result<Picture, DrawError> {
     let rows = rows::all(catalog, exec)?;
-    let blocks = rows.len().div_ceil(ROWS);
-    let top = 96.0;
-    let below = top + ROW * ROWS as f64 + 30.0;
-    let width = 20.0 + BLOCK * blocks as f64;
-    let areas = scale::height(catalog);
-    let mut svg = Svg::new(width, below + areas + 20.0);
-    svg.bold(
-        [24.0, 30.0],
-        TITLE + 1.0,
-        Anchor::Start,
-        "Zero-rotation areas of acceptance of published connectors",
-    );
     let story = "one scale; dotted: the unit square, of width D; dashed: the largest square in the area of acceptance (ONAA)";
-    svg.text([24.0, 51.0], LABEL, Anchor::Start, SOFT, story);
-    for block in 0..blocks {
-        let left = 24.0 + BLOCK * block as f64;
-        for (k, heading) in
-            ["the two halves", "along the approach", "area of acceptance"].into_iter().enumerate()
-        {
-            let x = left + rows::NAMES + (k as f64 + 0.5) * rows::CELL;
-            svg.text([x, top - 12.0], LABEL, Anchor::Middle, INK, heading);
-        }
+    let mut layout = Layout::titled("Zero-rotation areas of acceptance of published connectors").story(story);
+    // Row k of every block.
+    let lines: Vec<Vec<&Row>> = (0..ROWS).map(|k| rows.iter().skip(k).step_by(ROWS).collect()).collect();
+    for (k, line) in lines.iter().enumerate() {
+        layout = layout.row(line.iter().flat_map(|_| rows::panels(k == 0)));
     }
-    for (k, row) in rows.iter().enumerate() {
-        let at = [24.0 + BLOCK * (k / ROWS) as f64, top + ROW * (k % ROWS) as f64];
-        row.draw(&mut svg, at)?;
+    let (mut svg, frames) = layout.wide(scale::panel(catalog)).open();
+    let (cells, areas) = frames.split_at(CELLS * rows.len());
+    for (row, cells) in lines.into_iter().flatten().zip(cells.as_chunks::<CELLS>().0) {
+        row.draw(&mut svg, cells)?;
     }
-    scale::draw(&mut svg, catalog, Rect { x: 24.0, y: below, w: width - 48.0, h: areas });
+    scale::draw(&mut svg, catalog, areas[0]);
     Ok(Picture::of(svg))
 }
 

@@ -4,23 +4,23 @@ use super::super::data::PublishedZraa;
 use super::super::facts::{AcceptanceShape, Fact};
 use super::super::{Catalog, GEOMETRY};
 use super::cells::{ACCEPTED, View, corners, dashed, dotted, face, filled};
-use super::{DrawError, problem};
+use super::{DrawError, NAMES, problem};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::exec::Exec;
 use catchment::method::zraa::{AcceptedSquare, Zraa, ZraaSettings, run};
 use catchment::pose::PoseError;
 use catchment::problem::Problem;
 use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
-use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg};
+use catchment::report::figure::draw::layout::Panel;
+use catchment::report::figure::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK};
 use catchment::report::figure::{MovingHalfPose, solid_panel};
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 
-/// Width of the names, and of each of the three cells.
-pub(super) const NAMES: f64 = 152.0;
-pub(super) const CELL: f64 = 126.0;
-/// Room between cells.
-const GAP: f64 = 6.0;
+/// Cells of a row.
+pub(super) const CELLS: usize = 3;
+/// Side of a cell.
+const CELL: f64 = 116.0;
 /// Offsets that a cell shows, in D.
 const REACH: f64 = 1.08;
 /// Half the width of a cross-section, in D.
@@ -29,6 +29,17 @@ const SECTION: f64 = 0.76;
 const APART: f64 = 0.9;
 /// Height of the strip that stands for an interval, in D.
 const STRIP: f64 = 0.16;
+
+/// The panels of a row, the first after its names; the first row has headings.
+pub(super) fn panels(has_headings: bool) -> impl Iterator<Item = Panel> {
+    ["the two halves", "along the approach", "area of acceptance"].into_iter().enumerate().map(
+        move |(k, heading)| {
+            let names = if k == 0 { NAMES } else { 0.0 };
+            let panel = Panel::of([CELL; 2]).with_room([names, 0.0, 0.0, 0.0]);
+            if has_headings { panel.over(heading) } else { panel }
+        },
+    )
+}
 
 /// A connector with its region.
 pub(super) struct Row {
@@ -142,33 +153,32 @@ fn of_family(
 }
 
 impl Row {
-    /// Draws the row with its upper left corner at a place.
-    pub(super) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2]) -> Result<(), DrawError> {
-        svg.bold([x, y + 22.0], 13.0, Anchor::Start, self.name);
+    /// Draws the row into its cells, its names before them.
+    pub(super) fn draw(&self, svg: &mut Svg, cells: &[Rect; CELLS]) -> Result<(), DrawError> {
+        let [halves, section, region] = cells;
+        let (x, y) = (halves.x - NAMES, halves.y);
+        svg.bold([x, y + 18.0], LABEL + 1.0, Anchor::Start, self.name);
         for (k, words) in self.words.iter().enumerate() {
-            let (size, fill) = if k < 2 { (11.5, INK) } else { (10.0, SOFT) };
-            svg.text([x, y + 41.0 + 16.0 * k as f64], size, Anchor::Start, fill, words);
+            let (size, fill) = if k < 2 { (LABEL, INK) } else { (TICK, SOFT) };
+            svg.text([x, y + 37.0 + 16.0 * k as f64], size, Anchor::Start, fill, words);
         }
-        let side = CELL - GAP;
-        let cell = |k: usize| Rect { x: x + NAMES + CELL * k as f64, y, w: side, h: side };
         match &self.problem {
             Some(problem) => {
                 let height = APART - problem.alignment().center_of_rotation;
                 let placement = MovingHalfPose { error: PoseError::default(), height };
-                solid_panel(svg, cell(0), problem.design(), problem.connector(), &placement)?;
-                let view = View::new(cell(1), SECTION);
+                solid_panel(svg, *halves, problem.design(), problem.connector(), &placement)?;
+                let view = View::new(*section, SECTION);
                 face(svg, &view, &problem.connector().fixed, self.width);
                 view.square(svg, DVec2::ZERO, 1.0, &dotted());
             }
             None => {
-                for k in 0..2 {
-                    let place = cell(k);
-                    let middle = [place.x + side / 2.0, place.y + side / 2.0];
-                    svg.text(middle, 11.0, Anchor::Middle, SOFT, "not stated");
+                for cell in [halves, section] {
+                    let middle = [cell.x + cell.w / 2.0, cell.y + cell.h / 2.0];
+                    svg.text(middle, TICK, Anchor::Middle, SOFT, "not stated");
                 }
             }
         }
-        self.region(svg, cell(2));
+        self.region(svg, *region);
         Ok(())
     }
 

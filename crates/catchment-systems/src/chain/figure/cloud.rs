@@ -7,10 +7,22 @@ use catchment::acceptance::Outcome;
 use catchment::document::percent;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{FIXED_EDGE, hex, outcome};
-use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, polyline};
+use catchment::report::figure::draw::layout::Panel;
+use catchment::report::figure::draw::svg::{INK, Rect, SOFT, Svg, polyline};
 
 /// Chains that are drawn at most.
 const MOST: usize = 2000;
+
+/// The panel of errors at a face, with the share that docks over it.
+pub(super) fn panel(size: [f64; 2], report: &ChainReport, arrival: &ArrivalErrors) -> Panel {
+    let place =
+        arrival.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
+    let count = match arrival.docking {
+        Some(docking) => format!("{} of {} dock", percent(docking.probability), report.chains),
+        None => format!("{} chains", report.chains),
+    };
+    Panel::with_axes(size).over(format!("{place}: {count}; ellipses: 1σ, 2σ"))
+}
 
 /// Draws x and pitch of the chains with the ellipses of one and two standard deviations.
 pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &ArrivalErrors) {
@@ -42,15 +54,6 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, arrival: &Ar
     }
     svg.end();
     frame.draw(svg);
-    let where_ =
-        arrival.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
-    let message = match arrival.docking {
-        Some(docking) => format!("{where_}: {} of {} dock", percent(docking.probability), report.chains),
-        None => format!("{where_}: {} chains", report.chains),
-    };
-    svg.text([rect.x, rect.y - 8.0], TICK, Anchor::Start, INK, &message);
-    let contours = "1σ, 2σ";
-    svg.text([rect.x + rect.w, rect.y - 8.0], TICK, Anchor::End, SOFT, contours);
 }
 
 /// Lateral and angle around the ellipse of so many standard deviations.

@@ -2,14 +2,15 @@
 
 use super::super::report::ChainReport;
 use super::super::study::Length;
-use super::{SIDE, TOP, WIDTH, degrees, headed};
+use super::{degrees, headed};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame, short};
 use catchment::report::figure::draw::colour::{CURVES, hex};
-use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
+use catchment::report::figure::draw::layout::{Legend, Panel, stroked};
+use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, Rect, SOFT, Svg, TICK, polyline};
 
-/// Height of the charts.
-const CHART: f64 = 300.0;
+/// Size of a chart beside another; a single one is twice as wide.
+const CHART: [f64; 2] = [370.0, 300.0];
 
 pub(super) fn draw(report: &ChainReport) -> Picture {
     let story = match &report.connector {
@@ -19,25 +20,22 @@ pub(super) fn draw(report: &ChainReport) -> Picture {
         }
         None => "straight chains".to_owned(),
     };
-    let mut svg = headed(report, TOP + CHART + 100.0, &story);
     let rows: Vec<&[Length]> =
         report.lengths.chunk_by(|a, b| a.joint_sigma_rad == b.joint_sigma_rad).collect();
-    let mut x = SIDE;
-    for (k, rows) in rows.iter().enumerate() {
-        let style = format!(r#"stroke="{}" stroke-width="2.4""#, hex(CURVES[k % CURVES.len()]));
-        svg.line([x, TOP + 6.0], [x + 18.0, TOP + 6.0], &style);
+    let legend = rows.iter().enumerate().fold(Legend::default(), |legend, (k, rows)| {
         let name = format!("σ = {} a joint", degrees(rows[0].joint_sigma_rad));
-        svg.text([x + 23.0, TOP + 10.0], LABEL, Anchor::Start, INK, &name);
-        x += 150.0;
-    }
+        legend.line(stroked(CURVES[k % CURVES.len()], 2.4), name)
+    });
     let has_docking = report.lengths.iter().any(|row| row.docking.is_some());
-    let (y, w) = (TOP + 42.0, if has_docking { 350.0 } else { WIDTH - 170.0 });
-    let lateral = Rect { x: 84.0, y, w, h: CHART };
-    chart(&mut svg, lateral, "lateral error, σ [D]", &rows, None, |row| Some((row.lateral_sigma_d, None)));
-    if has_docking {
-        let rect = Rect { x: 84.0 + w + 100.0, ..lateral };
+    let [w, h] = CHART;
+    let panels = if has_docking { vec![CHART; 2] } else { vec![[2.0 * w, h]] };
+    let (mut svg, frames) =
+        headed(report, story).row(panels.into_iter().map(Panel::with_axes)).legend(legend).open();
+    let lateral = |row: &Length| Some((row.lateral_sigma_d, None));
+    chart(&mut svg, frames[0], "lateral error, σ [D]", &rows, None, lateral);
+    if let Some(rect) = frames.get(1) {
         let probability = |row: &Length| row.docking.map(|d| (d.probability, Some(d.ci95)));
-        chart(&mut svg, rect, "probability of docking", &rows, Some(1.0), probability);
+        chart(&mut svg, *rect, "probability of docking", &rows, Some(1.0), probability);
     }
     Picture::of(svg)
 }

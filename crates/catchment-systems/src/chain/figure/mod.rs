@@ -13,14 +13,7 @@ mod steps;
 use super::report::ChainReport;
 use super::study::Study;
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-
-/// Width of every picture.
-const WIDTH: f64 = 920.0;
-/// Room at its sides.
-const SIDE: f64 = 24.0;
-/// Top of the drawing, below title and story.
-const TOP: f64 = 66.0;
+use catchment::report::figure::draw::layout::Layout;
 
 /// The picture of a study: its table if present, else its folding, else the errors of its last face.
 pub fn draw(report: &ChainReport, study: &Study) -> Picture {
@@ -31,17 +24,18 @@ pub fn draw(report: &ChainReport, study: &Study) -> Picture {
         return steps::draw(report, study);
     }
     let colours = if report.connector.is_some() { ": blue docks, orange does not" } else { "" };
-    let mut svg = headed(report, 470.0, &format!("straight chain of {} modules{colours}", report.modules));
-    let rect = Rect { x: 90.0, y: TOP + 26.0, w: WIDTH - 180.0, h: 330.0 };
-    cloud::draw(&mut svg, rect, report, &report.straight);
+    let story = format!("straight chain of {} modules{colours}", report.modules);
+    let panel = cloud::panel([740.0, 330.0], report, &report.straight);
+    let (mut svg, frames) = headed(report, story).row([panel]).open();
+    for rect in frames {
+        cloud::draw(&mut svg, rect, report, &report.straight);
+    }
     Picture::of(svg)
 }
 
-fn headed(report: &ChainReport, height: f64, story: &str) -> Svg {
-    let mut svg = Svg::new(WIDTH, height);
-    svg.bold([SIDE, 30.0], TITLE, Anchor::Start, &report.name);
-    svg.text([SIDE, 49.0], LABEL, Anchor::Start, SOFT, story);
-    svg
+/// The page of a chain: its name over a line about the study.
+fn headed(report: &ChainReport, story: String) -> Layout {
+    Layout::titled(&report.name).story(story)
 }
 
 /// `−95.7°`, to a tenth of a degree.

@@ -5,78 +5,79 @@ use super::super::kinematics::{ModuleDimensions, PlanarPose, direction, left};
 use super::super::report::{ChainReport, FoldStepReport, FoldingReport, ModuleReport};
 use super::super::shape::ModuleFace;
 use super::super::study::Study;
-use super::{SIDE, TOP, WIDTH, cloud, degrees, headed};
+use super::{cloud, degrees, headed};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
-use catchment::report::figure::draw::colour::{CURVES, FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, hex};
+use catchment::report::figure::draw::colour::{CURVES, FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, Rgb, hex};
+use catchment::report::figure::draw::layout::{Layout, Legend, Panel, stroked};
 use catchment::report::figure::draw::svg::{
     Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of,
 };
 use glam::DVec2;
 
-/// Pictures of steps in a row.
+/// Pictures of steps, and charts, in a row.
 const ACROSS: usize = 3;
+/// Width of a step and of a chart.
+const CELL: f64 = 270.0;
 /// Room below a step for two lines of text.
-const WORDS: f64 = 46.0;
+const WORDS: f64 = 32.0;
 /// Height of the charts.
 const CHART: f64 = 230.0;
-/// Height of a row of them, with their labels.
-const CHART_ROW: f64 = 304.0;
 
 pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
-    let Some(folding) = &report.folding else { return Picture::of(Svg::new(WIDTH, TOP)) };
+    let Some(folding) = &report.folding else {
+        return Picture::of(headed(report, String::new()).open().0);
+    };
     let body = &report.body.body;
-    let cell = (WIDTH - 2.0 * SIDE) / ACROSS as f64;
     let [left, right] = bounds(&folding.steps, body).map(|corner| corner.x);
-    let scale = (cell - 16.0) / (right - left);
-    // The height of a row fits its content.
-    let rows: Vec<(&[FoldStepReport], [f64; 2])> =
-        folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
-    let height = |[low, high]: [f64; 2]| scale * (high - low);
-    let charts = TOP + rows.iter().map(|(_, span)| height(*span) + WORDS).sum::<f64>() + 34.0;
-    let rows_of_charts = (1 + folding.latches.len()).div_ceil(2) as f64;
+    let scale = CELL / (right - left);
     let name = folding.shape.map_or("own sequence", |shape| shape.name());
-    let story = format!("{name}; commands: {}", folding.commands_from);
-    let mut svg = headed(report, charts + rows_of_charts * CHART_ROW - 16.0, &story);
-    legend(&mut svg);
-    let (mut before, mut top) = (None, TOP);
-    for (row, span) in rows {
-        let bottom = top + height(span);
-        for (k, step) in row.iter().enumerate() {
-            let start = SIDE + k as f64 * cell + 8.0;
-            let place = |p: DVec2| [start + scale * (p.x - left), bottom - scale * (p.y - span[0])];
+    let mut layout = headed(report, format!("{name}; commands: {}", folding.commands_from)).legend(legend());
+    for row in folding.steps.chunks(ACROSS) {
+        // The height of a row fits its content.
+        let [low, high] = bounds(row, body).map(|corner| corner.y);
+        let panel = || Panel::of([CELL, scale * (high - low)]).with_room([0.0, 0.0, 0.0, WORDS]);
+        layout = layout.row(row.iter().map(|_| panel()));
+    }
+    // The joints first, then every docking.
+    let clouds = folding.latches.iter().map(|arrival| cloud::panel([CELL, CHART], report, arrival));
+    let charts = std::iter::once(track_panel(folding)).chain(clouds).collect();
+    let (mut svg, frames) = rows_of(layout, charts).open();
+    let (steps, charts) = frames.split_at(folding.steps.len());
+    let mut before = None;
+    for (row, frames) in folding.steps.chunks(ACROSS).zip(steps.chunks(ACROSS)) {
+        let low = bounds(row, body)[0].y;
+        for (step, rect) in row.iter().zip(frames) {
+            let bottom = rect.y + rect.h;
+            let place = |p: DVec2| [rect.x + scale * (p.x - left), bottom - scale * (p.y - low)];
             chain(&mut svg, body, step, folding, scale, &place);
-            words(&mut svg, step, before, folding, [start, bottom + 15.0]);
+            words(&mut svg, step, before, folding, [rect.x, bottom + 15.0]);
             before = Some(step);
         }
-        top = bottom + WORDS;
     }
-    // Two charts in a row: the joints first, then every docking.
-    let place = |k: usize| {
-        let (column, row) = ((k % 2) as f64, (k / 2) as f64);
-        Rect { x: 84.0 + 456.0 * column, y: charts + row * CHART_ROW, w: 330.0, h: CHART }
-    };
-    track(&mut svg, place(0), folding, study);
-    for (k, arrival) in folding.latches.iter().enumerate() {
-        cloud::draw(&mut svg, place(k + 1), report, arrival);
+    track(&mut svg, charts[0], folding, study);
+    for (rect, arrival) in charts[1..].iter().zip(&folding.latches) {
+        cloud::draw(&mut svg, *rect, report, arrival);
     }
     Picture::of(svg)
 }
 
-/// The legend of the marks, to the right of the title.
-fn legend(svg: &mut Svg) {
-    let y = 26.0;
-    let mut x = 520.0;
-    for (fill, name) in [(INK, "holds"), (STALLED, "at full torque"), ("#ffffff", "slack")] {
-        svg.circle([x, y], 5.0, &format!(r#"fill="{fill}" stroke="{INK}" stroke-width="1""#));
-        svg.text([x + 9.0, y + 3.8], TICK, Anchor::Start, INK, name);
-        x += 24.0 + width_of(name, TICK);
-    }
-    for (full, name) in [(false, "first layer"), (true, "latched")] {
-        diamond(svg, [x + 2.0, y], full);
-        svg.text([x + 12.0, y + 3.8], TICK, Anchor::Start, INK, name);
-        x += 26.0 + width_of(name, TICK);
-    }
+/// Adds panels in rows of their own.
+fn rows_of(layout: Layout, mut panels: Vec<Panel>) -> Layout {
+    let rest = panels.split_off(panels.len().min(ACROSS));
+    let layout = layout.row(panels);
+    if rest.is_empty() { layout } else { rows_of(layout, rest) }
+}
+
+/// The marks of joints and dockings.
+fn legend() -> Legend {
+    let joint = |fill: &str| format!(r#"fill="{fill}" stroke="{INK}" stroke-width="1""#);
+    Legend::titled("joints:")
+        .dot(joint(INK), "holds")
+        .dot(joint(STALLED), "at full torque")
+        .dot(joint("#ffffff"), "slack")
+        .mark("first layer latched", |svg, at| diamond(svg, at, false))
+        .mark("both layers latched", |svg, at| diamond(svg, at, true))
 }
 
 /// Colour of a joint at its stall torque.
@@ -199,13 +200,29 @@ fn words(
     svg.text([x, y + 15.0], TICK, Anchor::Start, SOFT, &news.join(";  "));
 }
 
+/// The joints that move, as far as there are colours.
+fn shown_joints(folding: &FoldingReport) -> impl Iterator<Item = (usize, Rgb)> {
+    folding.turned.iter().copied().zip(CURVES)
+}
+
+/// The panel of joint angles over time.
+fn track_panel(folding: &FoldingReport) -> Panel {
+    let names = shown_joints(folding).fold(Legend::default(), |legend, (joint, colour)| {
+        legend.line(stroked(colour, 2.4), format!("joint {joint}"))
+    });
+    Panel::with_axes([CELL, CHART]).over(names)
+}
+
 /// Angles of the joints that move, over time.
 fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
     let Some(folded) = &study.folded else { return };
-    let mut moved: Vec<usize> = folding.turned.clone();
-    moved.truncate(CURVES.len());
-    let angles =
-        || folded.track.iter().flat_map(|(_, angles)| moved.iter().map(|j| angles[j - 1].to_degrees()));
+    let angle = |angles: &[f64], joint: usize| angles[joint - 1].to_degrees();
+    let angles = || {
+        folded
+            .track
+            .iter()
+            .flat_map(|(_, angles)| shown_joints(folding).map(|(joint, _)| angle(angles, joint)))
+    };
     let (low, high) = angles().fold((0.0f64, 0.0f64), |(low, high), a| (low.min(a), high.max(a)));
     let last = folded.track.last().map_or(1.0, |(time, _)| *time).max(1.0);
     let margin = 0.06 * (high - low).max(1.0);
@@ -215,20 +232,12 @@ fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
         y: AxisScale::new("joint angles [deg]".to_owned(), low - margin, high + margin, false),
     };
     let dotted = format!(r#"stroke="{SOFT}" stroke-width="0.9" stroke-dasharray="2 3""#);
+    svg.begin_clip(rect);
     svg.line([rect.x, frame.py(-90.0)], [rect.x + rect.w, frame.py(-90.0)], &dotted);
-    for (k, joint) in moved.iter().enumerate() {
-        let colour = hex(CURVES[k]);
-        let points =
-            folded.track.iter().map(|(time, angles)| frame.at([*time, angles[joint - 1].to_degrees()]));
-        let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
-        svg.path(&polyline(points, false), &style);
-        let x = rect.x + 4.0 + 76.0 * k as f64;
-        svg.line(
-            [x, rect.y - 12.0],
-            [x + 18.0, rect.y - 12.0],
-            &format!(r#"stroke="{colour}" stroke-width="2.4""#),
-        );
-        svg.text([x + 22.0, rect.y - 8.0], TICK, Anchor::Start, INK, &format!("joint {joint}"));
+    for (joint, colour) in shown_joints(folding) {
+        let points = folded.track.iter().map(|(time, angles)| frame.at([*time, angle(angles, joint)]));
+        svg.path(&polyline(points, false), &stroked(colour, 2.0));
     }
+    svg.end();
     frame.draw(svg);
 }

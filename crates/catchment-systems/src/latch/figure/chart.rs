@@ -6,7 +6,8 @@ use super::super::force::{Forces, outside};
 use super::super::measured::REJECTED_OVERHANG;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{Rgb, hex, mix, sequential};
-use catchment::report::figure::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, width_of};
+use catchment::report::figure::draw::layout::{Legend, Panel};
+use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, width_of};
 
 /// The chart's overhangs and necks, in mm.
 const OVERHANGS: [f64; 2] = [1.0, 6.0];
@@ -24,16 +25,19 @@ fn colour(ratio: f64) -> Rgb {
     sequential((ratio.ln() - lo) / (hi - lo))
 }
 
-/// Draws the chart into a rectangle; title above, scale of colours to the right.
+/// Width of the scale of colours with its numbers.
+const SCALE: f64 = 60.0;
+
+/// The panel of the chart; its width includes the scale of colours.
+pub(super) fn panel([w, h]: [f64; 2]) -> Panel {
+    Panel::with_axes([w - SCALE, h])
+        .with_room([0.0, 0.0, SCALE, 0.0])
+        .over("bonding ratio: force to break over force to latch")
+        .over(Legend::titled("points: measured; colours: model; pale: extrapolated, or an upper bound"))
+}
+
+/// Draws the chart into its frame; the scale of colours to the right.
 pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&LatchDesign>) {
-    svg.bold(
-        [rect.x - 46.0, rect.y - 36.0],
-        LABEL,
-        Anchor::Start,
-        "bonding ratio: force to break over force to latch",
-    );
-    let story = "points: measured; colours: model; pale: extrapolated, or an upper bound";
-    svg.text([rect.x - 46.0, rect.y - 20.0], TICK, Anchor::Start, SOFT, story);
     let frame = PlotFrame {
         rect,
         x: AxisScale::new("overhang o [mm]".to_owned(), OVERHANGS[0], OVERHANGS[1], false),

@@ -1,7 +1,7 @@
 //! Pictures of a latch.
 //!
 //! ```text
-//!   latch      the outline with its names, the four steps, the record of the press, the chart of bonding ratios
+//!   latch      the outline with its names, the four steps, the chart of bonding ratios, the record of the press
 //!   outline    the outline alone
 //!   sequence   approach, align, arms pushed outward, snapped
 //!   press      force over the travel of a pair
@@ -16,7 +16,7 @@ use super::force::Forces;
 use super::press::Record;
 use super::{Geometry, LatchDesign};
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use catchment::report::figure::draw::layout::{Layout, Panel};
 
 /// All data for the pictures of a latch.
 #[derive(Debug, Clone, Copy)]
@@ -30,9 +30,6 @@ pub struct LatchDrawings<'a> {
     /// The measured designs and the fits to them.
     pub forces: &'a Forces,
 }
-
-/// Left side of everything.
-const LEFT: f64 = 30.0;
 
 impl LatchDrawings<'_> {
     /// Every picture, by the name of its file.
@@ -48,36 +45,36 @@ impl LatchDrawings<'_> {
 
     /// All pictures in one.
     pub fn overview(&self) -> Picture {
-        let mut svg = Svg::new(1000.0, 1030.0);
-        self.title(&mut svg);
-        part::outline(&mut svg, Rect { x: LEFT, y: 70.0, w: 440.0, h: 560.0 }, self.latch, self.geometry);
-        chart::draw(&mut svg, Rect { x: 560.0, y: 110.0, w: 330.0, h: 215.0 }, self.forces, Some(self.latch));
-        record::draw(&mut svg, Rect { x: 560.0, y: 430.0, w: 400.0, h: 180.0 }, self.record, self.fitted());
-        part::sequence(&mut svg, Rect { x: LEFT, y: 690.0, w: 940.0, h: 320.0 }, self);
+        const PART: [f64; 2] = [440.0, 560.0];
+        const CHART: [f64; 2] = [440.0, 240.0];
+        let charts = [chart::panel(CHART), record::panel(CHART, self.record)];
+        let (mut svg, frames) = self.page().row([Panel::of(PART), part::steps(PART)]).row(charts).open();
+        let [outline, steps, ratios, press] = frames[..] else { return Picture::of(svg) };
+        part::outline(&mut svg, outline, self.latch, self.geometry);
+        part::sequence(&mut svg, steps, self, 2);
+        chart::draw(&mut svg, ratios, self.forces, Some(self.latch));
+        record::draw(&mut svg, press, self.record, self.fitted());
         Picture::of(svg)
     }
 
     /// The outline alone.
     pub fn outline(&self) -> Picture {
-        let mut svg = Svg::new(620.0, 780.0);
-        self.title(&mut svg);
-        part::outline(&mut svg, Rect { x: LEFT, y: 70.0, w: 560.0, h: 690.0 }, self.latch, self.geometry);
+        let (mut svg, frames) = self.page().row([Panel::of([560.0, 690.0])]).open();
+        part::outline(&mut svg, frames[0], self.latch, self.geometry);
         Picture::of(svg)
     }
 
     /// The four steps.
     pub fn sequence(&self) -> Picture {
-        let mut svg = Svg::new(1000.0, 420.0);
-        self.title(&mut svg);
-        part::sequence(&mut svg, Rect { x: LEFT, y: 80.0, w: 940.0, h: 320.0 }, self);
+        let (mut svg, frames) = self.page().row([part::steps([940.0, 330.0])]).open();
+        part::sequence(&mut svg, frames[0], self, 4);
         Picture::of(svg)
     }
 
     /// The record of the press.
     pub fn press(&self) -> Picture {
-        let mut svg = Svg::new(640.0, 380.0);
-        self.title(&mut svg);
-        record::draw(&mut svg, Rect { x: 76.0, y: 100.0, w: 530.0, h: 220.0 }, self.record, self.fitted());
+        let (mut svg, frames) = self.page().row([record::panel([530.0, 220.0], self.record)]).open();
+        record::draw(&mut svg, frames[0], self.record, self.fitted());
         Picture::of(svg)
     }
 
@@ -86,21 +83,19 @@ impl LatchDrawings<'_> {
         self.forces.latching(self.latch, self.geometry).force_n
     }
 
-    fn title(&self, svg: &mut Svg) {
+    fn page(&self) -> Layout {
         let d = self.latch;
-        svg.bold([LEFT, 30.0], TITLE, Anchor::Start, &d.name);
-        let story = format!(
-            "overhang {} mm, neck {} mm, {} mm wide, sheet {} mm",
-            d.overhang, d.neck, d.width, d.sheet
-        );
-        svg.text([LEFT, 49.0], LABEL, Anchor::Start, SOFT, &story);
+        let [o, t, width, sheet] = [d.overhang, d.neck, d.width, d.sheet];
+        Layout::titled(&d.name)
+            .story(format!("overhang {o} mm, neck {t} mm, {width} mm wide, sheet {sheet} mm"))
     }
 }
 
 /// Bonding ratio over overhang and neck; a design's own place in it.
 pub fn chart(forces: &Forces, latch: Option<&LatchDesign>) -> Picture {
-    let mut svg = Svg::new(640.0, 480.0);
-    chart::draw(&mut svg, Rect { x: 76.0, y: 80.0, w: 440.0, h: 320.0 }, forces, latch);
+    let layout = Layout::titled("Bonding ratio of latching X-Faces").row([chart::panel([516.0, 320.0])]);
+    let (mut svg, frames) = layout.open();
+    chart::draw(&mut svg, frames[0], forces, latch);
     Picture::of(svg)
 }
 

@@ -4,6 +4,7 @@ use super::super::outline::Polygon;
 use super::super::{Geometry, LatchDesign};
 use super::LatchDrawings;
 use catchment::report::figure::draw::colour::{FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, Rgb, hex};
+use catchment::report::figure::draw::layout::{Legend, Panel};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 use glam::DVec2;
 
@@ -106,6 +107,11 @@ pub(super) fn outline(svg: &mut Svg, rect: Rect, latch: &LatchDesign, geometry: 
     svg.text([plane[0] + 6.0, plane[1] + 4.0], TICK, Anchor::Start, SOFT, "y = 0");
 }
 
+/// The panel of the four steps.
+pub(super) fn steps(size: [f64; 2]) -> Panel {
+    Panel::of(size).over(Legend::titled("dashed: faces of the other layer, while its arms are at rest"))
+}
+
 /// A half as it stands: body, neck, arm swung by an angle.
 fn half(geometry: &Geometry, swing: f64) -> Vec<Polygon> {
     let turn = DVec2::from_angle(swing);
@@ -121,9 +127,11 @@ fn half(geometry: &Geometry, swing: f64) -> Vec<Polygon> {
     vec![geometry.body(), neck, geometry.arm().into_iter().map(swung).collect()]
 }
 
-/// Draws approach, contact, arms pushed outward and the latched pair, a layer of each.
-pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>) {
+/// Draws approach, contact, arms pushed outward and the latched pair, a layer of each, so many beside each other.
+pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>, columns: usize) {
     const GAP: f64 = 18.0;
+    /// Room for the name over a step.
+    const NAME: f64 = 26.0;
     /// Above the first contact when halves approach, in mm.
     const CLEAR: f64 = 5.0;
     let geometry = drawn.geometry;
@@ -141,20 +149,23 @@ pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &LatchDrawings<'_>) {
     // The mirrored layer is off to the other side, and meets its partner earlier.
     let approach = 2.0 * geometry.profile.height(0.5 * (geometry.width - aside)) + CLEAR;
     let steps = [
-        ("1  approach; dashed: other layer", approach, aside, 0.0),
+        ("1  approach", approach, aside, 0.0),
         ("2  aligned: profiles meet", contact, 0.0, 0.0),
         ("3  arms pushed outward", open.max(0.0), 0.0, swing),
         ("4  snapped", 0.0, 0.0, 0.0),
     ];
-    let wide = (rect.w - 3.0 * GAP) / 4.0;
+    let rows = steps.len().div_ceil(columns);
+    let wide = (rect.w + GAP) / columns as f64 - GAP;
+    let high = (rect.h + GAP) / rows as f64 - GAP;
     // The same scale for all, so that the first, which is the tallest, fits.
     let tall = approach - 2.0 * geometry.bottom;
-    let scale = ((rect.h - 26.0) / tall).min(wide / (geometry.width + aside));
+    let scale = ((high - NAME) / tall).min(wide / (geometry.width + aside));
     for (k, (name, above, offset, swing)) in steps.into_iter().enumerate() {
-        let x = rect.x + k as f64 * (wide + GAP);
-        svg.bold([x, rect.y], LABEL, Anchor::Start, name);
+        let x = rect.x + (k % columns) as f64 * (wide + GAP);
+        let y = rect.y + (k / columns) as f64 * (high + GAP);
+        svg.bold([x, y + 10.0], LABEL, Anchor::Start, name);
         let height = above - 2.0 * geometry.bottom;
-        let top = rect.y + 14.0 + 0.5 * (rect.h - 26.0 - scale * height);
+        let top = y + NAME + 0.5 * (high - NAME - scale * height);
         let view = View { scale, origin: [x, top + scale * (above - geometry.bottom)] };
         let middle = DVec2::new(0.5 * (geometry.width + offset), 0.5 * above);
         for polygon in half(geometry, swing) {

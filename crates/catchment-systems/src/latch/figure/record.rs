@@ -4,16 +4,33 @@
 use super::super::press::Record;
 use catchment::report::figure::draw::axis::{AxisScale, PlotFrame};
 use catchment::report::figure::draw::colour::{CURVES, hex};
-use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
+use catchment::report::figure::draw::layout::{Legend, Panel, stroked};
+use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg, TICK, polyline};
 
-/// Draws the record into a rectangle, its title above; `latching` is the fitted force to latch, in N.
+/// The panel of the record.
+pub(super) fn panel(size: [f64; 2], record: &Record) -> Panel {
+    /// Above the frame, for the name of the seat.
+    const SEAT: f64 = 8.0;
+    let layers = layers(record)
+        .fold(Legend::titled("both layers:").line(stroked(CURVES[0], 2.0), "sum"), |legend, layer| {
+            legend.line(of_layer(layer), format!("layer {}", layer + 1))
+        });
+    let panel = Panel::with_axes(size).with_room([0.0, SEAT, 0.0, 0.0]);
+    panel.over("pressed together: springs and friction alone").over(layers)
+}
+
+/// The layers that are drawn beside their sum.
+fn layers(record: &Record) -> impl Iterator<Item = usize> {
+    let count = record.positions.first().map_or(0, |p| p.layers.len());
+    (0..count).filter(move |_| count > 1)
+}
+
+fn of_layer(layer: usize) -> String {
+    format!(r#"{} stroke-dasharray="4 3""#, stroked(CURVES[layer + 1], 1.2))
+}
+
+/// Draws the record into its frame; `latching` is the fitted force to latch, in N.
 pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record, latching: f64) {
-    svg.bold(
-        [rect.x - 46.0, rect.y - 26.0],
-        LABEL,
-        Anchor::Start,
-        "pressed together: springs and friction alone",
-    );
     let way = |above: f64| record.first_contact - above;
     let (first, last) = match &record.positions[..] {
         [first, .., last] => (way(first.above), way(last.above)),
@@ -30,21 +47,10 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record, latching: f64) {
             false,
         )
     };
-    // Clear of the line of the fitted force, which lies at the top unless friction lifts the record above it.
-    let key = rect.y + 0.42 * rect.h;
-    let layers = record.positions.first().map_or(0, |p| p.layers.len());
-    for layer in (0..layers).filter(|_| layers > 1) {
-        let style = format!(
-            r#"fill="none" stroke="{}" stroke-width="1.2" stroke-dasharray="4 3" {JOIN}"#,
-            hex(CURVES[layer + 1])
-        );
-        svg.path(&curve(&|k| record.positions[k].layers[layer].force), &style);
-        let x = rect.x + 10.0 + 92.0 * layer as f64;
-        svg.line([x, key], [x + 16.0, key], &style);
-        svg.text([x + 21.0, key + 4.0], TICK, Anchor::Start, SOFT, &format!("layer {}", layer + 1));
+    for layer in layers(record) {
+        svg.path(&curve(&|k| record.positions[k].layers[layer].force), &of_layer(layer));
     }
-    let style = format!(r#"fill="none" stroke="{}" stroke-width="2" {JOIN}"#, hex(CURVES[0]));
-    svg.path(&curve(&|k| record.positions[k].force), &style);
+    svg.path(&curve(&|k| record.positions[k].force), &stroked(CURVES[0], 2.0));
     for (k, dip) in record.dips.iter().enumerate() {
         let [x, y] = frame.at([way(dip.above), dip.from]);
         svg.circle([x, y], 3.0, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(CURVES[0])));
