@@ -63,11 +63,12 @@ impl ChainBody {
             ),
         );
         if let Some(connector) = &self.connector {
-            let cor = rounded(connector.center_of_rotation_d);
+            let cor = connector.center_of_rotation_d;
+            let side = if cor < 0.0 { "behind" } else { "in front of" };
             let rho = rounded(connector.rotation_length_d);
             document
-                .row("connector", format!("{}, rho {rho} D", connector.name))
-                .more(format!("COR {cor} D in front of the face: the last rotor"));
+                .row("connector", format!("{}, ρ {rho} D", connector.name))
+                .more(format!("COR {} D {side} the face: the last rotor", rounded(cor.abs())));
         }
         if let (Some(probability), Some(ci95)) = (self.probability, self.ci95) {
             document

@@ -7,6 +7,7 @@ use super::kinematics::{ModuleDimensions, rotors};
 use super::ring::Corners;
 use super::shape::{ChainShape, cells};
 use super::study::{ArrivalErrors, Length, Study};
+use catchment::design::{Design, DesignParameter};
 use catchment::diagnostic::Diagnostic;
 use catchment::document::{number, rounded};
 use catchment::report::schema::Timing;
@@ -208,7 +209,7 @@ impl ChainBody {
     fn of(study: &Study, requirements: &[Requirement]) -> Self {
         let file = &study.file;
         let connector = study.docking.as_ref().map(|docking| ConnectorReport {
-            name: docking.problem.design().name.clone(),
+            name: untitled(docking.problem.design().clone()).name,
             center_of_rotation_d: docking.problem.alignment().center_of_rotation,
             design_center_of_rotation_d: docking.own_center_of_rotation,
             rotation_length_d: docking.problem.alignment().rotation_length,
@@ -271,6 +272,11 @@ pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing
     ReportEnvelope::of(body, warnings, timing)
 }
 
+/// A design named without its centre of rotation and characteristic length: the report states those of the chain.
+fn untitled(design: Design) -> Design {
+    design.untitled(DesignParameter::CenterOfRotation).untitled(DesignParameter::RotationLength)
+}
+
 /// The warnings.
 fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
     let mut lines = Vec::new();
@@ -278,7 +284,7 @@ fn warnings(study: &Study, body: &ChainBody) -> Vec<Diagnostic> {
         let (result, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
         if (result - own).abs() > 1e-9 {
             lines.push(format!(
-                "the centre of rotation is the last rotor, {} D behind the face; that of the design, {} D, does not count",
+                "the centre of rotation is the last rotor, {} D behind the face; that of the design, {} D in front of it, is not used",
                 rounded(-result),
                 rounded(own)
             ));
