@@ -327,7 +327,10 @@ fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingR
         document.row(name, value);
     };
     let point = |half: &DrawnReport, p: [f64; 3]| {
-        let [x, y, z] = p.map(|c| rounded(c) + 0.0);
+        // Seven digits of the largest coordinate, as many as a file of single precision has.
+        let largest = p.iter().fold(1e-9, |most: f64, c| most.max(c.abs()));
+        let digits = 10f64.powf(6.0 - largest.log10().floor());
+        let [x, y, z] = p.map(|c| (c * digits).round() / digits + 0.0);
         let unit = half.unit.map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("({x}, {y}, {z}){unit}")
     };
