@@ -5,7 +5,7 @@
                                                                    lists those that differ from the program's output; the PNG files
                                                                    that the commands write go into the folder DRAWN
 
-A block ```console whose first line begins with `$ catchment` holds commands and their output, including stderr. A command continues on the next line after `\\`.
+A block ```console whose first line begins with `$ catchment`, `$ printf` or `$ sed` holds commands and their output, including stderr. A command continues on the next line after `\\`.
 The commands of a page run one after another in the page's own folder (budget-to-window continues in that of first-dock). The folder holds two STL files of the repository, its design files in designs/,
 and every block ```toml whose first line is `# NAME.toml`, under that name. A line with only … stands for omitted lines: as many as needed to keep the block's lines above and below it. A command without
 output in its block runs, but its output is not compared.
@@ -27,12 +27,18 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCK = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
 PAGES = [DOCK, [ROOT / "README.md"], *([page] for page in sorted((ROOT / "docs").glob("*.md")) if page not in DOCK)]
 PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
+#: The words that begin a command that is run. The program reads the output of `printf`; `sed` changes a design file.
+RUN = ("catchment ", "printf ", "sed ")
 BLOCK = re.compile(r"^```(console|toml)\n(.*?)^```$", re.M | re.S)
 
 
 def printed(program: str, folder: Path, command: str) -> list[str]:
-    words = [os.path.abspath(program), *shlex.split(command)[1:]]
-    env = {**os.environ, "NO_COLOR": "1", "COLUMNS": "80"}
+    program = os.path.abspath(program)
+    words = [program, *shlex.split(command)[1:]]
+    if not command.startswith("catchment ") or " | " in command:
+        words = ["sh", "-c", command]
+    path = f"{os.path.dirname(program)}:{os.environ['PATH']}"
+    env = {**os.environ, "NO_COLOR": "1", "COLUMNS": "80", "PATH": path}
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder, env=env, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{command}: exit {done.returncode}\n{done.stdout}")
@@ -80,7 +86,7 @@ class Transcripts:
             if named:
                 (self.folder / named[1]).write_text(block[2], encoding="utf-8")
             return block[0]
-        if not block[2].startswith("$ catchment "):
+        if not block[2].startswith(tuple(f"$ {word}" for word in RUN)):
             return block[0]
         lines: list[str] = []
         for typed, shown in commands(block[2]):
@@ -89,7 +95,7 @@ class Transcripts:
         return "\n".join(["```console", *lines, "```"])
 
     def output(self, page: Path, command: str, shown: list[str]) -> list[str]:
-        if not command.startswith("catchment "):
+        if not command.startswith(RUN):
             return shown
         begun = time.monotonic()
         printed_lines = printed(self.program, self.folder, command)
