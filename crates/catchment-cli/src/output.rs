@@ -223,13 +223,20 @@ pub(crate) fn warn(warnings: &[Diagnostic]) {
 
 /// The text layout without colours.
 fn layout(details: bool) -> Style {
-    let stated = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-    let is_terminal = io::stdout().is_terminal();
-    let width =
-        || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
     let default = Style::default();
-    let columns = stated.or_else(width).unwrap_or(default.columns);
+    let columns = stated_columns().or_else(|| terminal_columns(&io::stdout())).unwrap_or(default.columns);
     Style { columns, details, ..default }
+}
+
+/// The width that `COLUMNS` states.
+fn stated_columns() -> Option<usize> {
+    std::env::var("COLUMNS").ok()?.parse().ok()
+}
+
+/// The width of a terminal.
+fn terminal_columns(stream: &impl IsTerminal) -> Option<usize> {
+    let (width, _) = terminal_size::terminal_size().filter(|_| stream.is_terminal())?;
+    Some(usize::from(width.0))
 }
 
 /// Prints data. A closed pipe (`| head`) ends the command quietly.
@@ -252,12 +259,17 @@ pub(crate) fn print(data: &str, notes: &[String]) -> Result<ExitStatus, Failure>
     Ok(ExitStatus::Done)
 }
 
-/// Prints notes on stderr, one line each.
+/// Prints notes on stderr: one line each in a pipe, folded at the width of a terminal or of `COLUMNS`.
 pub(crate) fn to_stderr(lines: &[String]) {
+    let columns = stated_columns().or_else(|| terminal_columns(&io::stderr()));
     let mut stderr = io::stderr().lock();
     for line in lines {
+        let line = escaped(line).to_string();
+        // A command stays whole, so that it can be copied.
+        let columns = columns.filter(|_| !line.starts_with("next: "));
+        let text = columns.map_or(line.clone(), |columns| document::folded(&line, columns));
         // If stderr itself is closed, the message is lost.
-        let _ = writeln!(stderr, "{}", escaped(line));
+        let _ = writeln!(stderr, "{text}");
     }
 }
 

@@ -17,7 +17,7 @@ mod text;
 
 pub use html::html;
 pub use markdown::markdown;
-pub use text::{Style, body, diagnostics, lines, text};
+pub use text::{Style, body, diagnostics, folded, lines, text};
 
 use crate::envelope::{ReportBody, ReportEnvelope};
 use crate::schema::Timing;

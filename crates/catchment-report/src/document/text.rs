@@ -233,6 +233,18 @@ impl Page {
     }
 }
 
+/// A line, broken between words into lines of at most `columns` characters, those after the first indented.
+pub fn folded(line: &str, columns: usize) -> String {
+    let text = line.trim_start();
+    let indent = &line[..line.len() - text.len()];
+    let width = columns.saturating_sub(indent.len() + INDENT.len());
+    if line.chars().count() <= columns {
+        line.to_owned()
+    } else {
+        format!("{indent}{}", broken(text, width).join(&format!("\n{indent}{INDENT}")))
+    }
+}
+
 /// A text in lines of at most `width` characters, broken between words; a longer word has its own line.
 fn broken(text: &str, width: usize) -> Vec<String> {
     if text.chars().count() <= width {

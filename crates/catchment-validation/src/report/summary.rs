@@ -5,6 +5,7 @@ use crate::study::reproduce::TableComparison;
 use crate::study::resolution::ResolutionFigure;
 use crate::study::{FIGURE, Reproduction};
 use crate::tables::HELD;
+use catchment::report::document::{Style, folded};
 use std::fmt;
 
 /// The tables, the figure, a line per table and the omissions if there are several tables, and the coverage.
@@ -30,7 +31,8 @@ fn write_claims(f: &mut fmt::Formatter<'_>, claims: &[Claim]) -> fmt::Result {
     }
     for claim in claims {
         let [printed, ours, exact] = claim.shown();
-        writeln!(f, "  {} \"{}\"", claim.section, claim.says)?;
+        let quoted = format!("  {} \"{}\"", claim.section, claim.says);
+        writeln!(f, "{}", folded(&quoted, Style::default().columns))?;
         writeln!(f, "    {}: {printed}, {ours}, {exact}", claim.counted)?;
     }
     Ok(())
