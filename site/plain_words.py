@@ -2,7 +2,7 @@
 
     python3 site/plain_words.py                 one line per page, then the total
     python3 site/plain_words.py docs/window.md  one page, each use with its line
-    python3 site/plain_words.py --check         exits with 1 if a limit is exceeded or a banned phrase remains
+    python3 site/plain_words.py --check         exits with 1 if a limit is exceeded, a banned phrase remains or a code block is too wide
 
 Counted per 1 000 words of the README, docs/ (prose, tables and the program's output in them) and docs/reference/ (the program's help, design keys and report fields). Inline code, code blocks
 other than output, links and addresses do not count. `GUIDES` are pages that address the reader.
@@ -35,6 +35,9 @@ PHRASES = [
     r"the way out", r"complaints?\b", r"misfits?\b", r"how far off", r"what carries", r"what holds it",
 ]
 EXEMPT = {"docs/versions.md"}
+# Columns of a code block that fit beside the site's navigation. The kept output of a long measurement is wider.
+WIDTH = 80
+WIDE = {"docs/accuracy-coverage.md"}
 OUTPUT = {"console", "text"}
 
 
@@ -54,6 +57,23 @@ def prose(text):
             continue
         line = re.sub(r"`[^`]*`|\]\([^)]*\)|https?://\S+|<!--.*?-->", " ", line)
         yield number, line
+
+
+def too_wide(text):
+    """The lines of code blocks that do not fit, fenced or indented by four spaces."""
+    fenced, above = False, ""
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("```"):
+            fenced = not fenced
+        elif fenced:
+            if len(line) > WIDTH:
+                yield number, line
+        elif line.startswith("    "):
+            # Indented text below a note or an item of a list is no code.
+            if len(line) > WIDTH + 4 and not re.match(r"!!!|[-*] |\d+\.", above):
+                yield number, line
+        elif line:
+            above = line
 
 
 def words(lines):
@@ -99,6 +119,8 @@ def main(arguments):
         if name not in EXEMPT:
             for place, phrase, line in phrases(lines):
                 failures.append(f"{name}:{place}: “{phrase}” has a plain form: {line[:120]}")
+        if "reference" not in name and name not in WIDE:
+            failures += [f"{name}:{place}: {len(line)} characters in a code block, {WIDTH} fit" for place, line in too_wide(page.read_text(encoding="utf-8"))]
         if not check:
             print(f"{name:40} {number:6} " + " ".join(f"{rate:9.1f}" for rate in row))
     rates = {label: 1000 * count / max(total, 1) for label, count in counts.items()}

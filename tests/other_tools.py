@@ -88,10 +88,10 @@ def check_set(program: Path, home: Path) -> None:
     assert len(table) == report["acceptance"]["cells"] and list(table.columns) == ["x", "y", "roll", "yaw", "outcome", "height"]
     assert isclose((table.outcome == "aligned").mean() * box, report["acceptance"]["sum_grid"], rel_tol=1e-12)
 
-    # The line from docs/other-tools.md.
-    line = (ROOT / "docs/other-tools.md").read_text(encoding="utf-8").split("import json, xarray\n", 1)[1].split("\n", 1)[0]
-    line = line.replace('"out/', f'"{home}/out/').replace('"set.nc"', f'"{home}/set.nc"')
-    exec(line, {"json": json, "xarray": xarray})
+    # The lines from docs/other-tools.md.
+    lines = (ROOT / "docs/other-tools.md").read_text(encoding="utf-8").split("import json, xarray\n", 1)[1].split("```", 1)[0]
+    lines = lines.replace('"out/', f'"{home}/out/').replace('"set.nc"', f'"{home}/set.nc"')
+    exec(lines, {"json": json, "xarray": xarray})
     with xarray.open_dataset(home / "set.nc") as back:
         assert (back.outcome == whole.outcome).all() and back.outcome.attrs["flag_meanings"] == whole.outcome.attrs["flag_meanings"]
         assert json.loads(back.attrs["report"])["acceptance"] == report["acceptance"]
