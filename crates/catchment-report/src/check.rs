@@ -1,6 +1,6 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
-use super::document::{Printed, characteristic_length, error_box, pose_errors};
+use super::document::{Printed, characteristic_length, error_box, pose_errors, seven_digits};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
@@ -279,7 +279,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
         }
         _ => "",
     };
-    row("width D", &format!("{} {unit}{from}", design.width));
+    row("width D", &format!("{} {unit}{from}", seven_digits(design.width)));
     row("pose errors", &pose_errors(design));
     if !alignment.dont_care.is_empty() {
         row("ignored", &alignment.dont_care.to_string());
@@ -314,7 +314,7 @@ fn understood(document: &mut Document, design: &Design, drawing: Option<&Drawing
 /// A length in D, and in the unit of the design if it has one.
 fn in_both_units(d: f64, design: &Design) -> String {
     match design.unit {
-        Some(unit) => format!("{} D = {} {}", shortened(d), rounded(d * design.width), unit.symbol()),
+        Some(unit) => format!("{} D = {} {}", shortened(d), seven_digits(d * design.width), unit.symbol()),
         None => format!("{d} D"),
     }
 }
@@ -327,7 +327,7 @@ fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingR
         document.row(name, value);
     };
     let point = |half: &DrawnReport, p: [f64; 3]| {
-        // Seven digits of the largest coordinate, as many as a file of single precision has.
+        // As many decimals as the largest coordinate has.
         let largest = p.iter().fold(1e-9, |most: f64, c| most.max(c.abs()));
         let digits = 10f64.powf(6.0 - largest.log10().floor());
         let [x, y, z] = p.map(|c| (c * digits).round() / digits + 0.0);

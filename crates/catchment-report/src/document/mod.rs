@@ -151,7 +151,7 @@ pub fn setup(design: &Design, samples_errors: bool) -> Document {
     };
     let width = design.unit.map_or_else(
         || "lengths in D, its width".to_owned(),
-        |u| format!("width D = {} {}", design.width, u.symbol()),
+        |u| format!("width D = {} {}", seven_digits(design.width), u.symbol()),
     );
     let mut document = Document::default();
     document.row("connector", format!("{kind}; {width}"));
@@ -250,9 +250,27 @@ fn own_length(design: &Design, value: f64) -> String {
     }
 }
 
+/// A length to at most seven significant digits: a file of single precision has no more.
+pub fn seven_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let places = 6.0 - value.abs().log10().floor();
+    let shift = 10f64.powf(places.abs());
+    // Multiply or divide by a power of ten, which keeps the last digit exact.
+    if places >= 0.0 { (value * shift).round() / shift } else { (value / shift).round() * shift }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_of_single_precision_have_no_noise() {
+        let shown = [84.209_999_1, 0.0, -0.012_345_678_9, 12_345_678.9, 50.0].map(seven_digits);
+        assert_eq!(shown, [84.21, 0.0, -0.012_345_68, 12_345_680.0, 50.0]);
+    }
+
     use catchment_core::document::{Cell, Column, ColumnFormat};
 
     /// A document with every kind of part.

@@ -16,6 +16,7 @@
 //! nothing overlaps, and nothing is cut off. Widths of text are estimates ([`width_of`]).
 
 use super::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use crate::document::seven_digits;
 use catchment_core::design::Design;
 use catchment_core::pose::Dof;
 
@@ -256,9 +257,9 @@ impl Layout {
     #[must_use]
     pub fn computed(mut self, design: &Design) -> Self {
         let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
-        let width = design
-            .unit
-            .map_or_else(String::new, |unit| format!("  ·  D = {} {}", design.width, unit.symbol()));
+        let width = design.unit.map_or_else(String::new, |unit| {
+            format!("  ·  D = {} {}", seven_digits(design.width), unit.symbol())
+        });
         self.design = format!("pose errors {}{width}", free.join(", "));
         self
     }
