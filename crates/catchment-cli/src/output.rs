@@ -264,7 +264,7 @@ pub(crate) fn to_stderr(lines: &[String]) {
     let columns = stated_columns().or_else(|| terminal_columns(&io::stderr()));
     let mut stderr = io::stderr().lock();
     for line in lines {
-        let line = escaped(line).to_string();
+        let line = escaped(line);
         // A command stays whole, so that it can be copied.
         let columns = columns.filter(|_| !line.starts_with("next: "));
         let text = columns.map_or(line.clone(), |columns| document::folded(&line, columns));
