@@ -3,7 +3,8 @@
 #
 #     viewer/wasm.sh
 #
-# Another folder, or another compiler, writes other bytes: that the module is the library's is asked of its motions (tests/motions.test.mjs, tests/page.test.mjs).
+# Another folder, or another compiler, writes other bytes. So the tests compare the motions of the module with those of the program, not its bytes
+# (tests/motions.test.mjs, tests/page.test.mjs).
 # The standard library for wasm32-unknown-unknown is compiled with it: by a target of rustup, or from its source, which is rustup's rust-src or
 # Debian's package of the very same version of Rust (it is fetched with apt-get, unpacked into target/ and not installed).
 set -euo pipefail

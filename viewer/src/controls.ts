@@ -45,7 +45,7 @@ export class Sliders {
     }
 }
 
-/** The coefficient of friction of the motions: that of the result, until another one is asked for. */
+/** The friction coefficient of the motions: that of the result, until the user enters another one. */
 export class Friction {
     readonly element: HTMLElement;
     private readonly number: HTMLInputElement;
@@ -63,7 +63,7 @@ export class Friction {
         return Number(this.number.value);
     }
 
-    /** What is to be said where the motion is not of the set beside it. */
+    /** A sentence that names both coefficients if the motion has another one than the set beside it; else empty. */
     get remark(): string {
         const of = (coefficient: number) => (coefficient === 0 ? "without friction" : `with friction ${tidy(coefficient)}`);
         return this.value === this.decided ? "" : ` This motion is ${of(this.value)}, the set ${of(this.decided)}.`;

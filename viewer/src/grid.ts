@@ -44,7 +44,7 @@ export class Grid {
         }));
     }
 
-    /** The codes over some axes, the first of them fastest, at the cell `at` of the others; with a border of zeros if asked for. */
+    /** The codes over some axes, the first of them fastest, at the cell `at` of the others. */
     async cut(axes: number[], at: number[]): Promise<Uint8Array> {
         const base = this.strides.reduce((sum, stride, k) => sum + (axes.includes(k) ? 0 : stride * at[k]), 0);
         const shape = axes.map((k) => this.shape[k]);

@@ -29,7 +29,7 @@ const helper = new Helper<Computing>("worker");
 const painter = new Helper<Painting>("painter");
 
 let pose: Pose = [0, 0, 0, 0, 0];
-/** The motion that is shown, as the library told it. */
+/** The motion that is shown: the JSON text of the library. */
 let json = "";
 
 const verdict = make("p", { class: "verdict", id: "verdict", role: "status", "aria-live": "polite" });
@@ -66,22 +66,22 @@ const cut = latest(async () => void (await Promise.all([...slices.map((slice) =>
 let play = false;
 const follow = latest(async () => {
     if (!packed[2]) return;
-    const asked = pose;
+    const requested = pose;
     try {
-        const found = await helper.ask("follow", { pose: asked, friction: friction.value });
-        if (asked === pose) show(found.trace, found.json);
+        const found = await helper.ask("follow", { pose: requested, friction: friction.value });
+        if (requested === pose) show(found.trace, found.json);
     } catch (error) {
         tell("undecided", String(error instanceof Error ? error.message : error));
     }
 });
 
-function tell(outcome: string, said: string) {
+function tell(outcome: string, message: string) {
     verdict.dataset.outcome = outcome;
-    verdict.textContent = said;
+    verdict.textContent = message;
 }
 
-function show(trace: Trace, told: string) {
-    json = told;
+function show(trace: Trace, traceJson: string) {
+    json = traceJson;
     if (trace.waypoints.length === 0) stage?.place(listed(trace.start), mated, [], locked);
     player.take(trace);
     tell(trace.outcome, ending(trace, mated, units, design) + friction.remark);
@@ -152,7 +152,7 @@ function build() {
     return { canvas, halves };
 }
 
-/** When what was asked for is on the screen. */
+/** Resolves after the browser has painted the next frame. */
 const drawn = () => new Promise<void>((done) => requestAnimationFrame(() => setTimeout(done)));
 
 async function begin() {

@@ -1,4 +1,4 @@
-// What the page and its two workers say to each other: what is asked by name, what goes with it, what comes back.
+// Messages between the page and its two workers: the name of each request, its data and its reply.
 
 import type { Point, Pose, Touch, Trace } from "./page";
 import type { Mesh } from "./border";

@@ -25,7 +25,7 @@ export class Motions {
             new Uint8Array(doors.memory.buffer, offset, part.length).set(part);
             offset += part.length;
         }
-        if (doors.load(parts[0].length, parts[1].length) !== 0) throw new Error(said(doors));
+        if (doors.load(parts[0].length, parts[1].length) !== 0) throw new Error(outputText(doors));
         return doors;
     }
 
@@ -34,7 +34,7 @@ export class Motions {
         this.doors ??= await this.open();
         try {
             const status = this.doors.trace(...pose, friction);
-            const text = said(this.doors);
+            const text = outputText(this.doors);
             if (status !== 0) throw new Error(text);
             return text;
         } catch (error) {
@@ -48,7 +48,7 @@ export class Motions {
     }
 }
 
-/** What a dependency of the library would ask of a browser (random numbers of archives). No motion does; whoever did would be told. */
+/** Functions that a dependency of the library imports from a browser (random numbers of archives). No motion calls them; a call throws an error. */
 function strangers(module: WebAssembly.Module): WebAssembly.Imports {
     const imports: Record<string, Record<string, () => never>> = {};
     for (const { module: from, name } of WebAssembly.Module.imports(module))
@@ -58,7 +58,7 @@ function strangers(module: WebAssembly.Module): WebAssembly.Imports {
     return imports;
 }
 
-const said = (doors: Doors) =>
+const outputText = (doors: Doors) =>
     new TextDecoder().decode(new Uint8Array(doors.memory.buffer, doors.output() >>> 0, doors.output_length()));
 
 export const read = (text: string): Trace => JSON.parse(text);

@@ -23,7 +23,7 @@ const PLAIN = 5;
 /** Errors below this, in D or radians, are none beside a turn. */
 const NONE = 5e-3;
 
-/** Why a rest so far above the mated height does not count as docked, by the rules of the design's seat; empty where its height says it. */
+/** Why a rest so far above the mated height does not count as docked, by the rules of the design's seat; empty if the height alone explains it. */
 export function reason(pose: Pose, above: number, units: Units, { alignment }: Design): string {
     const { docked: { depth, limits }, free, symmetry } = alignment;
     if (above > PLAIN * depth) return "";

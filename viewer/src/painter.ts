@@ -50,18 +50,18 @@ answer<Painting>({
         halves = new Halves(await unpacked(packed[0]), await unpacked(packed[1]));
         return { found: halves.corners };
     },
-    stage(asked) {
-        halves.put(asked);
-        return picture(halves.scene, asked.seen);
+    stage(request) {
+        halves.put(request);
+        return picture(halves.scene, request.seen);
     },
     surface(mesh) {
         painting();
         (surface ??= new Surface()).take(mesh);
         return { found: null };
     },
-    volume(asked) {
-        surface!.put(asked);
-        return picture(surface!.scene, asked.seen);
+    volume(request) {
+        surface!.put(request);
+        return picture(surface!.scene, request.seen);
     },
     hit({ seen, at }) {
         return { found: surface!.hit(at, from(seen)) };

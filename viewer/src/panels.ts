@@ -92,7 +92,7 @@ export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose
             make("small", {}, `95 % CI ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),
             make("span", {}, `rests ${units.height(jam.above_mated_d)} with ${units.pose(pose)}`),
             make("span", {}, contacts.slice(0, 3).join("; ") + (contacts.length > 3 ? `; and ${contacts.length - 3} more` : "")),
-            ...[reason(pose, jam.above_mated_d, units, report.design), held].filter((said) => said).map((said) => make("span", {}, said))));
+            ...[reason(pose, jam.above_mated_d, units, report.design), held].filter((line) => line).map((line) => make("span", {}, line))));
     });
     const hint = make("p", { class: "hint" }, `${grouped(jams.motions)} sampled poses, followed exactly. Click a jam to see it.`);
     const { outcomes, cells } = report.acceptance;
@@ -102,8 +102,8 @@ export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose
 }
 
 export function doubts({ report, notes }: Page): HTMLElement | null {
-    const said = [...report.warnings.map(({ message }) => message), ...notes];
-    return said.length ? card("doubts", "Warnings and notes", make("ul", {}, ...said.map((text) => make("li", {}, text)))) : null;
+    const lines = [...report.warnings.map(({ message }) => message), ...notes];
+    return lines.length ? card("doubts", "Warnings and notes", make("ul", {}, ...lines.map((text) => make("li", {}, text)))) : null;
 }
 
 /** What it is a result of. */

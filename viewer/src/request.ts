@@ -29,7 +29,7 @@ export class Helper<P extends Protocol<P>> {
     }
 }
 
-/** Runs one at a time, and of those asked meanwhile the last alone: what sliders want. */
+/** Runs one call at a time. Of the calls that arrive meanwhile, only the last one runs: sliders need no more. */
 export function latest(run: () => Promise<void>): () => Promise<void> {
     let running: Promise<void> | null = null;
     let again = false;

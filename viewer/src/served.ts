@@ -6,32 +6,32 @@ interface Progress { state: "ready" | "running" | "failed"; share: number; stage
 
 /** A button, and the progress of the computation. Pressed again it replaces the computation that runs. */
 export function again(): HTMLElement {
-    const said = make("output", { class: "progress", "aria-live": "polite" });
+    const output = make("output", { class: "progress", "aria-live": "polite" });
     const cells = make("input", { type: "text", size: 8, placeholder: "cells", "aria-label": "cells per axis, such as 30 or x=40,yaw=24", title: "cells per axis" });
     const button = make("button", { type: "button", id: "again", title: "reads the design file again and computes it, in place of a computation that still runs", onclick: () => void run() }, "compute again");
     let newest = 0;
     const run = async () => {
         const own = ++newest;
         try {
-            const asked = await fetch("run", { method: "POST", body: cells.value.trim() });
-            if (!asked.ok) said.textContent = await asked.text();
-            else if (await follow(said, () => own === newest)) location.reload();
+            const response = await fetch("run", { method: "POST", body: cells.value.trim() });
+            if (!response.ok) output.textContent = await response.text();
+            else if (await follow(output, () => own === newest)) location.reload();
         } catch {
-            said.textContent = "The program does not answer: start `catchment view` again.";
+            output.textContent = "The program does not answer: start `catchment view` again.";
         }
     };
-    return make("span", { class: "again" }, said, cells, button);
+    return make("span", { class: "again" }, output, cells, button);
 }
 
 /** Shows the progress until there is a page (true), it failed, or another request is followed. */
-async function follow(said: HTMLElement, isNewest: () => boolean): Promise<boolean> {
+async function follow(output: HTMLElement, isNewest: () => boolean): Promise<boolean> {
     while (isNewest()) {
         const { state, share, stage, message }: Progress = await (await fetch("progress")).json();
         if (state !== "running") {
-            said.textContent = state === "failed" ? message : "";
+            output.textContent = state === "failed" ? message : "";
             return state === "ready";
         }
-        said.textContent = `${stage} ${Math.round(100 * share)} %`;
+        output.textContent = `${stage} ${Math.round(100 * share)} %`;
         await new Promise((done) => setTimeout(done, 300));
     }
     return false;

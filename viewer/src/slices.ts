@@ -1,4 +1,4 @@
-// Planes through the accepted set at the pose that is looked at: two errors vary, the others stay where the sliders are. Each says what it draws.
+// Planes through the accepted set at the pose that is looked at: two errors vary, the others stay where the sliders are. The caption of each names what it draws.
 
 import { cell, type Cut } from "./cuts";
 import { colour, make } from "./dom";
@@ -60,10 +60,10 @@ export class Slice {
 
     /** Cuts and draws anew. */
     async update() {
-        const asked: [number, number] = [...this.chosen];
-        const cut = await this.host.cut(asked);
+        const requested: [number, number] = [...this.chosen];
+        const cut = await this.host.cut(requested);
         // The pickers may have moved on meanwhile.
-        if (asked[0] === this.chosen[0] && asked[1] === this.chosen[1]) {
+        if (requested[0] === this.chosen[0] && requested[1] === this.chosen[1]) {
             this.shown = cut;
             this.drawn.textContent = cut.caption;
         }
@@ -206,8 +206,8 @@ export class Slice {
         const place = ([columns, rows]: [number, number]) =>
             cell({ ...across, cells: columns }, value(across)) + columns * cell({ ...up, cells: rows }, value(up));
         const code = this.shown?.codes[place(this.shown.cells)];
-        const told = [across, up].map((axis) => `${axis.axis} ${this.host.units.error(axis.axis, value(axis))}`).join(", ");
-        this.note.textContent = code ? `${told}: ${OUTCOMES[code - 1]}` : told;
+        const label = [across, up].map((axis) => `${axis.axis} ${this.host.units.error(axis.axis, value(axis))}`).join(", ");
+        this.note.textContent = code ? `${label}: ${OUTCOMES[code - 1]}` : label;
     }
 
     private key(event: KeyboardEvent) {

@@ -73,10 +73,10 @@ export class Volume {
 
     async update() {
         if (!this.view) return;
-        const asked = String(this.chosen);
+        const requested = String(this.chosen);
         const code = Number(this.of.value);
         const { mesh: { positions, indices }, counts, fixed } = await this.host.border([...this.chosen], code);
-        if (asked !== String(this.chosen) || code !== Number(this.of.value)) return;
+        if (requested !== String(this.chosen) || code !== Number(this.of.value)) return;
         this.drawn.textContent = this.caption(OUTCOMES[code - 1], counts, fixed);
         const shape = this.triple.map((axis) => axis.cells);
         for (let k = 0; k < positions.length; k++) positions[k] = (positions[k] + 0.5) / shape[k % 3] - 0.5;

@@ -20,7 +20,7 @@ answer<Computing>({
         grid = new Grid(start.shape, start.chunkCells, start.chunks);
         planes = start.planes.map(({ cells, packed }) => new Grid(cells, cells[0] * cells[1], [packed]));
         motions = start.motions && opened(start.motions);
-        // Whoever asks for a motion is told.
+        // Each `follow` awaits this promise and reports its error.
         motions?.catch(() => {});
         return { found: null };
     },

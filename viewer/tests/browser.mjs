@@ -21,25 +21,25 @@ export function written(design, ...given) {
     return path;
 }
 
-/** Draws in space by software, for want of a graphics card, or as `space` says. */
+/** Starts Chromium. It draws in space by software, because there may be no graphics card; `space` replaces the flag for this. */
 export const launch = (space = "--enable-unsafe-swiftshader") =>
     chromium.launch({
         executablePath: browser,
         args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", space],
     });
 
-/** Opens a page and waits until it is drawn; `said` collects errors and everything that it asked for from elsewhere. `prepare` has the page before it loads. */
+/** Opens a page and waits until it is drawn. `log` collects errors and warnings, and the address of every request but blob: and data:. `prepare` gets the page before it loads. */
 export async function open(running, path, options = {}, prepare = async () => {}) {
     const context = await running.newContext({ viewport: { width: 1400, height: 1000 }, ...options });
     const page = await context.newPage();
     await prepare(page);
-    const said = { errors: [], asked: [] };
-    page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver|swiftshader|WebGL-/i.test(message.text()) && said.errors.push(message.text()));
-    page.on("pageerror", (error) => said.errors.push(String(error)));
-    page.on("request", (request) => !/^(blob|data):/.test(request.url()) && said.asked.push(request.url()));
+    const log = { errors: [], requests: [] };
+    page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver|swiftshader|WebGL-/i.test(message.text()) && log.errors.push(message.text()));
+    page.on("pageerror", (error) => log.errors.push(String(error)));
+    page.on("request", (request) => !/^(blob|data):/.test(request.url()) && log.requests.push(request.url()));
     await page.goto(path.startsWith("http") ? path : pathToFileURL(path).href);
     await page.waitForSelector("html[data-ready]", { timeout: 60000 });
-    return { page, said, context };
+    return { page, log, context };
 }
 
 /** The motion that is shown once it is that of another pose than `before`. */

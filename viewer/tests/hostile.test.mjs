@@ -13,7 +13,7 @@ after(() => browser?.close());
 /** Short enough to stand whole in a message. */
 const TAG = `<img src=x onerror="window.ran = 1">`;
 
-/** Ends whatever it may stand in, and says so if any of it runs. */
+/** Closes every context in which it may stand; sets `window.ran` if any of it runs. */
 const HOSTILE = `</script></style></title></textarea>--><script>window.ran = "script"</script><img src=x onerror="window.ran = 'handler'">` +
     `<svg onload="window.ran = 'svg'"></svg>" onfocus="window.ran = 'attribute'" autofocus x='<!--<script>\u2028\${window.ran = 1}{{1}}&lt;`;
 
@@ -23,9 +23,9 @@ async function watched(path) {
         window.refused = [];
         document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
     };
-    const { page, said } = await open(browser, path, {}, (page) => page.addInitScript(watch));
+    const { page, log } = await open(browser, path, {}, (page) => page.addInitScript(watch));
     const state = () => page.evaluate(() => ({ ran: window.ran ?? null, refused: window.refused, strangers: document.querySelectorAll("img, svg, iframe, object, [onerror], [onfocus], [onload]").length }));
-    return { page, said, state };
+    return { page, log, state };
 }
 
 /** Every string in a value, as the path to it. */
@@ -33,7 +33,7 @@ const strings = (value, path = []) =>
     typeof value === "string" ? [path] : value !== null && typeof value === "object" ? Object.entries(value).flatMap(([key, inner]) => strings(inner, [...path, key])) : [];
 const put = (value, path, text) => path.slice(0, -1).reduce((inner, key) => inner[key], value)[path.at(-1)] = text;
 
-/** Whether the program makes a page of it; what it says if not. */
+/** Makes a page of a stored result. Returns null, or stderr if the program refuses. */
 function made(result, page) {
     try {
         execFileSync(program, ["report", result, "-o", page, "--force", "--leave-out", "slices,jams,window"], { cwd: root, encoding: "utf8", stdio: ["ignore", "ignore", "pipe"] });
@@ -71,13 +71,13 @@ test("a stored result with every string hostile: nothing of it runs, and its ver
     const version = refused.find(([place]) => place === "catchment");
     assert.match(version?.[1] ?? names.join(), /is not a version of catchment/);
 
-    const { page, said, state } = await watched(path);
+    const { page, log, state } = await watched(path);
     assert.equal(await page.locator("h1").textContent(), HOSTILE);
     // Whatever can be pressed is pressed.
     for (const button of await page.locator("button.jam, #window button").all()) await button.click();
     await page.locator("canvas.slice").first().hover();
     assert.deepEqual(await state(), { ran: null, refused: [], strangers: 0 });
-    assert.deepEqual(said.errors, []);
+    assert.deepEqual(log.errors, []);
 });
 
 test("a design whose names and files are hostile: nothing of them runs", async () => {
@@ -94,11 +94,11 @@ test("a design whose names and files are hostile: nothing of them runs", async (
         const [design, path] = [join(home, `hostile-${k}.toml`), join(home, `hostile-${k}.html`)];
         writeFileSync(design, text);
         catchment("report", design, "--free", "x,yaw", "--resolution", "12", ...(k ? ["--leave-out", "window"] : []), "-o", path);
-        const { page, said, state } = await watched(path);
+        const { page, log, state } = await watched(path);
         assert.equal(await page.locator("h1").textContent(), part);
         for (const button of await page.locator("button.jam, #window button").all()) await button.click();
         assert.deepEqual(await state(), { ran: null, refused: [], strangers: 0 });
-        assert.deepEqual(said.errors, []);
+        assert.deepEqual(log.errors, []);
     }
 });
 
@@ -115,7 +115,7 @@ test("a script that gets into a page does not run, from a disk and served", asyn
 
     const server = spawn(program, ["view", join(root, "designs/v-face.toml"), "--resolution", "8", "--leave-out", "window,jams"], { stdio: ["ignore", "pipe", "ignore"] });
     try {
-        const address = await new Promise((done) => server.stdout.once("data", (told) => done(String(told).trim())));
+        const address = await new Promise((done) => server.stdout.once("data", (output) => done(String(output).trim())));
         const { page, state } = await watched(address);
         await page.evaluate((html) => document.body.insertAdjacentHTML("beforeend", html), HOSTILE);
         await page.evaluate(() => document.body.append(Object.assign(document.createElement("script"), { textContent: "window.ran = 'inserted'" })));
@@ -130,7 +130,7 @@ test("messages of a served page are text", async () => {
     copyFileSync(join(root, "designs/v-face.toml"), design);
     const server = spawn(program, ["view", design, "--resolution", "8", "--leave-out", "window,jams"], { stdio: ["ignore", "pipe", "ignore"] });
     try {
-        const address = await new Promise((done) => server.stdout.once("data", (told) => done(String(told).trim())));
+        const address = await new Promise((done) => server.stdout.once("data", (output) => done(String(output).trim())));
         const { page, state } = await watched(address);
         writeFileSync(design, `[connector]\nfamily = ${JSON.stringify(TAG)}\n`);
         await page.locator("#again").click();

@@ -15,7 +15,7 @@ const running = await launch();
 
 /** Opens the page, shows a motion, and takes a picture. */
 async function picture(name, made, options, shows, paper = false) {
-    const { page, said, context } = await open(running, made(), options);
+    const { page, log, context } = await open(running, made(), options);
     const before = await page.evaluate(() => window.catchment.motion());
     await shows(page);
     await motion(page, before);
@@ -27,7 +27,7 @@ async function picture(name, made, options, shows, paper = false) {
         await page.waitForTimeout(1500);
     }
     await page.screenshot({ path: join(folder, `viewer-${name}.png`), fullPage: true });
-    console.log(name, said.errors, said.asked.length, await page.locator("#verdict").textContent());
+    console.log(name, log.errors, log.requests.length, await page.locator("#verdict").textContent());
     await context.close();
 }
 

@@ -1,4 +1,4 @@
-// The module of motions that pages carry, without a browser: it must be the library's, of which the program says what it is.
+// The module of motions that pages carry, run without a browser: its outcomes must be those of the program.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -35,9 +35,9 @@ async function module(path) {
         new Uint8Array(exports.memory.buffer, at, part.length).set(part);
         at += part.length;
     }
-    const said = () => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.output() >>> 0, exports.output_length()));
-    assert.equal(exports.load(parts[0].length, parts[1].length), 0, said());
-    return { design, trace: (pose, friction) => (exports.trace(...pose, friction), JSON.parse(said())) };
+    const outputText = () => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.output() >>> 0, exports.output_length()));
+    assert.equal(exports.load(parts[0].length, parts[1].length), 0, outputText());
+    return { design, trace: (pose, friction) => (exports.trace(...pose, friction), JSON.parse(outputText())) };
 }
 
 // Planar ones that hook under each other, grooves of a lip, play, and friction.

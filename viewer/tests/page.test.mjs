@@ -23,7 +23,7 @@ function alike(a, b, place = "") {
     } else assert.equal(a, b, place);
 }
 
-/** What the program says of the pose that a motion starts from. */
+/** The motion that the program computes from the same start. */
 function traced(design, { start }, ...given) {
     const pose = AXES.filter((axis) => start[axis] !== 0).map((axis) => `${axis}=${start[axis]}`).join(",") || "x=0";
     return JSON.parse(catchment("trace", `designs/${design}.toml`, "--pose", pose, "--json", ...given));
@@ -37,7 +37,7 @@ for (const [design, ...given] of [
     ["pyramid-stl", "--resolution", "4", "--leave-out", "window,jams"],
 ]) {
     test(`${design}: clicks play the motions of trace; no other request leaves the page`, async () => {
-        const { page, said } = await open(browser, written(design, ...given));
+        const { page, log } = await open(browser, written(design, ...given));
         let shown = await page.evaluate(() => window.catchment.motion());
         const outcomes = new Set();
         for (const [u, v] of [[0.6, 0.45], [0.85, 0.3], [0.16, 0.88], [0.4, 0.6]]) {
@@ -54,13 +54,13 @@ for (const [design, ...given] of [
         // The motion plays to its end by itself.
         await page.locator(".play").click();
         await page.waitForFunction(() => Number(document.querySelector(".time").value) > 0);
-        assert.deepEqual(said.errors, []);
-        assert.equal(said.asked.length, 1, said.asked.join());
+        assert.deepEqual(log.errors, []);
+        assert.equal(log.requests.length, 1, log.requests.join());
     });
 }
 
 test("sliders, pickers and keys act as labelled", async () => {
-    const { page, said } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+    const { page, log } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
     let shown = await page.evaluate(() => window.catchment.motion());
     await page.locator("#number-x").fill("0.2");
     await page.locator("#number-x").press("Enter");
@@ -101,11 +101,11 @@ test("sliders, pickers and keys act as labelled", async () => {
     await page.locator("canvas.slice").first().focus();
     await page.keyboard.press("ArrowRight");
     await page.waitForFunction(() => window.catchment.pose().some((value) => value !== 0));
-    assert.deepEqual(said.errors, []);
+    assert.deepEqual(log.errors, []);
 });
 
 test("a click onto the surface chooses a pose on the border of the set", async () => {
-    const { page, said } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+    const { page, log } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
     const canvas = page.locator("canvas.volume");
     const { width, height } = await canvas.boundingBox();
     await canvas.click({ position: { x: width / 2, y: height / 2 } });
@@ -116,13 +116,13 @@ test("a click onto the surface chooses a pose on the border of the set", async (
     // Beside the set nothing is chosen.
     await canvas.click({ position: { x: 3, y: 3 } });
     assert.deepEqual(await page.evaluate(() => window.catchment.pose()), pose);
-    assert.deepEqual(said.errors, []);
+    assert.deepEqual(log.errors, []);
 });
 
 test("a browser that draws nothing in space answers all the same", async () => {
     const flat = await launch("--disable-software-rasterizer");
     try {
-        const { page, said } = await open(flat, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+        const { page, log } = await open(flat, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
         assert.match(await page.locator("#halves .hint").textContent(), /draws nothing in space/);
         assert.equal(await page.locator("canvas.volume").count(), 0);
         const shown = await page.evaluate(() => window.catchment.motion());
@@ -130,7 +130,7 @@ test("a browser that draws nothing in space answers all the same", async () => {
         const { width, height } = await canvas.boundingBox();
         await canvas.click({ position: { x: 46 + 0.6 * (width - 56), y: 8 + 0.45 * (height - 42) } });
         alike(await motion(page, shown), traced("x-face-3d", await motion(page, shown)));
-        assert.deepEqual(said.errors.filter((error) => !/WebGL/.test(error)), []);
+        assert.deepEqual(log.errors.filter((error) => !/WebGL/.test(error)), []);
     } finally {
         await flat.close();
     }
@@ -156,7 +156,7 @@ test("the page reports the end of drawing, and prints dark on white", async () =
 test("slices show the cells of the result", async () => {
     const { page } = await open(browser, written("v-face", "--resolution", "30"));
     const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
-    const told = data.report.acceptance.outcomes;
+    const expected = data.report.acceptance.outcomes;
     const counted = await page.evaluate(() => {
         const canvas = document.querySelector("canvas.slice");
         const pen = canvas.getContext("2d");
@@ -174,7 +174,7 @@ test("slices show the cells of the result", async () => {
     });
     // Frames and numbers of jams cover some cells.
     assert.ok(counted.other < 60, JSON.stringify(counted));
-    for (const name of ["aligned", "jammed", "missed"]) assert.ok(Math.abs(counted[name] - told[name]) <= counted.other, `${name}: ${JSON.stringify(counted)} ${JSON.stringify(told)}`);
+    for (const name of ["aligned", "jammed", "missed"]) assert.ok(Math.abs(counted[name] - expected[name]) <= counted.other, `${name}: ${JSON.stringify(counted)} ${JSON.stringify(expected)}`);
 });
 
 test("a page of 30³ cells is small, as is one of five errors", () => {
@@ -185,7 +185,7 @@ test("a page of 30³ cells is small, as is one of five errors", () => {
     assert.ok(five < 2, `8⁵: ${five} MB`);
 });
 
-test("speed of a page of 30³ cells, printed", async (told) => {
+test("speed of a page of 30³ cells, printed", async (t) => {
     const page = await (await browser.newContext({ viewport: { width: 1400, height: 1000 } })).newPage();
     await page.addInitScript(() => {
         window.frozen = [];
@@ -195,7 +195,7 @@ test("speed of a page of 30³ cells, printed", async (told) => {
     await page.waitForSelector("html[data-ready]", { timeout: 120000 });
     const longest = await page.evaluate(() => Math.max(0, ...window.frozen));
     const answers = await page.evaluate(() => Math.round(performance.getEntriesByName("answers")[0].startTime));
-    told.diagnostic(`30³: answers after ${answers} ms (1 000 are asked for), longest freeze ${longest} ms (200)`);
+    t.diagnostic(`30³: answers after ${answers} ms (target 1 000), longest freeze ${longest} ms (target 200)`);
     assert.ok(Number.isFinite(longest) && answers > 0);
 });
 
@@ -232,8 +232,8 @@ test("a served page recomputes a changed design and reports its defects", async 
     design("before");
     const server = spawn(program, ["view", path, "--resolution", "20", "--leave-out", "window,jams"], { stdio: ["ignore", "pipe", "ignore"] });
     try {
-        const address = await new Promise((done) => server.stdout.once("data", (told) => done(String(told).trim())));
-        const { page, said } = await open(browser, address);
+        const address = await new Promise((done) => server.stdout.once("data", (output) => done(String(output).trim())));
+        const { page, log } = await open(browser, address);
         assert.equal(await page.locator("h1").textContent(), "before");
         design("after");
         await page.locator(".again input").fill("26");
@@ -244,8 +244,8 @@ test("a served page recomputes a changed design and reports its defects", async 
         await page.locator("#again").click();
         await page.waitForFunction(() => /connector/.test(document.querySelector(".again output").textContent));
         assert.equal(await page.locator("h1").textContent(), "after");
-        assert.deepEqual(said.errors, []);
-        assert.ok(said.asked.every((url) => url.startsWith(new URL(address).origin)), said.asked.join());
+        assert.deepEqual(log.errors, []);
+        assert.ok(log.requests.every((url) => url.startsWith(new URL(address).origin)), log.requests.join());
     } finally {
         server.kill();
     }

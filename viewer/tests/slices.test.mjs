@@ -1,4 +1,4 @@
-// What slices, the surface and the sentence below the halves say is what the pictures and the numbers of the same result say.
+// Slices, the surface and the sentence below the halves must agree with the pictures and the numbers of the same result.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -64,9 +64,9 @@ for (const [design, ...given] of [
 ]) {
     test(`${design} ${given.join(" ")}: slices at zero show what its picture shows`, async () => {
         const { path, svg } = stored(design, ...given);
-        const { page, said } = await open(browser, path, { colorScheme: "light" });
+        const { page, log } = await open(browser, path, { colorScheme: "light" });
         // Before the test reads pixels, of which the browser warns.
-        assert.deepEqual(said.errors, []);
+        assert.deepEqual(log.errors, []);
         const maps = await ofPicture(page, svg);
         assert.equal(maps.length, await page.locator("canvas.slice").count());
         for (const [number, { size, cells }] of maps.entries()) {
@@ -131,9 +131,9 @@ test("a rest that looks docked gives the reason why it is not", async () => {
     const shown = await page.evaluate(() => window.catchment.motion());
     await page.evaluate(() => window.catchment.choose([0, 0, 0, 0, Math.PI / 2 - 0.2]));
     assert.equal((await motion(page, shown)).outcome, "jammed");
-    const said = await page.locator("#verdict").textContent();
-    assert.match(said, /at the mated height\. It lies as deep as docked, but turned by 90°, which the design does not count as mated; symmetry = 4 in \[alignment\] would count it\./);
-    assert.doesNotMatch(said, /0\.000/);
+    const verdict = await page.locator("#verdict").textContent();
+    assert.match(verdict, /at the mated height\. It lies as deep as docked, but turned by 90°, which the design does not count as mated; symmetry = 4 in \[alignment\] would count it\./);
+    assert.doesNotMatch(verdict, /0\.000/);
     const card = await page.locator("#jams").textContent();
     assert.match(card, /rests at the mated height with .*yaw −?90°/);
     assert.match(card, /symmetry = 4/);
@@ -154,7 +154,7 @@ test("the rule of the seat that a rest breaks is named", async () => {
     const units = new Units(design());
     const why = (pose, above, ...given) => reason(pose, above, units, design(...given));
     const [quarter, depth] = [Math.PI / 2, 2e-3];
-    assert.equal(why([0.3, 0, 0, 0, 0], 0.2), "", "its height says it");
+    assert.equal(why([0.3, 0, 0, 0, 0], 0.2), "", "the height alone explains it");
     assert.equal(why([0.3, 0, 0, 0, 0], 2 * depth), "docked is up to 0.1 mm above it ([docked] depth)");
     assert.match(why([0, 0, 0, 0, 0], -0.01), /deeper than the mated pose/);
     assert.match(why([0.02, 0, 0, 0, 0], 0, [0.01, null, null, null, null]), /^x is off by more than the 0.5 mm that count as docked \(\[docked\] x\)$/);
