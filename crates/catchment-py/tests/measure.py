@@ -2,7 +2,7 @@
 
     python crates/catchment-py/tests/measure.py [POSES] [--ratchet]
 
-With --ratchet it fails where a figure is far from what is asked for (an answer in 1 s, 0.95 of the program's rate): in seconds of the processor, which a busy
+With --ratchet it fails if a figure is far from its target (an answer in 1 s, 0.95 of the program's rate): in seconds of the processor, which a busy
 machine stretches little, and with so much room that a slow one passes.
 
 Seconds are of the processor (of all threads), so that a busy machine counts as an idle one; in brackets those of the clock.
@@ -63,8 +63,8 @@ def main() -> None:
             ends = problem.follow_many(poses, threads=2)
             own, own_clock = time.process_time() - before, time.perf_counter() - started
             with open(out, newline="") as file:
-                told = [row["outcome"] for row in csv.DictReader(file)]
-        assert told == [catchment.OUTCOMES[int(code)] for code in ends.outcomes]
+                outcomes = [row["outcome"] for row in csv.DictReader(file)]
+        assert outcomes == [catchment.OUTCOMES[int(code)] for code in ends.outcomes]
         print(
             f"{name:10} {count} poses: program {program:6.2f} s ({program_clock:.2f}), "
             f"follow_many {own:6.2f} s ({own_clock:.2f}): {program / own:.2f} of its rate"

@@ -35,22 +35,22 @@ def test_a_sweep_survives_a_worker(client: Client, tmp_path: Path) -> None:
     problem = catchment.load("designs/v-face.toml")
     shares: list[float] = []
 
-    def told(share: float, stage: str) -> None:
+    def on_progress(share: float, stage: str) -> None:
         if not shares:
             kill_one(client)
         shares.append(share)
 
     report = catchment.sweep(
-        problem, OVER, resolution=61, samples=2000, client=client, output=tmp_path / "out", progress=told
+        problem, OVER, resolution=61, samples=2000, client=client, output=tmp_path / "out", progress=on_progress
     )
     alone = catchment.sweep(problem, OVER, resolution=61, samples=2000)
     assert bytes_of(report.json) == bytes_of(alone.json)
     over = ["--over", "aspect_ratio=0.25,0.5,1,2", "--over", "cor=-0.5,0.0,0.5"]
-    told_by_program = program("sweep", "designs/v-face.toml", *over, "--resolution", 61, "--samples", 2000, "--json")
-    ours, theirs = json.loads(report.json), json.loads(told_by_program)
+    by_program = program("sweep", "designs/v-face.toml", *over, "--resolution", 61, "--samples", 2000, "--json")
+    ours, theirs = json.loads(report.json), json.loads(by_program)
     assert [trial["figures"] for trial in ours["designs"]] == [trial["figures"] for trial in theirs["designs"]]
     assert bytes_of((tmp_path / "out" / "report.json").read_text()) == bytes_of(alone.json)
-    # Every design was told once by the cluster; the report of the whole may tell more.
+    # The cluster reports progress once per design; the report of the whole sweep may add calls.
     assert len(shares) >= 12
 
 
@@ -88,12 +88,12 @@ def test_parts_of_one_run_survive_a_worker(client: Client, what: dict[str, int])
     problem = catchment.load("designs/pyramid-stl.toml")
     killed: list[bool] = []
 
-    def told(share: float, stage: str) -> None:
+    def on_progress(share: float, stage: str) -> None:
         if stage == "parts" and not killed:
             killed.append(True)
             kill_one(client)
 
-    there = problem.run(method="descent", samples=None, client=client, parts=9, progress=told, **what)  # type: ignore[arg-type]
+    there = problem.run(method="descent", samples=None, client=client, parts=9, progress=on_progress, **what)  # type: ignore[arg-type]
     here = problem.run(method="descent", **what)  # type: ignore[arg-type]
     assert killed and bytes_of(there.json) == bytes_of(here.json)
     assert (there.outcomes == here.outcomes).all()

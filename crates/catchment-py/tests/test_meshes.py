@@ -57,7 +57,7 @@ def test_a_missing_placement_is_proposed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("mesh", "said"),
+    ("mesh", "message"),
     [
         (3, "trimesh or"),
         ((np.zeros((4, 2)), np.zeros((1, 3), int)), r"\(n, 3\)"),
@@ -66,8 +66,8 @@ def test_a_missing_placement_is_proposed() -> None:
         ((np.zeros((4, 3)), np.full((1, 3), 9)), "from 0 to 3"),
     ],
 )
-def test_an_invalid_mesh_is_reported(mesh: object, said: str) -> None:
-    with pytest.raises(catchment.ArgumentError, match=f"fixed: .*{said}"):
+def test_an_invalid_mesh_is_reported(mesh: object, message: str) -> None:
+    with pytest.raises(catchment.ArgumentError, match=f"fixed: .*{message}"):
         catchment.Problem(fixed=mesh, moving=mesh, width=1.0)
 
 

@@ -53,11 +53,11 @@ def test_a_run_is_that_of_the_program(design: str, options: list[str], arguments
 def test_changed_designs_agree_with_the_program() -> None:
     path = "designs/v-face.toml"
     options = ["--cor", "0.3", "--aspect-ratio", "0.7", "--rotation-length", "0.4", "--resolution", "21"]
-    told = bytes_of(program("run", path, "--json", *options))
+    printed = bytes_of(program("run", path, "--json", *options))
     problem = catchment.load(path, cor=0.3, aspect_ratio=0.7, rotation_length=0.4)
-    assert bytes_of(problem.run(resolution=21).json) == told
+    assert bytes_of(problem.run(resolution=21).json) == printed
     step_by_step = catchment.load(path).replace(cor=0.3).replace(aspect_ratio=0.7, rotation_length=0.4)
-    assert bytes_of(step_by_step.run(resolution=21).json) == told
+    assert bytes_of(step_by_step.run(resolution=21).json) == printed
     assert step_by_step == problem != catchment.load(path)
 
 
@@ -80,19 +80,19 @@ def test_final_poses_agree_with_the_program(method: str, count: int, tmp_path: o
         rows = csv.writer(file)
         rows.writerow(["x", "y", "roll", "pitch", "yaw"])
         rows.writerows([[repr(float(value)) for value in pose] for pose in poses])
-    told = json.loads(program("outcome", "designs/x-face-3d.toml", "--poses", table, "--method", method, "--json"))
+    report = json.loads(program("outcome", "designs/x-face-3d.toml", "--poses", table, "--method", method, "--json"))
     ends = problem.follow_many(poses, method=method)
-    assert [catchment.OUTCOMES[code] for code in ends.outcomes] == [pose["outcome"] for pose in told["poses"]]
-    finals = [[pose["final"][axis] for axis in ("x", "y", "roll", "pitch", "yaw")] for pose in told["poses"]]
+    assert [catchment.OUTCOMES[code] for code in ends.outcomes] == [pose["outcome"] for pose in report["poses"]]
+    finals = [[pose["final"][axis] for axis in ("x", "y", "roll", "pitch", "yaw")] for pose in report["poses"]]
     assert np.array_equal(ends.errors, np.array(finals))
     assert len(set(ends.outcomes)) > 1
-    heights = [np.nan if pose["final_height_d"] is None else pose["final_height_d"] for pose in told["poses"]]
+    heights = [np.nan if pose["final_height_d"] is None else pose["final_height_d"] for pose in report["poses"]]
     assert np.array_equal(ends.heights, np.array(heights), equal_nan=True)
     one = problem.follow(poses[7], method=method)
     assert one.outcome == catchment.OUTCOMES[ends.outcomes[7]] and np.array_equal(one.error, ends.errors[7])
-    assert one.docks == ends.docks[7] and one.height == told["poses"][7]["final_height_d"]
+    assert one.docks == ends.docks[7] and one.height == report["poses"][7]["final_height_d"]
     touching = [{"fixed": c.fixed, "moving": c.moving, "point_d": list(c.point)} for c in one.contacts]
-    assert touching == told["poses"][7]["contacts"]
+    assert touching == report["poses"][7]["contacts"]
 
 
 def test_poses_are_read_where_they_lie() -> None:
@@ -146,8 +146,8 @@ def test_studies_are_those_of_the_program() -> None:
 def test_two_acceptances_beside_each_other(tmp_path: object) -> None:
     path, other = "designs/v-face.toml", "designs/x-face.toml"
     found = catchment.compare(catchment.load(path), methods="descent,flood", resolution=21)
-    told = program("compare", path, "--methods", "descent,flood", "--resolution", 21, "--json")
-    assert bytes_of(found.json) == bytes_of(told)
+    printed = program("compare", path, "--methods", "descent,flood", "--resolution", 21, "--json")
+    assert bytes_of(found.json) == bytes_of(printed)
     two = catchment.compare(catchment.load(path), catchment.load(other), resolution=21)
     assert bytes_of(two.json) == bytes_of(program("compare", path, other, "--resolution", 21, "--json"))
     stored = str(tmp_path / "out.zarr")  # type: ignore[operator]
@@ -167,8 +167,8 @@ def test_a_sweep_is_that_of_the_program(tmp_path: object) -> None:
         catchment.load(path), {"aspect_ratio": [0.5, 1, 2], "cor": "0..1/2"}, resolution=15, samples=200, output=out
     )
     over = ["--over", "aspect_ratio=0.5,1,2", "--over", "cor=0..1/2", "--resolution", 15, "--samples", 200]
-    told = bytes_of(program("sweep", path, *over, "--json"))
-    assert bytes_of(report.json) == told == bytes_of((out / "report.json").read_text())
+    printed = bytes_of(program("sweep", path, *over, "--json"))
+    assert bytes_of(report.json) == printed == bytes_of((out / "report.json").read_text())
     assert report.csv == (out / "sweep.csv").read_text()
     assert len(list(csv.reader(io.StringIO(report.csv)))) == 7
     assert not (tmp_path / "sweep.parts").exists()  # type: ignore[operator]

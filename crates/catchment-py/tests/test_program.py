@@ -33,7 +33,7 @@ def test_the_wheel_puts_the_command_on_the_path() -> None:
     assert subprocess.run([own, *unmet], capture_output=True, check=False).returncode == 1
 
 
-#: More work than a test has time for; says when it has begun.
+#: More work than a test has time for; prints a line when it has begun.
 LONG = """
 import catchment
 problem = catchment.load("designs/x-face-3d.toml")
@@ -68,9 +68,9 @@ def test_ctrl_c_ends_a_computation(what: str) -> None:
         # It has begun when it listens to the signal by itself.
         listens(process.pid)
     process.send_signal(signal.SIGINT)
-    said, complaint = process.communicate(timeout=120)
+    output, complaint = process.communicate(timeout=120)
     if what == "python":
-        assert said.endswith("stopped\n") and process.returncode == 0, complaint
+        assert output.endswith("stopped\n") and process.returncode == 0, complaint
     else:
         assert process.returncode == 130 and "interrupted" in complaint, complaint
 
@@ -101,9 +101,9 @@ def test_a_fork_is_refused_and_does_not_wait_for_ever(tmp_path: Path) -> None:
     script = tmp_path / "forked.py"
     script.write_text(FORKED)
     words = [sys.executable, "-W", "ignore::DeprecationWarning", str(script)]
-    said = subprocess.run(words, capture_output=True, text=True, check=True, cwd=ROOT, timeout=300).stdout.splitlines()
-    assert len(said) == 3 and said[2] == "aligned", said
-    assert all("was forked" in line and 'multiprocessing.get_context("spawn")' in line for line in said[:2]), said
+    lines = subprocess.run(words, capture_output=True, text=True, check=True, cwd=ROOT, timeout=300).stdout.splitlines()
+    assert len(lines) == 3 and lines[2] == "aligned", lines
+    assert all("was forked" in line and 'multiprocessing.get_context("spawn")' in line for line in lines[:2]), lines
 
 
 def test_a_problem_out_of_a_pickle_is_built_when_it_is_needed() -> None:
@@ -127,7 +127,7 @@ def listens(process: int) -> None:
 
 
 def thread_names(process: int) -> Iterator[str]:
-    """The names of a process's threads: of those that have not ended when they are asked."""
+    """The names of a process's threads, without threads that end before their name is read."""
     for task in Path(f"/proc/{process}/task").iterdir():
         with contextlib.suppress(FileNotFoundError, ProcessLookupError):
             yield task.joinpath("comm").read_text().strip()
@@ -158,8 +158,8 @@ def test_types_are_whole() -> None:
     api = pytest.importorskip("mypy.api")
     # From its source: what is beside an installed package is not judged.
     source = str(ROOT / "crates" / "catchment-py" / "python" / "catchment")
-    said, complaint, code = api.run(["--strict", "--no-incremental", "--cache-dir", os.devnull, source])
-    assert code == 0, said + complaint
+    output, complaint, code = api.run(["--strict", "--no-incremental", "--cache-dir", os.devnull, source])
+    assert code == 0, output + complaint
     assert (PACKAGE / "py.typed").exists()
 
 

@@ -1,4 +1,4 @@
-"""What is refused says where, why, and what helps."""
+"""Every refusal states its place, its reason and advice."""
 
 import json
 import pickle
@@ -40,7 +40,7 @@ def test_a_missing_file_is_reported() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ({"method": "flod"}, "flood"),
         ({"settings": {"frition": 1}}, "frition"),
@@ -72,8 +72,8 @@ def test_a_missing_file_is_reported() -> None:
         ({"error_sigma": {"x": "100%"}}, "error_sigma: x: `100%` is not a number with a unit"),
     ],
 )
-def test_arguments_are_refused_before_anything_is_computed(arguments: dict[str, object], said: str) -> None:
-    with pytest.raises(catchment.ArgumentError, match=said) as caught:
+def test_arguments_are_refused_before_anything_is_computed(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(catchment.ArgumentError, match=message) as caught:
         catchment.load("designs/v-face.toml").run(**arguments)  # type: ignore[arg-type]
     assert isinstance(caught.value, (catchment.Error, ValueError))
 
@@ -84,8 +84,8 @@ def test_poses_that_cannot_be_tried_are_refused_by_their_rows() -> None:
     poses[1, 4], poses[2, 0], poses[3, 3] = 0.1, 200.0, np.nan
     with pytest.raises(catchment.ArgumentError) as caught:
         problem.follow_many(poses)
-    said = [found.message for found in caught.value.diagnostics]
-    assert [text.split(":")[0].split(" holds")[0] for text in said] == ["row 1", "row 2", "row 3"]
+    messages = [found.message for found in caught.value.diagnostics]
+    assert [text.split(":")[0].split(" holds")[0] for text in messages] == ["row 1", "row 2", "row 3"]
     for wrong in (np.zeros(5), np.zeros((3, 4))):
         with pytest.raises(catchment.ArgumentError, match="shape"):
             problem.follow_many(wrong)
@@ -159,8 +159,8 @@ def test_no_exception_steers_a_terminal() -> None:
             problem.run(**arguments)  # type: ignore[arg-type]
         caught.append(error.value)
     for one in caught:
-        said = [str(one), repr(one), *(part or "" for found in one.diagnostics for part in found[:2])]
-        assert not any(c in "".join(said) for c in "\x1b\x9b\u202e"), said
+        texts = [str(one), repr(one), *(part or "" for found in one.diagnostics for part in found[:2])]
+        assert not any(c in "".join(texts) for c in "\x1b\x9b\u202e"), texts
 
 
 def toml(text: str) -> str:

@@ -140,9 +140,9 @@ def test_a_pickle_needs_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def test_progress_is_reported_and_may_be_a_bar(capfd: pytest.CaptureFixture[str]) -> None:
-    told: list[tuple[float, str]] = []
-    catchment.load("designs/x-face.toml").run(progress=lambda share, stage: told.append((share, stage)))
-    assert told and all(0.0 <= share <= 1.0 and stage for share, stage in told)
+    calls: list[tuple[float, str]] = []
+    catchment.load("designs/x-face.toml").run(progress=lambda share, stage: calls.append((share, stage)))
+    assert calls and all(0.0 <= share <= 1.0 and stage for share, stage in calls)
     catchment.load("designs/v-face.toml").run(resolution=20, progress=True)
     assert "%" in capfd.readouterr().err
 

@@ -30,5 +30,5 @@ def test_step_files_are_the_same_from_both_sides(tmp_path: Path, monkeypatch: py
     # Its flat end, radius 3, slides off the mouth, radius 9.2, up to an offset of 6.2 (tests/step_meshes.py).
     assert problem.follow("x=5 mm").docks and not problem.follow("x=7.5 mm").docks
     result = problem.run(resolution=8, samples=50)
-    told = program("run", "design.toml", "--resolution", 8, "--samples", 50, "--json", cwd=tmp_path)
-    assert bytes_of(result.json) == bytes_of(told)
+    printed = program("run", "design.toml", "--resolution", 8, "--samples", 50, "--json", cwd=tmp_path)
+    assert bytes_of(result.json) == bytes_of(printed)

@@ -54,7 +54,7 @@ class Expected(TypedDict):
     error_uniform: str | None
 
 
-class Asked(TypedDict):
+class Requested(TypedDict):
     """Arguments of a run."""
 
     method: str

@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arguments import Asked, Changes, Expected, How
+from ._arguments import Requested, Changes, Expected, How
 
 __all__ = ["Answer", "Problem", "Rendered", "Sweep", "__version__", "compare", "methods", "program", "read_text"]
 
@@ -55,7 +55,7 @@ class Problem:
     def picture(self) -> tuple[str, bytes]:
         """Both halves as SVG and PNG."""
 
-    def plan(self, requested: Asked, expected: Expected) -> str:
+    def plan(self, requested: Requested, expected: Expected) -> str:
         """The arguments as a run in JSON. Raises if the run is impossible."""
 
     def run(self, run: str, how: How) -> Answer:
@@ -162,7 +162,7 @@ class Sweep:
     """The designs of a sweep, parsed and not yet computed."""
 
     def __new__(
-        cls, problem: Problem, over: list[str], requested: Asked, expected: Expected, output: str | None
+        cls, problem: Problem, over: list[str], requested: Requested, expected: Expected, output: str | None
     ) -> Sweep: ...
     def __len__(self) -> int: ...
     def missing(self) -> list[int]:

@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from . import _catchment
-from ._arguments import Asked, Expected, How, how
+from ._arguments import Requested, Expected, How, how
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,14 +30,14 @@ PARTS_PER_THREAD = 4
 #: Retries of a task whose worker died: if a part ends every worker, the part is at fault.
 RETRIES = 5
 
-Plan = tuple[list[str], Asked, Expected, "str | None"]
+Plan = tuple[list[str], Requested, Expected, "str | None"]
 
 
 @lru_cache(maxsize=4)
 def _sweep(problem: Problem, plan: str) -> _catchment.Sweep:
     """The sweep on this worker, parsed once. The plan includes the text of the design, because equal problems may differ in text."""
-    axes, asked, expected = json.loads(plan)[:3]
-    return _catchment.Sweep(problem._native, axes, asked, expected, None)
+    axes, requested, expected = json.loads(plan)[:3]
+    return _catchment.Sweep(problem._native, axes, requested, expected, None)
 
 
 def _design(problem: Problem, plan: str, number: int) -> tuple[str, str] | None:
@@ -82,8 +82,8 @@ def designs(
     there = _there(client, problem)
     found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
     futures: dict[Any, Any] = {}
-    for which, ((axes, asked, expected, _), sweep) in enumerate(zip(plans, sweeps)):
-        plan = json.dumps([axes, asked, expected, problem._path, problem._text, problem._changes])
+    for which, ((axes, requested, expected, _), sweep) in enumerate(zip(plans, sweeps)):
+        plan = json.dumps([axes, requested, expected, problem._path, problem._text, problem._changes])
         for number in sweep.missing():
             future = client.submit(_design, there, plan, number, pure=False, retries=RETRIES)
             futures[future] = which

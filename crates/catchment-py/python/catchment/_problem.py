@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from . import _catchment, _meshes
 from ._arguments import (
     AXES,
-    Asked,
+    Requested,
     Cells,
     Changes,
     Errors,
@@ -297,7 +297,7 @@ class Problem:
         limit in bytes; progress is True or a callback that takes the completed share and the stage.
         Ctrl-C ends the run with KeyboardInterrupt.
         """
-        asked = Asked(
+        requested = Requested(
             method=method,
             settings=as_json(settings),
             resolution=cells(resolution),
@@ -311,7 +311,7 @@ class Problem:
             jams=jams,
             window=window,
         )
-        plan = self._native.plan(asked, _expected(error_sigma, error_uniform))
+        plan = self._native.plan(requested, _expected(error_sigma, error_uniform))
         run_how = how(threads, memory, progress)
         if client is not None:
             from . import _cluster

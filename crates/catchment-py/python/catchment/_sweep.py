@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from . import _catchment
 from ._arguments import (
-    Asked,
+    Requested,
     Cells,
     Errors,
     Progress,
@@ -105,7 +105,7 @@ def sweep(
         os.makedirs(place, exist_ok=True)
     plans = []
     for number in seeds:
-        asked = Asked(
+        requested = Requested(
             method=method,
             settings=as_json(settings),
             resolution=cells(resolution),
@@ -120,7 +120,7 @@ def sweep(
             window=False,
         )
         own = place if place is None or isinstance(seed, int) else os.path.join(place, f"seed-{number}")
-        plans.append((axes, asked, expected, own))
+        plans.append((axes, requested, expected, own))
     sweeps = [_catchment.Sweep(problem._native, *plan) for plan in plans]
     run_how = how(threads, memory, progress)
     found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
