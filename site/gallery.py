@@ -116,7 +116,7 @@ def keep_window(window: dict) -> dict:
 ENDS = {"jammed": "jams", "missed": "misses", "undecided": "could not be followed to its end"}
 
 
-def told(value: float, axis: str, width: float, unit: str) -> str:
+def plus_minus(value: float, axis: str, width: float, unit: str) -> str:
     """A length in the unit of the design, an angle in degrees."""
     if axis in ("x", "y"):
         return f"±{value * width:.3g} {unit}"
@@ -138,9 +138,9 @@ def entry(stem: str, design: Path, found: dict) -> str:
     rows = []
     for axis, (least, reaches) in run["alone"].items():
         at_border = "*" if reaches else ""
-        whole = told(window["half_widths"][axis], axis, width, unit)
-        tried = told(run["box"][axis], axis, width, unit)
-        rows.append(f"| {axis} | {tried} | {told(least, axis, width, unit)}{at_border} | {whole} |")
+        whole = plus_minus(window["half_widths"][axis], axis, width, unit)
+        tried = plus_minus(run["box"][axis], axis, width, unit)
+        rows.append(f"| {axis} | {tried} | {plus_minus(least, axis, width, unit)}{at_border} | {whole} |")
     low, high = (100 * bound / run["measure"] for bound in run["sum_ci95"])
     counts = run["outcomes"]
     share = lambda name: f"{100 * counts[name] / run['cells']:.0f} %"
@@ -148,7 +148,7 @@ def entry(stem: str, design: Path, found: dict) -> str:
     ends = "" if worst is None else (
         f" The nearest pose beyond it {ENDS[worst]}; the tightest error is {window['tightest']}.")
     warnings = "".join(f"\n\n    {' '.join(warning.split())}" for warning in run["warnings"])
-    said = f"\n\n!!! note \"What the program adds\"{warnings}" if warnings else ""
+    note = f"\n\n!!! note \"What the program adds\"{warnings}" if warnings else ""
     files = "".join(f", [{name}](../designs/gallery/{name})" for name in named(text))
     return f"""## {run["name"][0].upper() + run["name"][1:]}
 
@@ -163,7 +163,7 @@ def entry(stem: str, design: Path, found: dict) -> str:
 {chr(10).join(rows)}
 
 {100 * run["sum"] / run["measure"]:.1f} % of the error box docks ({low:.1f} to {high:.1f} %, 95 %); of its cells {share("jammed")} jam and {share("missed")} miss. *All at once* up to the last column all of {f'{window["motions"]:,}'.replace(",", " ")} random poses docked: at
-most {100 * window["failing_at_most"]:.1f} % of the poses in there fail, 95 %.{ends}{said}
+most {100 * window["failing_at_most"]:.1f} % of the poses in there fail, 95 %.{ends}{note}
 
 [The design file](../designs/gallery/{stem}.toml){files}
 
@@ -177,10 +177,10 @@ most {100 * window["failing_at_most"]:.1f} % of the poses in there fail, 95 %.{e
 
 HEAD = """# Gallery
 
-How much do connectors that you know forgive? Fifteen of them, each with its design file, its picture and its numbers. This page is written by `site/gallery.py` from what the program
-said: `run` with 24 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where it says so;
+How much do connectors that you know forgive? Fifteen of them, each with its design file, its picture and its numbers. `site/gallery.py` writes this page from the program's
+output: `run` with 24 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where the source reads *typical*;
 none of them is a maker's drawing. Everything here is without friction and without play in the approach: what docks here may stick in the field
-([friction](friction.md)). A star says that the error reaches the border of what was tried; *alone* means that the other errors are zero. All of them are in `designs/gallery/`. Terms: [glossary](glossary.md):
+([friction](friction.md)). A star marks an error that reaches the border of what was tried; *alone* means that the other errors are zero. All of them are in `designs/gallery/`. Terms: [glossary](glossary.md):
 
 ```console
 $ catchment run designs/gallery/peg-in-hole.toml -o out

@@ -206,8 +206,8 @@ def check(program: str, drawn_already: Path | None) -> None:
     names = sorted(there & set(known))
     for name in names:
         already = drawn_already and drawn_already / f"{name}.png"
-        if said := doubt(program, name, known[name], stored.get(name, {}), already):
-            wrong.append(f"docs/{name}.png {said}: python3 site/pictures.py {program} {name}")
+        if reason := doubt(program, name, known[name], stored.get(name, {}), already):
+            wrong.append(f"docs/{name}.png {reason}: python3 site/pictures.py {program} {name}")
     if wrong:
         raise SystemExit("\n".join(wrong))
     print(f"pictures: {len(names)} are as the program draws them")

@@ -92,8 +92,8 @@ def phrases(lines):
 
 def main(arguments):
     check = "--check" in arguments
-    asked = [Path(name).resolve() for name in arguments if not name.startswith("-")]
-    shown = asked or pages()
+    requested = [Path(name).resolve() for name in arguments if not name.startswith("-")]
+    shown = requested or pages()
     total, counts, guides, you = 0, dict.fromkeys(LIMITS, 0), 0, 0
     failures = []
     if not check:
@@ -108,7 +108,7 @@ def main(arguments):
             found = uses(lines, pattern)
             counts[label] += len(found)
             row.append(1000 * len(found) / max(number, 1))
-            if asked and not check:
+            if requested and not check:
                 for place, line in found:
                     print(f"  {name}:{place}: {label}: {line[:160]}")
         addressed = len(uses(lines, r"you|your|yours|yourself"))
@@ -126,7 +126,7 @@ def main(arguments):
     rates = {label: 1000 * count / max(total, 1) for label, count in counts.items()}
     if not check:
         print(f"{'all':40} {total:6} " + " ".join(f"{rate:9.2f}" for rate in rates.values()) + f" {1000 * you / max(guides, 1):9.2f} (guides)")
-    if not asked:
+    if not requested:
         failures += [f"“{label}” stands {rates[label]:.2f} times in 1 000 words, at most {most} may" for label, (most, _) in LIMITS.items() if rates[label] > most]
         if 1000 * you / max(guides, 1) < YOU:
             failures.append(f"the guides address the reader {1000 * you / max(guides, 1):.2f} times in 1 000 words, at least {YOU} is wanted")

@@ -35,12 +35,12 @@ class Module:
         self.lines = text.splitlines()
         self.body = ast.parse(text).body
 
-    def said_above(self, node: ast.stmt) -> str:
-        at, said = node.lineno - 2, []
+    def comment_above(self, node: ast.stmt) -> str:
+        at, comment = node.lineno - 2, []
         while at >= 0 and self.lines[at].strip().startswith("#:"):
-            said.insert(0, self.lines[at].strip()[2:].strip())
+            comment.insert(0, self.lines[at].strip()[2:].strip())
             at -= 1
-        return " ".join(said)
+        return " ".join(comment)
 
 
 def signature(name: str, function: Function, bound: bool, made: bool = False) -> str:
@@ -97,8 +97,8 @@ def is_property(function: Function) -> bool:
 
 
 def of_function(name: str, function: Function, level: str, bound: bool = False) -> str:
-    said = markdown(ast.get_docstring(function) or "", arguments(function))
-    return f"{level} {name}\n\n```python\n{signature(name, function, bound)}\n```\n\n{said}\n"
+    description = markdown(ast.get_docstring(function) or "", arguments(function))
+    return f"{level} {name}\n\n```python\n{signature(name, function, bound)}\n```\n\n{description}\n"
 
 
 def attributes(module: Module, kind: ast.ClassDef) -> list[tuple[str, str, str]]:
@@ -107,13 +107,13 @@ def attributes(module: Module, kind: ast.ClassDef) -> list[tuple[str, str, str]]
     found = []
     for node in kind.body:
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            found.append((node.target.id, ast.unparse(node.annotation), module.said_above(node)))
+            found.append((node.target.id, ast.unparse(node.annotation), module.comment_above(node)))
         elif isinstance(node, ast.FunctionDef) and node.name == "__init__":
             for step in ast.walk(node):
                 target = step.target if isinstance(step, ast.AnnAssign) else step.targets[0] if isinstance(step, ast.Assign) else None
-                if isinstance(target, ast.Attribute) and (said := module.said_above(step)):
+                if isinstance(target, ast.Attribute) and (comment := module.comment_above(step)):
                     of = ast.unparse(step.annotation) if isinstance(step, ast.AnnAssign) else ""
-                    found.append((target.attr, of, said))
+                    found.append((target.attr, of, comment))
         elif isinstance(node, ast.FunctionDef) and is_property(node):
             of = ast.unparse(node.returns) if node.returns else ""
             found.append((node.name, of, " ".join((ast.get_docstring(node) or "").split())))
@@ -124,13 +124,13 @@ def of_class(module: Module, kind: ast.ClassDef) -> str:
     methods = [node for node in kind.body if isinstance(node, ast.FunctionDef)]
     made = next((node for node in methods if node.name == "__init__"), None)
     bases = [ast.unparse(base) for base in kind.bases if ast.unparse(base) != "NamedTuple"]
-    said = markdown(ast.get_docstring(kind) or "", arguments(made) if made else set())
+    description = markdown(ast.get_docstring(kind) or "", arguments(made) if made else set())
     text = f"### {kind.name}\n\n"
     if kind.name == "Problem" and made:
         text += f"```python\n{signature(kind.name, made, bound=True, made=True)}\n```\n\n"
     elif bases:
         text += f"*A kind of {', '.join(f'`{base}`' for base in bases)}.*\n\n"
-    text += said + "\n"
+    text += description + "\n"
     if rows := attributes(module, kind):
         text += "\n| attribute | type | description |\n|---|---|---|\n"
         for name, of, words in rows:
@@ -169,10 +169,10 @@ def page(made: str) -> str:
             elif isinstance(node, ast.FunctionDef):
                 text += "\n" + of_function(name, node, "###")
             else:
-                text += f"\n### {name}\n\n```python\n{ast.unparse(node)}\n```\n\n{module.said_above(node)}\n"
+                text += f"\n### {name}\n\n```python\n{ast.unparse(node)}\n```\n\n{module.comment_above(node)}\n"
     text += "\n## Types of arguments\n\n| name | type | meaning |\n|---|---|---|\n"
     for module, node in ((modules[name], node) for name in ("_arguments", "_meshes") for node in modules[name].body):
         if isinstance(node, ast.AnnAssign) and ast.unparse(node.annotation) == "TypeAlias":
             of = ast.unparse(node.value).replace("|", "\\|")
-            text += f"| `{ast.unparse(node.target)}` | `{of}` | {module.said_above(node)} |\n"
+            text += f"| `{ast.unparse(node.target)}` | `{of}` | {module.comment_above(node)} |\n"
     return text

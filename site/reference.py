@@ -25,7 +25,7 @@ PAGES = ROOT / "docs/reference"
 MADE = "<!-- Written by site/reference.py; ./check compares it. -->\n\n"
 
 
-def said(program: str, *args: str) -> str:
+def output(program: str, *args: str) -> str:
     """The program's output, independent of the terminal."""
     env = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
     done = subprocess.run([program, *args], capture_output=True, text=True, check=True, env=env)
@@ -33,12 +33,12 @@ def said(program: str, *args: str) -> str:
 
 
 def cli(program: str) -> str:
-    whole = said(program, "--help")
+    whole = output(program, "--help")
     names = re.findall(r"^  ([a-z]\w*)  ", whole, re.M)
     text = f"# Command line\n\n{MADE}```text\n{whole}```\n"
     for name in names:
         if name != "help":
-            text += f"\n## catchment {name}\n\n```text\n{said(program, name, '--help')}```\n"
+            text += f"\n## catchment {name}\n\n```text\n{output(program, name, '--help')}```\n"
     return text
 
 
@@ -82,27 +82,27 @@ def rows(table: dict, path: str) -> list[str]:
 
 
 def design_file(program: str) -> str:
-    schema = json.loads(said(program, "schema"))
+    schema = json.loads(output(program, "schema"))
     text = f"""# Design file
 
-{MADE}A design is a TOML file. `catchment new pyramid` prints a commented one, `catchment check` says everything that is wrong with one, each with its place, and
+{MADE}A design is a TOML file. `catchment new pyramid` prints a commented one, `catchment check` lists every error in one, each with its place, and
 `#:schema` in its first line lets an editor check it while it is written (`catchment schema -o schema.json`, [the same here](../../designs/schema.json)). Numbers without a unit are in D (lengths) and radians
 (angles); with one they are text: `"5 mm"`, `"10 deg"`. [Parts as their files have them](../parts.md) shows the keys of halves at work.
 """
     for name, key in schema["properties"].items():
         if key.get("type") != "object":
             continue
-        text += f"\n## [{name}]\n\n{key.get('description', '')}\n\n| key | value | what it says |\n|---|---|---|\n"
+        text += f"\n## [{name}]\n\n{key.get('description', '')}\n\n| key | value | meaning |\n|---|---|---|\n"
         text += "\n".join(rows(key, f"{name}.")) + "\n"
     top = {"properties": {name: key for name, key in schema["properties"].items() if key.get("type") != "object"}}
-    return text + "\n## Beside the tables\n\n| key | value | what it says |\n|---|---|---|\n" + "\n".join(rows(top, "")) + "\n"
+    return text + "\n## Beside the tables\n\n| key | value | meaning |\n|---|---|---|\n" + "\n".join(rows(top, "")) + "\n"
 
 
 def fields() -> str:
     return f"""# Fields of the JSON reports
 
 {MADE}Every command with `--json` prints one object with the same head: `schema` (the version of the format), `catchment` (of the program) and `kind`. Lengths are in D and angles in
-radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list and `*` for any name; *number* is a float, and *null* says that nothing is there. The same as a
+radians. [Versions](../versions.md) lists what may change. `[]` stands for the entries of a list and `*` for any name; *number* is a float, and *null* a missing value. The same as a
 [JSON schema](../../crates/catchment-report/reports.schema.json), for validators and code generators; that of [design files](../../designs/schema.json) is another one.
 """ + report_fields.sections()
 

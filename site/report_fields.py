@@ -91,8 +91,8 @@ def within(node: Any, path: str, depth: int) -> Iterator[tuple[str, str]]:
 
 def meaning(node: Any) -> str:
     """The first paragraph of a description, without Rust links."""
-    said = node.get("description", "") if isinstance(node, dict) else ""
-    words = re.sub(r"\[`([^`\]]+)`\](?:\([^)]*\))?", r"`\1`", said.split("\n\n")[0].replace("\n", " "))
+    description = node.get("description", "") if isinstance(node, dict) else ""
+    words = re.sub(r"\[`([^`\]]+)`\](?:\([^)]*\))?", r"`\1`", description.split("\n\n")[0].replace("\n", " "))
     return words.replace("|", "\\|")
 
 

@@ -46,15 +46,15 @@ def printed(program: str, folder: Path, command: str) -> list[str]:
     return [line.rstrip() for line in done.stdout.rstrip().splitlines() if not line.startswith("progress: ")]
 
 
-def cut(said: list[str], shown: list[str]) -> list[str]:
+def cut(output: list[str], shown: list[str]) -> list[str]:
     """The output, with the lines omitted that the page omits."""
     gaps = [k for k, line in enumerate(shown) if line.strip() == "…"]
     if not gaps:
-        return said
+        return output
     above, below = gaps[0], len(shown) - gaps[-1] - 1
-    if above + below >= len(said):
-        return said
-    return said[:above] + [shown[gaps[0]]] + (said[-below:] if below else [])
+    if above + below >= len(output):
+        return output
+    return output[:above] + [shown[gaps[0]]] + (output[-below:] if below else [])
 
 
 def commands(block: str) -> list[tuple[list[str], list[str]]]:
@@ -104,11 +104,11 @@ class Transcripts:
             print(f"{time.monotonic() - begun:.0f} s: {command}", file=sys.stderr)
         if not shown:
             return shown
-        said = cut(printed_lines, shown)
-        if said != shown:
-            lines = difflib.unified_diff(shown, said, f"{page.name}: $ {command}", "what it prints", lineterm="", n=1)
+        trimmed = cut(printed_lines, shown)
+        if trimmed != shown:
+            lines = difflib.unified_diff(shown, trimmed, f"{page.name}: $ {command}", "what it prints", lineterm="", n=1)
             self.wrong.append("\n".join(lines))
-        return said
+        return trimmed
 
 
 def main() -> None:

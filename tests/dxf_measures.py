@@ -90,8 +90,8 @@ def shift(corners: list[tuple[float, float]], at: tuple[float, float], burnt: fl
 def main(program: str, design: str) -> None:
     with tempfile.TemporaryDirectory() as home:
         out = Path(home) / "out"
-        said = subprocess.run([program, "latch", design, "-o", out, "--json"], check=True, capture_output=True, text=True)
-        report = json.loads(said.stdout)["design"]
+        done = subprocess.run([program, "latch", design, "-o", out, "--json"], check=True, capture_output=True, text=True)
+        report = json.loads(done.stdout)["design"]
         part, holes = read(out / "front.dxf", "PART")
         cut, cut_holes = read(out / "front-cut.dxf", "CUT")
         for name in ("back", "separator"):
@@ -113,8 +113,8 @@ def main(program: str, design: str) -> None:
         faults.append(f"the cut line is {wider:.4f} mm wider than the part, not a kerf")
     if faults:
         sys.exit("\n".join(faults))
-    told = ", ".join(f"{when} within {off:.5f} mm" for when, off in worst.items())
-    print(f"width, overhang, neck, slit gap, slit depth and dowels: {told}")
+    deviations = ", ".join(f"{when} within {off:.5f} mm" for when, off in worst.items())
+    print(f"width, overhang, neck, slit gap, slit depth and dowels: {deviations}")
 
 
 if __name__ == "__main__":

@@ -79,24 +79,24 @@ WITHOUT = {"check", "classify", "validate", "latch"}
 
 def measured(program, args, folder):
     """Exit code (None if it was killed), peak in MiB, and the output."""
-    with tempfile.TemporaryFile() as said, open(os.devnull, "w") as null:
-        child = subprocess.Popen([program, *args], cwd=folder, stdout=null, stderr=said)
+    with tempfile.TemporaryFile() as stderr, open(os.devnull, "w") as null:
+        child = subprocess.Popen([program, *args], cwd=folder, stdout=null, stderr=stderr)
         late = threading.Timer(LONGEST, child.kill)
         late.start()
         _, status, usage = os.wait4(child.pid, 0)
         late.cancel()
         child.returncode = os.waitstatus_to_exitcode(status)
-        said.seek(0)
+        stderr.seek(0)
         code = None if child.returncode == -signal.SIGKILL else child.returncode
-        return code, usage.ru_maxrss / 1024, re.sub(r"\s*\n\s*│?\s*", " ", said.read().decode())
+        return code, usage.ru_maxrss / 1024, re.sub(r"\s*\n\s*│?\s*", " ", stderr.read().decode())
 
 
 def weighed(program, args, folder):
     """Exit code, peak in MiB, and the MiB that the program states for its largest part; None if it requests no memory."""
     budget, needs = 1, None
     while True:
-        code, most, said = measured(program, [*args, "--memory", f"{budget}B"], folder)
-        refused = re.search(r"needs ([\d.]+) (\w+) of memory", said)
+        code, most, message = measured(program, [*args, "--memory", f"{budget}B"], folder)
+        refused = re.search(r"needs ([\d.]+) (\w+) of memory", message)
         if code != 5 or not refused:
             return code, most, needs
         part = float(refused[1]) * UNITS[refused[2]]
@@ -114,7 +114,7 @@ def main():
         designs += [path for path in found if "\n[connector]" in f"\n{path.read_text()}" and "\n[chain]" not in path.read_text()]
     worst, failed, ran = {}, [], 0
 
-    def told(stem, command, args, base, folder):
+    def record(stem, command, args, base, folder):
         nonlocal ran
         code, most, needs = (*measured(program, args, folder)[:2], None) if args[0] in WITHOUT else weighed(program, args, folder)
         if code not in (0, 2, None):
@@ -137,11 +137,11 @@ def main():
             name, *options = command.split()
             with tempfile.TemporaryDirectory() as folder:
                 (Path(folder) / "poses.csv").write_text("x\n" + "0.01\n" * 20_000)
-                told(design.stem, command, [name, str(design.resolve()), *options], base, folder)
+                record(design.stem, command, [name, str(design.resolve()), *options], base, folder)
     _, base, _ = measured(program, ["check", str(ROOT / "designs/v-face.toml")], ".")
     for command in SYSTEMS if whole else []:
         with tempfile.TemporaryDirectory() as folder:
-            told("-", command.replace("{}/", ""), [word.replace("{}", str(ROOT / "designs")) for word in command.split()], base, folder)
+            record("-", command.replace("{}/", ""), [word.replace("{}", str(ROOT / "designs")) for word in command.split()], base, folder)
     print("\n| command | most beside what was expected | expected | took | design |\n|---|---|---|---|---|")
     for command, (beside, took, needs, stem) in worst.items():
         print(f"| `{command}` | {beside:+.0f} MiB | {needs:.1f} MiB | {took:.1f} MiB | {stem} |")

@@ -101,19 +101,19 @@ def main() -> None:
     drawn = ["--free", "x,y,roll,pitch,yaw", *(["--aspect-ratio", args.aspect_ratio] if args.aspect_ratio else [])]
     with tempfile.TemporaryDirectory() as folder:
         trial, poses = Path(folder) / "trial", Path(folder) / "poses.csv"
-        said = subprocess.run(
+        done = subprocess.run(
             [args.program, "export", args.design, *drawn, "--pose", "x=0", "-o", trial, "--json", *SETTINGS, *friction],
             check=True, capture_output=True, text=True,
         )
-        alignment = json.loads(said.stdout)["design"]["alignment"]
+        alignment = json.loads(done.stdout)["design"]["alignment"]
         errors = (np.random.default_rng(1).uniform(-1, 1, (args.poses, 5)) * args.half).tolist()
         with poses.open("w", newline="") as file:
             csv.writer(file).writerows([["x", "y", "roll", "pitch", "yaw"], *errors])
-        said = subprocess.run(
+        done = subprocess.run(
             [args.program, "outcome", args.design, *drawn, "--poses", poses, "--method", "descent", "--json", *friction],
             check=True, capture_output=True, text=True,
         )
-        expected = [row["outcome"] == "aligned" for row in json.loads(said.stdout)["poses"]]
+        expected = [row["outcome"] == "aligned" for row in json.loads(done.stdout)["poses"]]
         model = mujoco.MjModel.from_xml_path(str(trial / "trial.xml"))
     model.opt.impratio = FRICTION_AS_STIFF
     data = mujoco.MjData(model)

@@ -83,8 +83,8 @@ def check_set(program: Path, home: Path) -> None:
     call(program, home, "export", "out", "-o", "set.csv")
     table = pandas.read_csv(home / "set.csv")
     counted = table.outcome.value_counts()
-    told = report["acceptance"]["outcomes"]
-    assert all(counted.get(name, 0) == count for name, count in told.items()), counted
+    outcomes = report["acceptance"]["outcomes"]
+    assert all(counted.get(name, 0) == count for name, count in outcomes.items()), counted
     assert len(table) == report["acceptance"]["cells"] and list(table.columns) == ["x", "y", "roll", "yaw", "outcome", "height"]
     assert isclose((table.outcome == "aligned").mean() * box, report["acceptance"]["sum_grid"], rel_tol=1e-12)
 

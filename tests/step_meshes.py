@@ -67,7 +67,7 @@ def run(folder, *arguments):
     return subprocess.run([catchment, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
 
 
-def told(folder, *arguments):
+def output_of(folder, *arguments):
     ran = run(folder, *arguments)
     assert ran.returncode == 0, ran.stderr
     return ran.stdout
@@ -98,19 +98,19 @@ with tempfile.TemporaryDirectory() as home:
         (home / part).write_bytes((here / "step" / part).read_bytes())
     (home / "design.toml").write_text(DESIGN)
     # The pin, 20 long, stands in a hole 18 deep: the face centre is half way up to the mouth. It touches with its rounded end, 10 wide.
-    said = " ".join(told(home, "check", "design.toml").split())
-    assert "face centre of the mating face: fixed half (0, 0, -9) mm, moving half (0, 0, 11) mm; they coincide when mated" in said, said
-    assert "off by at most 0.05 mm (deflection, as written), by OCP " in said, said
-    assert "mm, the larger lateral extent of the facets that can touch" in said, said
+    output = " ".join(output_of(home, "check", "design.toml").split())
+    assert "face centre of the mating face: fixed half (0, 0, -9) mm, moving half (0, 0, 11) mm; they coincide when mated" in output, output
+    assert "off by at most 0.05 mm (deflection, as written), by OCP " in output, output
+    assert "mm, the larger lateral extent of the facets that can touch" in output, output
     # Its flat end, radius 3, slides off the mouth, radius 9.2, up to an offset of 6.2, less the area that polygons cut off
     # both.
     poses = [(e * math.cos(k), e * math.sin(k), e < 6.2) for e in (1.0, 5.0, 6.05, 6.35, 7.5) for k in range(8)]
     (home / "poses.csv").write_text("x_mm,y_mm\n" + "".join(f"{x},{y}\n" for x, y, _ in poses))
-    rows = told(home, "outcome", "design.toml", "--poses", "poses.csv").splitlines()[1:]
+    rows = output_of(home, "outcome", "design.toml", "--poses", "poses.csv").splitlines()[1:]
     for (x, y, aligned), row in zip(poses, rows, strict=True):
         assert (row.split(",")[2] == "aligned") == aligned, (x, y, row)
     # The same parts, as a proposal.
-    told(home, "place", "socket.step", "peg.step", "-o", "placed.toml")
+    output_of(home, "place", "socket.step", "peg.step", "-o", "placed.toml")
     assert 'facing = "+z"' in (home / "placed.toml").read_text()
 
     import make
@@ -131,8 +131,8 @@ with tempfile.TemporaryDirectory() as home:
     for name, complaint in (("face", "the file holds no solid"), ("half", "half.step")):
         (home / "bad.toml").write_text(DESIGN.replace("peg.step", f"{name}.step"))
         ran = run(home, "check", "bad.toml")
-        said = " ".join(ran.stderr.replace("│", " ").split())
-        assert ran.returncode == 4 and complaint in said, ran.stderr
-        assert "panicked" not in said and not ran.stdout, ran.stderr
+        message = " ".join(ran.stderr.replace("│", " ").split())
+        assert ran.returncode == 4 and complaint in message, ran.stderr
+        assert "panicked" not in message and not ran.stdout, ran.stderr
 
 print("STEP files: volumes, heights, captured offsets, bodies and refusals as they must be")

@@ -384,8 +384,8 @@ class Storm:
         (self.results / "d.toml").write_bytes(self.design)
         for place in ("s", "s.zarr"):
             args = ["run", "d.toml", "--method", "flood", "--resolution", "6", "-o", place]
-            code, _, _, said = self.start(args, self.results)
-            assert code == 0, said
+            code, _, _, output = self.start(args, self.results)
+            assert code == 0, output
         self.stored = [path.relative_to(self.results) for path in sorted(self.results.rglob("*")) if path.is_file()]
 
     @staticmethod
@@ -445,19 +445,19 @@ class Storm:
                     os.execve(self.program, [self.program, *args], {"PATH": "/usr/bin:/bin", "HOME": str(self.home)})
                 finally:
                     os._exit(99)
-            asked, until = None, 0.0
+            sent, until = None, 0.0
             while True:
                 ended, status, usage = os.wait4(pid, os.WNOHANG)
                 if ended:
                     break
-                if time.monotonic() > until if asked else self.used(pid) >= self.most:
-                    asked, until = (signal.SIGKILL if asked else signal.SIGINT), time.monotonic() + DEAF
-                    os.kill(pid, asked)
+                if time.monotonic() > until if sent else self.used(pid) >= self.most:
+                    sent, until = (signal.SIGKILL if sent else signal.SIGINT), time.monotonic() + DEAF
+                    os.kill(pid, sent)
                 signal.sigtimedwait({signal.SIGCHLD}, 1.0)
         code, took = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
-        if asked == signal.SIGINT and code == -signal.SIGINT:
+        if sent == signal.SIGINT and code == -signal.SIGINT:
             code = 130  # the shells' code: interrupted while reading, before any work
-        if asked == signal.SIGINT and code == 130:
+        if sent == signal.SIGINT and code == 130:
             self.slow.append((took, args))
         return code, usage.ru_maxrss, took, (self.home / "stderr").read_bytes()
 
@@ -517,15 +517,15 @@ class Storm:
         if self.keep:
             shutil.rmtree(self.keep / "last", ignore_errors=True)
             shutil.copytree(self.work, self.keep / "last", symlinks=True)
-        code, kilobytes, took, said = self.start(args, self.work)
+        code, kilobytes, took, output = self.start(args, self.work)
         shown = " ".join(map(repr, args))
-        text = said.decode("utf-8", "replace")
+        text = output.decode("utf-8", "replace")
         left = [str(path.relative_to(self.work)) for path in self.work.rglob(".*") if path.name.endswith((".tmp", ".old"))]
         steers = [c for c in text if (ord(c) < 32 and c != "\n") or 127 <= ord(c) < 160 or c in "\u202e\u2066"]
         for wrong, what in (
             (code not in ALLOWED, f"it ended with {code}"),
             (code in (130, 143) and args not in [args for _, args in self.slow], "it was not interrupted"),
-            (code in range(2, 6) and not text.strip() and (self.home / "stdout").stat().st_size == 0, "it said nothing"),
+            (code in range(2, 6) and not text.strip() and (self.home / "stdout").stat().st_size == 0, "it printed nothing"),
             ("panicked" in text or "a bug of" in text, "it called something a bug"),
             (steers, f"control characters came through: {steers}"),
             (left, f"it left {left}"),

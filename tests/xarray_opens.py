@@ -35,7 +35,7 @@ def check(path: str) -> None:
     assert codes == CODES, codes
     for name, code in CODES.items():
         found, stated = int((outcome == code).sum()), report["acceptance"]["outcomes"][name]
-        assert found == stated, f"{name}: {found} cells, but the report says {stated}"
+        assert found == stated, f"{name}: {found} cells, but {stated} in the report"
 
     # Selecting by coordinate equals selecting by position: the axes are in the right order.
     middle = {name: axis["cells"] // 3 for name, axis in axes.items()}

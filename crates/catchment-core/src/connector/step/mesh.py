@@ -22,9 +22,9 @@ sys.path += [path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep)
 if sys.prefix == sys.base_prefix and os.path.isabs(site.getusersitepackages()):
     site.addsitedir(site.getusersitepackages())
 
-# The least share of its largest side by which the facets of a part are off where nothing is said.
+# Default deflection of the facets, as a share of the largest side of the shape.
 SHARE = 2e-4
-# How often a part is meshed anew, finer, where OpenCASCADE did not keep to what was asked.
+# Attempts to mesh a part, each finer than the last, until OpenCASCADE keeps to the requested deflection.
 TRIES = 4
 # Largest angle between neighbouring facets, in rad, so that a small hole keeps its shape: 13 sides at least.
 ANGLE = 0.5
@@ -259,5 +259,5 @@ try:
 except MemoryError:
     refuse("memory", "")
 except Exception as error:
-    said = str(error).strip().splitlines()
-    refuse("unreadable", f"{type(error).__name__}: {said[0] if said else ''}"[:300])
+    lines = str(error).strip().splitlines()
+    refuse("unreadable", f"{type(error).__name__}: {lines[0] if lines else ''}"[:300])
