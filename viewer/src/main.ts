@@ -188,6 +188,6 @@ async function begin() {
     document.documentElement.dataset.ready = "true";
 }
 
-/** For whoever drives the page by a script. */
+/** For scripts that drive the page. */
 Object.assign(window, { catchment: { motion: () => json, pose: () => [...pose], choose: (chosen: Pose) => choose(chosen, false) } });
 begin().catch((error) => tell("undecided", `The page could not be drawn: ${error instanceof Error ? error.message : error}`));

@@ -40,7 +40,7 @@ export function latest(run: () => Promise<void>): () => Promise<void> {
                 await run();
             } while (again);
         } finally {
-            // At once: whoever asks from here on begins anew.
+            // At once: a request after this one begins anew.
             running = null;
         }
     };

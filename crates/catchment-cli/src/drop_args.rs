@@ -10,7 +10,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use serde_json::{Value, json};
 
-/// What may be said of drop tests.
+/// The options of drop tests.
 #[derive(Debug, Args)]
 pub(crate) struct DropArgs {
     /// Named settings; options given beside it take precedence

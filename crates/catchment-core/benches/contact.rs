@@ -41,7 +41,7 @@ fn main() {
 
 /// Triangles per half of the funnels: a list and trees, and how time grows with ten times as many.
 const FACETS: [usize; 3] = [1_000, 10_000, 100_000];
-/// Poses of a funnel whose heights are asked for, and of these such that are followed.
+/// Poses of a funnel whose heights are computed, and the number of these that are followed.
 const HEIGHTS: usize = 50;
 const MOTIONS: usize = 10;
 

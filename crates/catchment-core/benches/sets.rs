@@ -50,7 +50,7 @@ fn labels(rates: &mut Rates, name: &str, cells: usize) {
     let mut judged = || {
         let exact = by(&judge);
         let wrong = exact.accepted().zip(known.accepted()).filter(|(a, b)| a != b).count();
-        assert!(wrong * 500 <= exact.outcomes.len(), "{name}: {wrong} cells are labelled otherwise");
+        assert!(wrong * 500 <= exact.outcomes.len(), "{name}: {wrong} cells have another label");
     };
     rates.measure(
         &format!("{name}, {cells} cells per axis"),

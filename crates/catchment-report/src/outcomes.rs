@@ -244,7 +244,7 @@ impl<'a> OutcomesReport<'a> {
         self.finished.unwrap_or_default().iter().copied().chain(0..all)
     }
 
-    /// Bytes of memory that telling a table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
+    /// Bytes of memory that a printed table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
     /// columns that are carried through.
     pub fn bytes(table: &PoseTable<'_>, json: bool) -> u64 {
         /// A row of CSV: outcome, final errors and contacts, and the same again while the text is checked.

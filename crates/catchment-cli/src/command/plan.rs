@@ -209,7 +209,7 @@ impl PatternArgs {
                 Ok(Pattern::Lattice { step: step(&text, problem)?, max, along_border: self.along_border })
             }
             Kind::Arc => {
-                let why = "from the joint of the robot to the face centre, such as \"72.9 mm\": measure it, nothing else tells it";
+                let why = "from the joint of the robot to the face centre, such as \"72.9 mm\": measure it, no file states it";
                 let lever = needed("--lever", &self.lever, why)?;
                 let pitch =
                     needed("--pitch", &self.pitch, "angles of the joint, such as \"0..45:2.25 deg\"")?;

@@ -123,6 +123,6 @@ fn pitch_and_yaw_accept_ranges_and_lists() {
     let places: Vec<&serde_json::Value> =
         result["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();
     for (k, place) in places.iter().enumerate() {
-        assert!(!places[..k].contains(place), "{place} is told twice");
+        assert!(!places[..k].contains(place), "{place} is printed twice");
     }
 }

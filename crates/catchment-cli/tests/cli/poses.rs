@@ -388,7 +388,7 @@ fn rows_are_printed_as_they_are_decided() {
     let first: Vec<String> = lines.by_ref().take(3).map(Result::unwrap).collect();
     assert!(first[0].starts_with("name,x,pitch,outcome,final_x"), "{first:?}");
     assert!(first[1].starts_with("p0,0.4,0.1,aligned,") && first[2].starts_with("p1,"), "{first:?}");
-    assert!(child.try_wait().unwrap().is_none(), "all poses were decided before the first was told");
+    assert!(child.try_wait().unwrap().is_none(), "all poses were decided before the first was printed");
     drop(lines);
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), b"".as_slice()));

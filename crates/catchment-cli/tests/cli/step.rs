@@ -159,7 +159,7 @@ fn every_failure_of_the_mesher_is_reported() {
             "its answer is broken",
         ),
         (r#"echo '{"bodies": [], "deflection": 1, "reached": 1, "by": "x"}'"#, "the file holds no triangles"),
-        ("exec sleep 0.1 < /dev/null", "it said nothing"),
+        ("exec sleep 0.1 < /dev/null", "it printed nothing"),
     ];
     for (script, printout) in cases {
         let path = python(dir.path(), script);

@@ -1,4 +1,4 @@
-//! A filleted funnel and its plug, as CAD exports them: lathe bodies, cut into as many triangles as asked for.
+//! A filleted funnel and its plug, as CAD exports them: lathe bodies, cut into a given number of triangles.
 //!
 //! ```text
 //!     fixed   │╲__                __╱│       rim fillet, cone, round bottom: one smooth profile

@@ -98,7 +98,7 @@ impl Rates {
         });
     }
 
-    /// Prints the table, and stores the rates if that was asked for.
+    /// Prints the table, and stores the rates with `--store`.
     #[expect(clippy::print_stdout, reason = "a bench prints what it measures")]
     pub(crate) fn finish(self) {
         if self.rows.is_empty() {

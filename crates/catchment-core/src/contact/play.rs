@@ -54,7 +54,7 @@ pub fn play(pair: &Pair) -> Vec<Play> {
     play_on(pair, DofSet::ALL, &Exec::new())
 }
 
-/// The same, only for the errors in `asked`, on these threads and with its progress: for other errors the
+/// The same, only for the errors in `requested`, on these threads and with its progress: for other errors the
 /// play may be larger.
 pub fn play_on(pair: &Pair, requested: DofSet, exec: &Exec) -> Vec<Play> {
     let alignment = &pair.alignment;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A thread that has its stack but finds no memory for its further startup ends the process. Therefore the
-//! system is not asked for threads whose stacks would fill the remaining address space: such requests are
+//! program starts no threads whose stacks would fill the remaining address space: such requests are
 //! rejected in advance.
 
 use super::memory::{self, Bytes};

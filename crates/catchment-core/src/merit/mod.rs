@@ -182,10 +182,10 @@ pub fn warnings(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Diagnostic>,
         }
     }
     let undecided = acceptance.counts()[Outcome::Undecided as usize - 1];
-    let is_said = |warning: &Diagnostic| {
+    let is_reported = |warning: &Diagnostic| {
         matches!(warning.facts.as_deref(), Some(Warning::Undecided { .. } | Warning::Open { .. }))
     };
-    if undecided > 0 && !acceptance.warnings.iter().any(is_said) {
+    if undecided > 0 && !acceptance.warnings.iter().any(is_reported) {
         warnings.push(Warning::Undecided { cells: undecided }.into());
     }
     Ok(warnings)

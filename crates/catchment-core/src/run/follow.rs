@@ -61,25 +61,25 @@ impl Problem {
         poses: &[PoseError],
         exec: &Exec,
     ) -> Result<FollowedPoses, DecideError> {
-        self.follow_telling(method, poses, exec, &|_, _| {})
+        self.follow_reporting(method, poses, exec, &|_, _| {})
     }
 
-    /// The same; `told` is called for every pose as soon as it is decided.
+    /// The same; `observer` is called for every pose as soon as it is decided.
     ///
     /// # Errors
     /// As for [`Problem::follow_keeping`].
-    pub fn follow_telling(
+    pub fn follow_reporting(
         &self,
         method: &Method,
         poses: &[PoseError],
         exec: &Exec,
-        words: PoseObserver<'_>,
+        observer: PoseObserver<'_>,
     ) -> Result<FollowedPoses, DecideError> {
         let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
         let kept = Mutex::new(Vec::new());
         let keep = |number, end| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
-            words(number, end);
+            observer(number, end);
         };
         match follow.rest_observed(self, Domain::Poses(poses.to_vec()), exec, &keep) {
             Ok((acceptance, ends)) => Ok(FollowedPoses { acceptance, ends, finished: None }),

@@ -48,9 +48,9 @@ pub(super) struct Trials<'a> {
 /// let dynamics = Dynamics::default().with(Circumstance::Speed, ScalarDistribution::Normal { mean: 1.0, sigma: 0.2 });
 /// let settings = ChanceSettings { dynamics, trials: 10, ..ChanceSettings::default() };
 /// let at = |x: f64| PoseError { x, ..PoseError::default() };
-/// let asked = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };
-/// let found = chance::run(&problem, &asked, &settings, &Exec::new())?;
-/// assert_eq!(found.poses.iter().map(|pose| pose.probability).collect::<Vec<_>>(), [1.0, 0.0]);
+/// let question = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };
+/// let chance = chance::run(&problem, &question, &settings, &Exec::new())?;
+/// assert_eq!(chance.poses.iter().map(|pose| pose.probability).collect::<Vec<_>>(), [1.0, 0.0]);
 /// # Ok(())
 /// # }
 /// ```

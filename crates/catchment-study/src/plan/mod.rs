@@ -388,7 +388,7 @@ fn other_signs(
             let before = judge.followed();
             let values = error.to_array();
             let occurring: Vec<usize> = (0..5).filter(|k| values[*k] != 0.0).collect();
-            let otherwise = (1..1u32 << occurring.len()).any(|signs| {
+            let differs = (1..1u32 << occurring.len()).any(|signs| {
                 let mut turned = values;
                 for (bit, k) in occurring.iter().enumerate() {
                     if signs >> bit & 1 == 1 {
@@ -397,7 +397,7 @@ fn other_signs(
                 }
                 judge.docks(&PoseError::from_array(turned)) != prediction.docks()
             });
-            (otherwise, judge.followed() - before)
+            (differs, judge.followed() - before)
         },
     )?;
     let differing = result.iter().filter(|(differs, _)| *differs).count();

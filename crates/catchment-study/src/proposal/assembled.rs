@@ -48,9 +48,9 @@ pub(super) fn docked(
     if !looked.has_seat() {
         // A groove holds in a single direction, which the lattice search does not recognise as a seat.
         let rests = |drawn: &sink::ApproachResult| matches!(drawn, sink::ApproachResult::Flat { .. });
-        let is_asked = both.settings.frames == PartFrames::Assembled || both.settings.approach.is_some();
+        let is_assembled = both.settings.frames == PartFrames::Assembled || both.settings.approach.is_some();
         let flat: Vec<AxisDirection> =
-            looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
+            looks.iter().filter(|(_, drawn)| is_assembled || rests(drawn)).map(|(way, _)| *way).collect();
         let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
             let lie = PartLayout::Assembled { approach: flat[k] };
             judge(both.halves, lie, DVec2::ZERO, &[], None, both.display).map_err(|refusal| refusal.of(lie))

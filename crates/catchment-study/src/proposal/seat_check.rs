@@ -163,7 +163,7 @@ impl SeatCandidate {
 
 /// Evaluates halves in the relative orientation `lie`, the moving half at `offset`; further offsets may be
 /// given, which are used if the half lies as deep there. Returns the reason if the halves do not meet or are
-/// not docked as drawn, with lengths in the unit `told`.
+/// not docked as drawn, with lengths in the unit `display`.
 pub(super) fn judge(
     halves: [&Half; 2],
     lie: PartLayout,

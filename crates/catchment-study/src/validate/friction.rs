@@ -142,9 +142,9 @@ fn beyond(
     let judge = || DockingOracle::new(problem, &motions);
     let docks = for_each(trials.len(), exec, judge, |judge, k| judge.docks(&trials[k].0))?;
     let mut followed = trials.len();
-    let otherwise: Vec<usize> = (0..trials.len()).filter(|k| docks[*k] != trials[*k].1).collect();
+    let differing: Vec<usize> = (0..trials.len()).filter(|k| docks[*k] != trials[*k].1).collect();
     let mut count = 0;
-    for some in otherwise.chunks(AT_ONCE) {
+    for some in differing.chunks(AT_ONCE) {
         if count >= enough {
             break;
         }

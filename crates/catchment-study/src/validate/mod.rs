@@ -237,7 +237,7 @@ pub struct Validation {
     /// Number of trials for which the table states another prediction: it belongs to another design, or
     /// another friction.
     #[serde(skip)]
-    pub otherwise_planned: usize,
+    pub differing_predictions: usize,
     /// Number of trials that docked rotated although docking unrotated was predicted, or the reverse.
     #[serde(skip)]
     pub turned: usize,
@@ -365,7 +365,7 @@ fn summary(problem: &Problem, trials: Vec<PredictedTrial>, settings: &Validation
         let both = trial.docked == Some(true) && trial.prediction().docks();
         both && straight(trial.observed) != straight(trial.prediction().predicted)
     });
-    let otherwise = trials.iter().filter(|trial| {
+    let differing = trials.iter().filter(|trial| {
         let docks = |outcome| matches!(outcome, ObservedOutcome::Aligned | ObservedOutcome::AlignedElsewhere);
         let planned = trial.planned.map(docks);
         // On the border itself rounding decides.
@@ -389,7 +389,7 @@ fn summary(problem: &Problem, trials: Vec<PredictedTrial>, settings: &Validation
         friction: None,
         blank: trials.len() - made().count(),
         motions: 0,
-        otherwise_planned: otherwise.count(),
+        differing_predictions: differing.count(),
         turned: turned.count(),
         trials,
     }

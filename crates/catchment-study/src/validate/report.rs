@@ -53,10 +53,10 @@ impl Subject for Validation {
         if self.turned > 0 {
             warn(format!("{} trials docked, but in another orientation than predicted", self.turned));
         }
-        if self.otherwise_planned > 0 {
+        if self.differing_predictions > 0 {
             warn(format!(
                 "the prediction in the table differs from that of this design for {} trials: it was planned for another one, or with other friction",
-                self.otherwise_planned
+                self.differing_predictions
             ));
         }
         warnings

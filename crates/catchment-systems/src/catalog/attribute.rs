@@ -150,7 +150,7 @@ pub const ODDITIES: [Oddity; 11] = [
         CatalogAttribute::ConnectionType,
         "Mag/Latching",
         "Magnetic and latching",
-        "both mechanisms; which of them carries the load is not said",
+        "both mechanisms; which of them carries the load is not stated",
     ),
     odd(CatalogAttribute::ConnectionMaintenance, "Low Power", "Powered", "it needs power, if little"),
     odd(

@@ -185,13 +185,13 @@ impl ChainShape {
         match self {
             Self::P => "joints and commands of table 6.2",
             Self::Block { reading: Reading::Middle } => {
-                "our reading: the picture is lost, the text tells of latching in mid chain from straight"
+                "our reading: the picture is lost, the text describes latching in mid chain from straight"
             }
             Self::Block { reading: Reading::Tail } => {
                 "our reading, not the preferred one: the P, its tail folded at module 2"
             }
             Self::O { .. } => {
-                "our reading: the picture is lost; corners so that the closing link lies as asked for"
+                "our reading: the picture is lost; corners so that the closing link lies as requested"
             }
         }
     }

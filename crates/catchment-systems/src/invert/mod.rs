@@ -153,7 +153,7 @@ pub enum InvertError {
     Planar,
     /// Too many rotations.
     #[error(
-        "{count} rotations, more than {MOST_TURNS}: give fewer angles, all combinations of which are asked for"
+        "{count} rotations, more than {MOST_TURNS}: give fewer angles, all their combinations are computed"
     )]
     TooManyTurns {
         /// How many.

@@ -66,11 +66,11 @@ impl List {
         key: &'static str,
         basis: Basis,
         holds: bool,
-        otherwise: RuleCheck,
+        if_not: RuleCheck,
         found: String,
         reason: &str,
     ) {
-        let verdict = if holds { RuleCheck::Holds } else { otherwise };
+        let verdict = if holds { RuleCheck::Holds } else { if_not };
         self.0.push(LatchRule { rule, found, verdict, reason: reason.to_owned(), basis, key });
     }
 }

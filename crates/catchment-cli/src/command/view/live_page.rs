@@ -56,10 +56,10 @@ struct State {
 
 const WAITING_STYLE: &str = ":root{color-scheme:light dark}body{font:16px system-ui,sans-serif;margin:20vh auto;max-width:40rem;padding:0 1rem;\
     white-space:pre-wrap}";
-const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
+const WAITING_SCRIPT: &str = "const note=document.getElementById('note');\
     const poll=async()=>{const p=await(await fetch('progress')).json();\
     if(p.state==='ready')location.reload();\
-    else{said.textContent=p.state==='failed'?p.message+'\\n\\nChange the design file and load this page again.':\
+    else{note.textContent=p.state==='failed'?p.message+'\\n\\nChange the design file and load this page again.':\
     `computing … ${p.stage} ${Math.round(100*p.share)} %`;\
     setTimeout(poll,300)}};poll();";
 
@@ -67,7 +67,7 @@ const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
 static WAITING: LazyLock<ServedPage> = LazyLock::new(|| {
     let html = format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>catchment</title><style>{WAITING_STYLE}</style>\
-         <p id=\"said\" role=\"status\">computing …</p><script>{WAITING_SCRIPT}</script></html>"
+         <p id=\"note\" role=\"status\">computing …</p><script>{WAITING_SCRIPT}</script></html>"
     );
     ServedPage { html: html.into(), policy: policy(&[WAITING_SCRIPT], &[WAITING_STYLE], true).into() }
 });

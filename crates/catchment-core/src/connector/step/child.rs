@@ -145,7 +145,7 @@ pub(super) fn run(
     let words = wait(&words)?;
     let status = child.0.wait().map_err(failed)?;
     let words = String::from_utf8_lossy(&words);
-    let last = words.lines().map(str::trim).rfind(|line| !line.is_empty()).unwrap_or("it said nothing");
+    let last = words.lines().map(str::trim).rfind(|line| !line.is_empty()).unwrap_or("it printed nothing");
     let last: String = last.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     Err(StepProblem::Died { program: name, message: format!("it ended with {status}; {last}") })
 }

@@ -88,7 +88,7 @@ fn a_child_process_is_read_and_ended() {
     let died = shell("echo one >&2; echo two >&2; exit 3", input.clone(), long, &exec).unwrap_err();
     assert!(died.to_string().contains("exit status: 3; two"), "{died}");
     let silent = shell("exit 0", Vec::new(), long, &exec).unwrap_err();
-    assert!(silent.to_string().contains("it said nothing"), "{silent}");
+    assert!(silent.to_string().contains("it printed nothing"), "{silent}");
     let watch = Stopwatch::start();
     // The sleeper that the shell starts holds its pipes.
     let late = shell("sleep 30; true", input.clone(), Duration::from_millis(50), &exec);

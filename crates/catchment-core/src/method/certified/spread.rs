@@ -36,12 +36,12 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
     let in_seat = seat.reach(tree, exec)?;
     let is = |cell: &Cell, yes: bool| cell.label.is_some_and(|label| (label == Label::Yes) == yes);
     let falls_off = |cell: &Cell| cell.height.is_none() || cell.ends;
-    let otherwise = |_, cell: &Cell| {
+    let ends_elsewhere = |_, cell: &Cell| {
         is(cell, false)
             || !is(cell, true)
                 && (cell.walled || tree.leaves_root(cell) || falls_off(cell) || seat.lets_rest(cell))
     };
-    let may_end = back(tree, otherwise, |cell| !is(cell, true), exec)?;
+    let may_end = back(tree, ends_elsewhere, |cell| !is(cell, true), exec)?;
     let seated = |number: usize, cell: &Cell| {
         is(cell, true) || !is(cell, false) && cell.height.is_some() && (in_seat[number] || tree.loses(cell))
     };
@@ -53,10 +53,10 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
             continue;
         }
         // Heights alone may show that a motion does not dock; faces decide whether it leaves or jams.
-        let otherwise = if may_fall[number] { Label::Leaves } else { Label::Jams };
+        let rejected = if may_fall[number] { Label::Leaves } else { Label::Jams };
         cell.label = match (may_end[number], may_dock[number] && !is(cell, false)) {
             (false, _) => Some(Label::Yes),
-            (true, false) => Some(otherwise),
+            (true, false) => Some(rejected),
             (true, true) => None,
         };
     }

@@ -347,7 +347,7 @@ impl Rim<'_> {
         &self,
         corner: [Interval; 2],
         sheet: &(impl Iterator<Item = (Vector, u32)> + Clone),
-        mut tell: impl FnMut([Interval; 2], Interval, u32, Vec<u32>),
+        mut record: impl FnMut([Interval; 2], Interval, u32, Vec<u32>),
     ) {
         let [a, b] = self.ends;
         let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(COINCIDENT));
@@ -366,7 +366,7 @@ impl Rim<'_> {
                 let may_lead_in =
                     |facet: u32| sheet.clone().any(|(s, own)| own == facet && leads(&s).lo < -PARALLEL);
                 outside.retain(|facet| !may_lead_in(*facet));
-                tell(outward, self.level(corner), facet, outside);
+                record(outward, self.level(corner), facet, outside);
             }
         }
     }

@@ -119,20 +119,20 @@ fn a_motion_budget_decides_the_lowest_cells() {
     assert_eq!((&part.kept, part.inherited), (&with(4).kept, with(4).inherited));
     let heights = Landscape::compute(&pair, &grid, &Exec::new()).unwrap().heights;
     let [mut decided, mut left] = [f32::NEG_INFINITY, f32::INFINITY];
-    let (mut undecided, mut otherwise) = (0, 0);
+    let (mut undecided, mut differing) = (0, 0);
     for (cell, height) in heights.into_iter().enumerate() {
         if part.outcome(cell) == Outcome::Undecided {
             undecided += 1;
             left = left.min(height);
         } else {
             decided = decided.max(height);
-            otherwise += usize::from(part.outcome(cell) != whole.outcome(cell));
+            differing += usize::from(part.outcome(cell) != whole.outcome(cell));
         }
     }
     assert!(10 * undecided > grid.len() && undecided < grid.len(), "{undecided} of {}", grid.len());
     assert!(decided <= left + 1e-6, "{decided} {left}");
     // Jams that are thinner because their neighbours are not known are mended further.
-    assert!(otherwise * 1000 <= grid.len(), "{otherwise} of {}", grid.len());
+    assert!(differing * 1000 <= grid.len(), "{differing} of {}", grid.len());
     let warnings = part.acceptance(&Exec::new()).warnings;
     // Cells that were not tried must not be reported as failed simulations.
     assert!(

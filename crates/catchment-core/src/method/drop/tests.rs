@@ -87,7 +87,7 @@ fn threads_change_no_bit() {
     assert_eq!(one, two);
     let other = DropSettings { seed: 2, ..DropSettings::default() };
     let (_, ends) = run(&pair, one.0.domain.clone(), &other, &Exec::new()).unwrap();
-    assert_ne!(ends, one.1, "another seed perturbs otherwise");
+    assert_ne!(ends, one.1, "another seed perturbs differently");
 }
 
 #[test]

@@ -140,7 +140,7 @@ pub enum ZraaError {
     TooManySheets,
     /// Motions contradict the region, with every seam.
     #[error(
-        "exact motions from {differ} of {judged} offsets end otherwise than the region says: which offsets are corrected is not decided \
+        "exact motions from {differ} of {judged} offsets disagree with the region: which offsets are corrected is not decided \
          exactly here; use run --free x,y"
     )]
     Disputed {

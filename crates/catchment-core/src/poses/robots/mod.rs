@@ -4,7 +4,7 @@
 //!   [[robot]]
 //!   name = "arm A"
 //!   sigma = { x = "1 mm", y = "1 mm", yaw = "2 deg" }      # independent normal errors
-//!   mean = { x = "0.5 mm" }                                # where they are centred; 0 where nothing is said
+//!   mean = { x = "0.5 mm" }                                # their centre, 0 by default
 //!
 //!   [[robot]]
 //!   name = "arm B"                                         # correlated ones: either with correlations beside sigma,
