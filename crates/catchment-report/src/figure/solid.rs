@@ -275,6 +275,21 @@ struct Canvas {
 /// Half-width of a line, in fine pixels.
 const HALF: i32 = 2;
 
+/// The pixels no farther than [`HALF`] from the centre, row by row.
+const DISC: [[f64; 2]; 13] = {
+    let (mut disc, mut count) = ([[0.0; 2]; 13], 0);
+    let (mut dx, mut dy) = (-HALF, -HALF);
+    while dy <= HALF {
+        if dx * dx + dy * dy <= HALF * HALF {
+            disc[count] = [dx as f64, dy as f64];
+            count += 1;
+        }
+        [dx, dy] = if dx < HALF { [dx + 1, dy] } else { [-HALF, dy + 1] };
+    }
+    assert!(count == disc.len());
+    disc
+};
+
 /// Facets this close to each other, in fine pixels, are coplanar: the first drawn stays, so that no pattern
 /// of rounding is visible.
 const COINCIDENT: f64 = 1e-6;
@@ -288,22 +303,25 @@ impl Canvas {
         let range = |u: f64, v: f64, w: f64, n: usize| {
             let lo = u.min(v).min(w).floor().max(0.0) as usize;
             let hi = (u.max(v).max(w).ceil().max(0.0) as usize).min(n);
-            lo..hi
+            lo.min(hi)..hi
         };
+        let (origin, to_b, to_c) = (a.truncate(), (b - a).truncate(), (c - a).truncate());
+        let columns = range(a.x, b.x, c.x, self.width);
         for y in range(a.y, b.y, c.y, self.height) {
-            for x in range(a.x, b.x, c.x, self.width) {
-                let p = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-                let wb = (p - a.truncate()).perp_dot((c - a).truncate()) / area;
-                let wc = (b - a).truncate().perp_dot(p - a.truncate()) / area;
+            let row = y * self.width;
+            let seen = row + columns.start..row + columns.end;
+            let pixels = self.depth[seen.clone()].iter_mut().zip(&mut self.colour[seen.clone()]);
+            let pixels = pixels.zip(&mut self.facet[seen]).zip(columns.clone());
+            for (((depth, shade), number), x) in pixels {
+                let p = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - origin;
+                let wb = p.perp_dot(to_c) / area;
+                let wc = to_b.perp_dot(p) / area;
                 if wb < 0.0 || wc < 0.0 || wb + wc > 1.0 {
                     continue;
                 }
                 let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
-                let index = x + y * self.width;
-                if z > self.depth[index] + COINCIDENT {
-                    self.depth[index] = z;
-                    self.colour[index] = colour;
-                    self.facet[index] = facet;
+                if z > *depth + COINCIDENT {
+                    (*depth, *shade, *number) = (z, colour, facet);
                 }
             }
         }
@@ -312,13 +330,11 @@ impl Canvas {
     /// The pixels no farther than [`HALF`] from a place.
     fn around(&self, p: DVec3) -> impl Iterator<Item = usize> + use<> {
         let (width, height) = (self.width, self.height);
-        (-HALF..=HALF).flat_map(move |dy| (-HALF..=HALF).map(move |dx| [dx, dy])).filter_map(
-            move |[dx, dy]| {
-                let (x, y) = (p.x + f64::from(dx), p.y + f64::from(dy));
-                let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
-                (inside && dx * dx + dy * dy <= HALF * HALF).then(|| x as usize + y as usize * width)
-            },
-        )
+        DISC.into_iter().filter_map(move |[dx, dy]| {
+            let (x, y) = (p.x + dx, p.y + dy);
+            let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+            inside.then(|| x as usize + y as usize * width)
+        })
     }
 
     /// A line slightly in front of its facets, if one of them is visible.
