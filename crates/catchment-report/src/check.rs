@@ -1,6 +1,8 @@
 //! Result of checking a design file: the resolved design, or all its errors.
 
-use super::document::{Printed, characteristic_length, error_box, pose_errors, seven_digits};
+use super::document::{
+    Printed, SINGLE_PRECISION, characteristic_length, error_box, pose_errors, seven_digits,
+};
 use super::envelope::{ReportBody, ReportEnvelope};
 use catchment_core::connector::Origin;
 use catchment_core::design::{
@@ -8,7 +10,9 @@ use catchment_core::design::{
 };
 use catchment_core::design::{OwnSpec, PartSpec, ShapeSpec, SourceText, WidthFrom};
 use catchment_core::diagnostic::{Diagnostic, Diagnostics};
-use catchment_core::document::{Column, Document, Table, length as length_in, rounded as shortened};
+use catchment_core::document::{
+    Column, Document, Table, length as length_in, point_to_digits, rounded as shortened,
+};
 use catchment_core::pose::{Dof, PoseError};
 use catchment_core::problem::Problem;
 use glam::{DAffine3, DVec3};
@@ -327,10 +331,7 @@ fn describe_drawing(document: &mut Document, design: &Design, drawing: &DrawingR
         document.row(name, value);
     };
     let point = |half: &DrawnReport, p: [f64; 3]| {
-        // As many decimals as the largest coordinate has.
-        let largest = p.iter().fold(1e-9, |most: f64, c| most.max(c.abs()));
-        let digits = 10f64.powf(6.0 - largest.log10().floor());
-        let [x, y, z] = p.map(|c| (c * digits).round() / digits + 0.0);
+        let [x, y, z] = point_to_digits(p, SINGLE_PRECISION);
         let unit = half.unit.map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("({x}, {y}, {z}){unit}")
     };

@@ -17,8 +17,8 @@ mod table;
 mod units;
 
 pub use number::{
-    decimals, fixed, grouped, length, number, percent, rounded, rounded_down, significant, tenths,
-    tenths_between, with_error, with_interval,
+    decimals, fixed, grouped, length, number, percent, point_to_digits, rounded, rounded_down, significant,
+    tenths, tenths_between, to_digits, with_error, with_interval,
 };
 pub use table::{Cell, Column, ColumnFormat, Table};
 pub use units::DesignUnits;

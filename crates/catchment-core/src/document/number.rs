@@ -44,6 +44,30 @@ pub fn rounded(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
+/// A number rounded to so many significant digits.
+pub fn to_digits(value: f64, digits: i32) -> f64 {
+    if value == 0.0 || !value.is_finite() { value } else { to_place(value, digits - 1 - order(value)) }
+}
+
+/// Coordinates of a point with as many decimals as the largest has at so many significant digits; without −0.
+pub fn point_to_digits(point: [f64; 3], digits: i32) -> [f64; 3] {
+    /// Less than this is noise, in any unit of a drawing.
+    const SMALLEST: f64 = 1e-9;
+    let largest = point.iter().fold(SMALLEST, |most: f64, coordinate| most.max(coordinate.abs()));
+    point.map(|coordinate| to_place(coordinate, digits - 1 - order(largest)) + 0.0)
+}
+
+/// The power of ten of the first digit.
+fn order(value: f64) -> i32 {
+    value.abs().log10().floor() as i32
+}
+
+/// Multiplies or divides by an integer power of ten, which keeps the last digit exact.
+fn to_place(value: f64, places: i32) -> f64 {
+    let shift = 10f64.powi(places.abs());
+    if places >= 0 { (value * shift).round() / shift } else { (value / shift).round() * shift }
+}
+
 /// Four significant digits.
 pub fn significant(value: f64) -> String {
     if value == 0.0 {
@@ -134,6 +158,16 @@ mod tests {
         // Half of it would be more than the number itself.
         assert_eq!(with_error(0.002_053, [0.001_66, 0.004_772]), "0.001660 … 0.004772");
         assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
+    }
+
+    #[test]
+    fn lengths_of_single_precision_have_no_noise() {
+        let shown =
+            [84.209_999_1, 0.0, -0.012_345_678_9, 12_345_678.9, 50.0].map(|value| to_digits(value, 7));
+        assert_eq!(shown, [84.21, 0.0, -0.012_345_68, 12_345_680.0, 50.0]);
+        assert_eq!(to_digits(f64::INFINITY, 7), f64::INFINITY);
+        assert_eq!(point_to_digits([-12.345_678_91, 0.000_000_4, -1e-12], 7), [-12.345_68, 0.0, 0.0]);
+        assert_eq!(point_to_digits([0.0, -1e-17, 0.0], 7).map(f64::to_bits), [0; 3]);
     }
 
     #[test]

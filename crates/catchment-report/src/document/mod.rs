@@ -23,7 +23,7 @@ use crate::envelope::{ReportBody, ReportEnvelope};
 use crate::schema::Timing;
 use catchment_core::design::{ConnectorSpec, Design};
 use catchment_core::diagnostic::{Advice, Diagnostic, Severity};
-use catchment_core::document::{Document, Subject, Table, rounded};
+use catchment_core::document::{Document, Subject, Table, rounded, to_digits};
 use catchment_core::pose::Dof;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -250,26 +250,17 @@ fn own_length(design: &Design, value: f64) -> String {
     }
 }
 
-/// A length to at most seven significant digits: a file of single precision has no more.
+/// A length to seven significant digits: a file of single precision has no more.
 pub fn seven_digits(value: f64) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let places = 6.0 - value.abs().log10().floor();
-    let shift = 10f64.powf(places.abs());
-    // Multiply or divide by a power of ten, which keeps the last digit exact.
-    if places >= 0.0 { (value * shift).round() / shift } else { (value / shift).round() * shift }
+    to_digits(value, SINGLE_PRECISION)
 }
+
+/// Significant digits of a number in single precision.
+pub const SINGLE_PRECISION: i32 = 7;
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-
-    #[test]
-    fn lengths_of_single_precision_have_no_noise() {
-        let shown = [84.209_999_1, 0.0, -0.012_345_678_9, 12_345_678.9, 50.0].map(seven_digits);
-        assert_eq!(shown, [84.21, 0.0, -0.012_345_68, 12_345_680.0, 50.0]);
-    }
 
     use catchment_core::document::{Cell, Column, ColumnFormat};
 
@@ -327,6 +318,16 @@ warning: 2 poses are undecided
         ["\u{1b}[1m", "\u{1b}[33m", "\u{1b}[0m"]
             .iter()
             .fold(text.to_owned(), |text, code| text.replace(code, ""))
+    }
+
+    #[test]
+    fn notes_are_folded_between_words() {
+        let note = "  note: the halves touch at 12.5 mm; see docs/limits.md";
+        assert_eq!(folded(note, 80), note);
+        let lines = ["  note: the halves touch at", "    12.5 mm; see", "    docs/limits.md"];
+        assert_eq!(folded(note, 29), lines.join("\n"));
+        // A word longer than the line stays whole; a terminal may be narrower than the indentation.
+        assert_eq!(folded("see docs/limits.md", 3), "see\n  docs/limits.md");
     }
 
     #[test]
