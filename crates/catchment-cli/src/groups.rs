@@ -8,6 +8,7 @@
 //! The subcommands supply their own summaries; a test checks that every subcommand belongs to exactly one
 //! group.
 
+use crate::command::GROUPS;
 use clap::Command;
 use std::fmt::Write;
 
@@ -18,25 +19,6 @@ pub(crate) struct Group {
     /// The names of the subcommands, in order.
     pub(crate) names: &'static [&'static str],
 }
-
-/// The groups, with every subcommand that the help lists.
-pub(crate) const GROUPS: [Group; 6] = [
-    Group {
-        heading: "Every day",
-        names: &[
-            "new", "place", "check", "run", "window", "success", "trace", "rests", "compare", "sweep",
-            "report", "export", "view",
-        ],
-    },
-    Group { heading: "Forces", names: &["friction", "hold", "dynamics"] },
-    Group { heading: "Bench tests", names: &["plan", "validate"] },
-    Group {
-        heading: "Sections, planar and published connectors",
-        names: &["slices", "zraa", "catalog", "classify", "reproduce"],
-    },
-    Group { heading: "Systems", names: &["compose", "latch", "chain", "invert"] },
-    Group { heading: "Tools", names: &["schema", "completions", "man", "solids", "help"] },
-];
 
 /// The first commands to run.
 const FIRST: &str = "  catchment place socket.stl plug.stl --unit mm -o design.toml

@@ -1,7 +1,7 @@
 //! Tests of the help: it fits on a screen, ends with examples, and uses plain language.
 
 use crate::args;
-use crate::groups::GROUPS;
+use crate::command::GROUPS;
 use clap::Command;
 
 /// Narrowest supported terminal width.

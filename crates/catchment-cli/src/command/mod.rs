@@ -40,9 +40,29 @@ pub(crate) use view::admitted;
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use crate::groups::Group;
 use clap::Subcommand;
 
-/// The subcommands, in the order of the help ([`GROUPS`](crate::groups::GROUPS)).
+/// The groups, with every subcommand that the help lists.
+pub(crate) const GROUPS: [Group; 6] = [
+    Group {
+        heading: "Every day",
+        names: &[
+            "new", "place", "check", "run", "window", "success", "trace", "rests", "compare", "sweep",
+            "report", "export", "view",
+        ],
+    },
+    Group { heading: "Forces", names: &["friction", "hold", "dynamics"] },
+    Group { heading: "Bench tests", names: &["plan", "validate"] },
+    Group {
+        heading: "Sections, planar and published connectors",
+        names: &["slices", "zraa", "catalog", "classify", "reproduce"],
+    },
+    Group { heading: "Systems", names: &["compose", "latch", "chain", "invert"] },
+    Group { heading: "Tools", names: &["schema", "completions", "man", "solids", "help"] },
+];
+
+/// The subcommands, in the order of [`GROUPS`].
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     New(new::NewArgs),
