@@ -37,6 +37,8 @@ mod spread;
 mod survey;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_bounds;
 mod touch;
 mod tree;
 mod tube;
