@@ -101,14 +101,14 @@ impl Batch<'_> {
         let printed = Printed::new(&problem, &table, &self.method, sticking.as_ref());
         let streams = self.output.is_printed() && !self.json;
         let stop = running.exec.cancel_flag();
-        let report = |number, end| {
+        let print = |number, end| {
             // Computed here to run on all threads.
             let _may_stick = sticking.as_ref().map(|sticking| sticking.may_stick(number));
             if streams && !running.beside_bar(|| printed.push(number, end)) {
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        let followed = problem.follow_reporting(&self.method, table.errors(), &running.exec, &report)?;
+        let followed = problem.follow_reporting(&self.method, table.errors(), &running.exec, &print)?;
         drop(running);
         let report = OutcomesReport::new(&problem, &table, &self.method, &followed, sticking.as_ref());
         let text = match (streams, self.json) {

@@ -309,9 +309,9 @@ impl Canvas {
         let columns = range(a.x, b.x, c.x, self.width);
         for y in range(a.y, b.y, c.y, self.height) {
             let row = y * self.width;
-            let seen = row + columns.start..row + columns.end;
-            let pixels = self.depth[seen.clone()].iter_mut().zip(&mut self.colour[seen.clone()]);
-            let pixels = pixels.zip(&mut self.facet[seen]).zip(columns.clone());
+            let span = row + columns.start..row + columns.end;
+            let pixels = self.depth[span.clone()].iter_mut().zip(&mut self.colour[span.clone()]);
+            let pixels = pixels.zip(&mut self.facet[span]).zip(columns.clone());
             for (((depth, shade), number), x) in pixels {
                 let p = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - origin;
                 let wb = p.perp_dot(to_c) / area;
