@@ -7,6 +7,7 @@
 
 mod clock;
 mod guard;
+mod map;
 mod memory;
 mod progress;
 mod threads;
@@ -133,7 +134,8 @@ impl Exec {
         self.threads.count()
     }
 
-    /// Runs `work` on these threads; rayon iterators inside it use them.
+    /// Runs `work` on these threads; rayon iterators inside it use them. For items that cost much see
+    /// [`Exec::map`].
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.threads.install(work)
     }

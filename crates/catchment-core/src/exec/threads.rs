@@ -111,6 +111,17 @@ impl Threads {
             None => alone(work),
         }
     }
+
+    /// The same for work without a type: compiled once.
+    pub(super) fn run(&self, work: &mut (dyn FnMut() + Send)) {
+        self.install(work);
+    }
+}
+
+/// Does both in the pool of this thread, side by side if another of its threads is free. For work without a
+/// type: compiled once.
+pub(super) fn join(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+    rayon::join(first, second);
 }
 
 /// The stack of a thread, in bytes.

@@ -21,7 +21,6 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use crate::poses::covariance::cholesky;
-use rayon::prelude::*;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// A success probability.
@@ -166,19 +165,16 @@ fn weigh(mask: &Mask, weights: &[Vec<f64>], exec: &Exec) -> Result<f64, Cancelle
             .flat_map(|(word, weights)| bits(*word).map(|bit| weights[bit]))
             .sum(),
     };
-    let in_slab = |(number, weight): (usize, &f64)| -> Result<f64, Cancelled> {
-        exec.check()?;
+    let in_slab = |number: usize| {
         let mut cell = vec![0; shape.len()];
         let mut sum = 0.0;
         for words in mask.rows().skip(number * rows).take(rows) {
             sum += row(words) * inner.iter().zip(&cell).map(|(w, k)| w[*k]).product::<f64>();
             advance(&mut cell, &shape);
         }
-        Ok(sum * weight)
+        sum * slabs[number]
     };
-    let sums: Vec<f64> =
-        exec.install(|| slabs.par_iter().enumerate().map(in_slab).collect::<Result<_, Cancelled>>())?;
-    Ok(sums.iter().sum())
+    Ok(exec.map(slabs.len(), in_slab)?.iter().sum())
 }
 
 /// Probability of each cell along each axis, for independent errors with the standard distribution function `cdf`.

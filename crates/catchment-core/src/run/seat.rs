@@ -20,7 +20,6 @@ use crate::method::{DecisionMethod, motions_in};
 use crate::pose::{Dof, PoseError, rotation, rotation_angle};
 use crate::problem::{Problem, ProblemError};
 use crate::tolerance;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// The seat, and the residual misalignment of docked poses.
@@ -89,13 +88,8 @@ impl Seating {
         let pair = problem.pair();
         let count = (settings.default_samples(pair) / SHARE).max(FEWEST.min(motions_in(LONGEST, pair)));
         let poses = accepted(acceptance, count as u64, seed);
-        let ends: Vec<End> = exec.install(|| {
-            let follow = |follower: &mut Follower<'_>, pose: &PoseError| {
-                exec.check()?;
-                Ok(follower.rest(pose))
-            };
-            poses.par_iter().map_init(|| Follower::new(pair, settings), follow).collect::<Result<_, _>>()
-        })?;
+        let follow = |follower: &mut Follower<'_>, k: usize| follower.rest(&poses[k]);
+        let ends = exec.map_with(poses.len(), || Follower::new(pair, settings), follow)?;
         let seat = Seat::new(pair);
         let docked: Vec<End> = ends.into_iter().filter(|end| end.outcome == Outcome::Aligned).collect();
         let offs: Vec<[f64; 5]> = docked.iter().map(|end| seat.off(&end.error).to_array()).collect();

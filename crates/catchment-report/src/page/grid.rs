@@ -14,7 +14,6 @@ use catchment_core::acceptance::{Acceptance, Outcome};
 use catchment_core::diagnostic::Advice;
 use catchment_core::exec::Exec;
 use catchment_core::merit::MeritError;
-use rayon::prelude::*;
 
 /// Most cells of a chunk, unless a row has more.
 const CHUNK_CELLS: usize = 1 << 20;
@@ -61,12 +60,9 @@ pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, Pag
     let shape = grid.shape();
     let row = shape.first().copied().unwrap_or(1);
     let cells = chunk_cells(&shape);
-    let pack = |chunk: &[Outcome]| -> Result<Vec<u8>, PageError> {
-        exec.check()?;
-        Ok(deflated(&by_rows(chunk, row))?)
-    };
-    let packed =
-        exec.install(|| acceptance.outcomes.par_chunks(cells).map(pack).collect::<Result<_, _>>())?;
+    let chunks: Vec<&[Outcome]> = acceptance.outcomes.chunks(cells).collect();
+    let pack = |k: usize| -> Result<Vec<u8>, PageError> { Ok(deflated(&by_rows(chunks[k], row))?) };
+    let packed = exec.try_map(chunks.len(), pack)?;
     Ok(Chunks { cells, packed })
 }
 

@@ -32,7 +32,6 @@ use catchment_core::merit::MeritError;
 use catchment_core::method::flood::{DAM, Watersheds};
 use catchment_core::pose::ErrorUnit;
 use catchment_core::terminal::shown;
-use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -281,8 +280,7 @@ where
         stored(self.folder, || array.store_metadata_opt(&options).map_err(storage))?;
         let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
         let chunks: usize = grid.iter().product();
-        (0..chunks).into_par_iter().try_for_each(|number| {
-            self.exec.check()?;
+        self.exec.try_map(chunks, |number| {
             let place = unravel(number, &grid);
             let data = gather(&shape, &chunk, &place, self.fill, &value);
             stored(self.folder, || array.store_chunk(&wide(&place), data).map_err(storage))

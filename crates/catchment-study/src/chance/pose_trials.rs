@@ -12,7 +12,6 @@ use catchment_core::method::drop::Bench;
 use catchment_core::pose::PoseError;
 use catchment_core::poses::Circumstance;
 use catchment_core::problem::Problem;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const STAGE: &str = "drop tests";
@@ -168,21 +167,14 @@ impl Trials<'_> {
         let trials = self.settings.trials;
         let all = poses.len() * trials;
         let done = AtomicUsize::new(0);
-        let outcomes: Vec<Outcome> = exec.install(|| {
-            (0..all)
-                .into_par_iter()
-                .map(|k| {
-                    let error = &poses[k / trials];
-                    let outcome = self.fall(error, &self.draws(error)(k % trials), 1.0, exec)?;
-                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    exec.report(done as f64 / all as f64, STAGE);
-                    Ok(outcome)
-                })
-                .collect::<Result<_, ChanceError>>()
+        let outcomes = exec.try_map(all, |k| -> Result<Outcome, ChanceError> {
+            let error = &poses[k / trials];
+            let outcome = self.fall(error, &self.draws(error)(k % trials), 1.0, exec)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            exec.report(done as f64 / all as f64, STAGE);
+            Ok(outcome)
         })?;
-        let quasi_static: Vec<f64> = exec.install(|| {
-            poses.par_iter().map(|error| self.quasi_static(error, exec)).collect::<Result<_, ChanceError>>()
-        })?;
+        let quasi_static = exec.try_map(poses.len(), |k| self.quasi_static(&poses[k], exec))?;
         let of = |(k, error): (usize, &PoseError)| {
             let met = &outcomes[k * trials..(k + 1) * trials];
             let outcomes = Outcome::ALL.map(|outcome| met.iter().filter(|end| **end == outcome).count());

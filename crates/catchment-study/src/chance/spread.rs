@@ -19,7 +19,6 @@ use catchment_core::acceptance::{Outcome, Stream};
 use catchment_core::exec::Exec;
 use catchment_core::method::descent::Follower;
 use catchment_core::poses::Spread;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Exact motions for each trial: a motion takes a tenth of a millisecond, a trial some milliseconds.
@@ -112,7 +111,6 @@ impl StratifiedTrials<'_> {
         let wanted = MOTIONS_PER_TRIAL * trials.settings.overall;
         sample_by(source, &SAME, self.strata, wanted, exec, |numbered, part| {
             each(numbered, part, |number| {
-                part.check()?;
                 let settings = trials.motions(&self.draw(number))?;
                 let error = source.pose(&source.standard(number), &SAME);
                 Ok(Follower::new(trials.problem.pair(), &settings).follow(&error).outcome)
@@ -128,15 +126,10 @@ fn each(
     outcome: impl Fn(u64) -> Result<Outcome, ChanceError> + Sync,
 ) -> Result<Vec<Outcome>, ChanceError> {
     let done = AtomicUsize::new(0);
-    exec.install(|| {
-        numbered
-            .par_iter()
-            .map(|(_, number)| {
-                let outcome = outcome(*number)?;
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                exec.report(done as f64 / numbered.len() as f64, STAGE);
-                Ok(outcome)
-            })
-            .collect()
+    exec.try_map(numbered.len(), |k| {
+        let outcome = outcome(numbered[k].1)?;
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        exec.report(done as f64 / numbered.len() as f64, STAGE);
+        Ok(outcome)
     })
 }

@@ -42,7 +42,6 @@ use catchment_core::method::descent::{self, Follower, FrictionAmbiguity, Frictio
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use catchment_core::run::jams::{NamedFeature, Sticks, stuck_pairs};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -242,23 +241,15 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
     let without = descent::DescentSettings::default();
     let top = settings.frictions.last().copied().unwrap_or_default();
     let done = AtomicUsize::new(0);
-    let ways: Vec<PoseByFriction> = exec.install(|| {
-        poses
-            .par_iter()
-            .map_init(
-                || {
-                    let followers = ladder.iter().map(|settings| Follower::new(problem.pair(), settings));
-                    (Follower::new(problem.pair(), &without), followers.collect::<Vec<_>>())
-                },
-                |(free, followers), pose| {
-                    exec.check()?;
-                    let way = PoseByFriction::of(problem, pose, free, followers, &settings.frictions);
-                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    exec.report(done as f64 / poses.len() as f64, "poses");
-                    Ok(way)
-                },
-            )
-            .collect::<Result<_, Cancelled>>()
+    let start = || {
+        let followers = ladder.iter().map(|settings| Follower::new(problem.pair(), settings));
+        (Follower::new(problem.pair(), &without), followers.collect::<Vec<_>>())
+    };
+    let ways = exec.map_with(poses.len(), start, |(free, followers), k| {
+        let way = PoseByFriction::of(problem, &poses[k], free, followers, &settings.frictions);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        exec.report(done as f64 / poses.len() as f64, "poses");
+        way
     })?;
     let first = first_lost(&poses, &ways);
     let (poses, sticks) = stuck_pairs(problem, &first, exec)?;

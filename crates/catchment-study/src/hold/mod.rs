@@ -36,7 +36,6 @@ use catchment_core::method::descent::{
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
 use catchment_core::problem::Problem;
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -256,31 +255,10 @@ pub fn run(problem: &Problem, settings: &HoldSettings, exec: &Exec) -> Result<Ho
     let turns: Vec<(Dof, f64)> =
         free.iter().filter(|dof| dof.is_rotation()).flat_map(|dof| [(dof, 1.0), (dof, -1.0)]).collect();
     let refine = free.contains(Dof::X) && free.contains(Dof::Y);
-    let (sideways, torques, weakest) = exec.install(|| -> Result<_, Cancelled> {
-        let sideways: Vec<Sideways> = directions
-            .par_iter()
-            .map(|direction| {
-                exec.check()?;
-                Ok(tried.sideways(*direction))
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        exec.report(FIRST_SHARE, STAGE);
-        let torques: Vec<Torque> = turns
-            .par_iter()
-            .map(|(axis, sign)| {
-                exec.check()?;
-                Ok(tried.torque(*axis, *sign))
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        let weakest: Vec<Option<Sideways>> = (0..COLUMNS)
-            .into_par_iter()
-            .map(|column| {
-                exec.check()?;
-                Ok(tried.weakest(&sideways, column, refine))
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        Ok((sideways, torques, weakest))
-    })?;
+    let sideways = exec.map(directions.len(), |k| tried.sideways(directions[k]))?;
+    exec.report(FIRST_SHARE, STAGE);
+    let torques = exec.map(turns.len(), |k| tried.torque(turns[k].0, turns[k].1))?;
+    let weakest = exec.map(COLUMNS, |column| tried.weakest(&sideways, column, refine))?;
     exec.report(1.0, STAGE);
     let [smooth_guided, smooth_free, rough_guided, rough_free] =
         std::array::from_fn(|column| weakest[column]);

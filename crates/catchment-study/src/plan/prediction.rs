@@ -7,7 +7,6 @@ use catchment_core::method::descent;
 use catchment_core::pose::PoseError;
 use catchment_core::poses::ObservedOutcome;
 use catchment_core::problem::Problem;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -68,24 +67,18 @@ impl Prediction {
 }
 
 /// Work on every number below `count`, each thread with a tool of its own; in the order of the numbers.
-pub(crate) fn for_each<T: Send, A>(
+pub(crate) fn for_each<T: Send, A: Send>(
     count: usize,
     exec: &Exec,
-    tool: impl Fn() -> A + Sync + Send,
-    work: impl Fn(&mut A, usize) -> T + Sync + Send,
+    tool: impl Fn() -> A + Sync,
+    work: impl Fn(&mut A, usize) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
     let done = AtomicUsize::new(0);
-    exec.install(|| {
-        (0..count)
-            .into_par_iter()
-            .map_init(tool, |tool, k| {
-                exec.check()?;
-                let result = work(tool, k);
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                exec.report(done as f64 / count as f64, "motions");
-                Ok(result)
-            })
-            .collect()
+    exec.map_with(count, tool, |tool, k| {
+        let result = work(tool, k);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        exec.report(done as f64 / count as f64, "motions");
+        result
     })
 }
 

@@ -158,16 +158,13 @@ fn follow(
     exec: &Exec,
 ) -> Result<Vec<Outcome>, Cancelled> {
     let done = std::sync::atomic::AtomicUsize::new(0);
-    exec.install(|| {
-        let outcome = |follower: &mut Follower<'_>, (_, number): &(usize, u64)| {
-            exec.check()?;
-            let result = follower.follow(&source.pose(&source.standard(*number), factors)).outcome;
-            let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            exec.report(done as f64 / numbered.len() as f64, "random motions");
-            Ok(result)
-        };
-        numbered.par_iter().map_init(|| Follower::new(problem.pair(), &source.motions), outcome).collect()
-    })
+    let outcome = |follower: &mut Follower<'_>, k: usize| {
+        let result = follower.follow(&source.pose(&source.standard(numbered[k].1), factors)).outcome;
+        let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        exec.report(done as f64 / numbered.len() as f64, "random motions");
+        result
+    };
+    exec.map_with(numbered.len(), || Follower::new(problem.pair(), &source.motions), outcome)
 }
 
 impl Sample {
@@ -226,23 +223,20 @@ impl Sample {
     /// By stratum and error: sum of the scores of all errors that were drawn, and of their squares. In blocks, in their order, so that
     /// threads change nothing.
     fn score_sums(&self, source: &Source<'_>, exec: &Exec) -> Result<Vec<[[f64; 2]; 5]>, Cancelled> {
-        let of_block = |(block, labels): (usize, &[u8])| {
-            exec.check()?;
+        let blocks: Vec<&[u8]> = self.labels.chunks(BLOCK).collect();
+        let of_block = |block: usize| {
             let mut sums = vec![[[0.0; 2]; 5]; STRATA];
-            for (k, label) in labels.iter().enumerate() {
+            for (k, label) in blocks[block].iter().enumerate() {
                 let scores = source.scores(&source.standard((block * BLOCK + k) as u64));
                 for (sum, score) in sums[usize::from(*label)].iter_mut().zip(scores) {
                     sum[0] += score;
                     sum[1] += score * score;
                 }
             }
-            Ok(sums)
+            sums
         };
-        let blocks: Vec<Vec<[[f64; 2]; 5]>> = exec.install(|| {
-            self.labels.par_chunks(BLOCK).enumerate().map(of_block).collect::<Result<_, Cancelled>>()
-        })?;
         let mut sums = vec![[[0.0; 2]; 5]; STRATA];
-        for block in blocks {
+        for block in exec.map(blocks.len(), of_block)? {
             for (sum, part) in sums.iter_mut().flatten().flatten().zip(block.iter().flatten().flatten()) {
                 *sum += part;
             }

@@ -24,7 +24,6 @@ use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::descent::{self, Follower};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
-use rayon::prelude::*;
 
 /// Failures of the sample that are bisected.
 const NEAREST: usize = 64;
@@ -174,16 +173,15 @@ fn nearest(
     zs: &[[f64; 5]],
     exec: &Exec,
 ) -> Result<(Option<Failing>, usize), Cancelled> {
-    let look = |follower: &mut Follower<'_>, z: &[f64; 5]| {
-        exec.check()?;
-        let mut motions = 0;
+    let look = |follower: &mut Follower<'_>, k: usize| {
+        let (z, mut motions) = (&zs[k], 0);
         let mut outcome = |part: f64| {
             motions += 1;
             follower.follow(&source.pose(&z.map(|v| v * part), &SAME)).outcome
         };
         let mut fails = outcome(1.0);
         if fails == Outcome::Aligned {
-            return Ok((None, motions));
+            return (None, motions);
         }
         let (mut safe, mut failing) = (0.0, 1.0);
         while failing - safe > SHARP * failing {
@@ -197,13 +195,10 @@ fn nearest(
             }
         }
         let z = z.map(|v| v * failing);
-        Ok((Some(Failing { z, distance: source.distance(&z), outcome: fails }), motions))
+        (Some(Failing { z, distance: source.distance(&z), outcome: fails }), motions)
     };
-    let result: Vec<(Option<Failing>, usize)> = exec.install(|| {
-        zs.par_iter()
-            .map_init(|| Follower::new(problem.pair(), &source.motions), look)
-            .collect::<Result<_, Cancelled>>()
-    })?;
+    let result: Vec<(Option<Failing>, usize)> =
+        exec.map_with(zs.len(), || Follower::new(problem.pair(), &source.motions), look)?;
     let motions = result.iter().map(|(_, motions)| motions).sum();
     let failing = result.into_iter().filter_map(|(failing, _)| failing);
     Ok((failing.min_by(|a, b| a.distance.total_cmp(&b.distance)), motions))

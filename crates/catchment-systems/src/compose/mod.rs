@@ -69,7 +69,6 @@ pub use sum::{SumError, minkowski_sum};
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
 use measure::{AxisReach, LargestSquare, largest_square, reach, square_about};
-use rayon::prelude::*;
 use read::{Measure, ParsedRegion};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -209,8 +208,8 @@ pub fn compose(
             of_second: other.measure,
         });
     }
-    let slice = |&heading: &f64| -> Result<HeadingSlice, ComposeError> {
-        exec.check()?;
+    let slice = |k: usize| -> Result<HeadingSlice, ComposeError> {
+        let heading = settings.headings[k];
         let of =
             |pair: &[ParsedRegion; 2]| pair[0].region.sum(&added(&pair[1].region, settings.frames, heading));
         let mut region = of(&halves)?;
@@ -219,8 +218,7 @@ pub fn compose(
         }
         Ok(HeadingSlice { heading, region })
     };
-    let slices: Vec<HeadingSlice> =
-        exec.install(|| settings.headings.par_iter().map(slice).collect::<Result<_, _>>())?;
+    let slices = exec.try_map(settings.headings.len(), slice)?;
     let shown = (0..slices.len())
         .min_by(|a, b| slices[*a].heading.abs().total_cmp(&slices[*b].heading.abs()))
         .unwrap_or_default();
@@ -273,12 +271,9 @@ fn map(
     }
     let cells = [high.x - low.x, high.y - low.y].map(|extent| ((extent / cell).ceil() as usize).max(1));
     let overlap = RegionOverlap::new(first, stands);
-    let row = |j: usize| -> Result<Vec<f64>, Cancelled> {
-        exec.check()?;
+    let row = |j: usize| -> Vec<f64> {
         let at = |i: usize| low + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * cell;
-        Ok((0..cells[0]).map(|i| overlap.at(at(i))).collect())
+        (0..cells[0]).map(|i| overlap.at(at(i))).collect()
     };
-    let rows: Vec<Vec<f64>> =
-        exec.install(|| (0..cells[1]).into_par_iter().map(row).collect::<Result<_, _>>())?;
-    Ok(OverlapMap { low, cell, cells, values: rows.concat() })
+    Ok(OverlapMap { low, cell, cells, values: exec.map(cells[1], row)?.concat() })
 }

@@ -27,7 +27,6 @@ use catchment::method::partition;
 use catchment::method::transport;
 use catchment::method::zraa::{self, Zraa};
 use catchment::pose::{Dof, DofSet, PoseError};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -135,14 +134,11 @@ impl Recipe {
                 .map(|k| (value(ours, k), value(exact, k).map(|value| ExactValue { value, ci95: None })))
                 .collect());
         }
-        (0..columns)
-            .into_par_iter()
-            .map(|column| {
-                let ours = self.compute(row, column, exec)?;
-                let exact = if exact { self.exact(row, column, exec)? } else { None };
-                Ok((ours, exact))
-            })
-            .collect()
+        exec.try_map(columns, |column| {
+            let ours = self.compute(row, column, exec)?;
+            let exact = if exact { self.exact(row, column, exec)? } else { None };
+            Ok((ours, exact))
+        })
     }
 
     /// Our value of one entry by the method of its table; `None` if that method or the geometry is not available.

@@ -24,7 +24,6 @@ use super::survey::Survey;
 use crate::contact::{Nearby, Pair};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::Dof;
-use rayon::prelude::*;
 
 /// Growth factor of a neighbourhood per step.
 const GROWTH: f64 = 1.25;
@@ -202,11 +201,7 @@ impl Growth<'_> {
         pieces: &[Piece],
         look: impl Fn(&Piece, &mut Nearby<'_>) -> T + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        let look = |nearby: &mut Nearby<'_>, piece: &Piece| {
-            self.exec.check()?;
-            Ok(look(piece, nearby))
-        };
-        self.exec.install(|| pieces.par_iter().map_init(|| self.pair.about(REACH), look).collect())
+        self.exec.map_with(pieces.len(), || self.pair.about(REACH), |nearby, k| look(&pieces[k], nearby))
     }
 
     fn everything(&self) -> Box<[u32]> {

@@ -55,7 +55,6 @@ use grown::Growth;
 use home::Home;
 use interval::Interval;
 use placed::{Bodies, PoseBox};
-use rayon::prelude::*;
 pub(crate) use rest::{applies, depths};
 use serde::{Deserialize, Serialize};
 use spread::{ahead, spread};
@@ -337,13 +336,8 @@ fn divide(
     bodies: &Bodies,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
-    let parts: Vec<Vec<Cell>> = exec.install(|| {
-        let look = |nearby: &mut Nearby<'_>, number: &usize| {
-            exec.check()?;
-            Ok(tree.parts(*number, all, bodies, nearby))
-        };
-        numbers.par_iter().map_init(|| pair.about(REACH), look).collect::<Result<_, Cancelled>>()
-    })?;
+    let look = |nearby: &mut Nearby<'_>, k: usize| tree.parts(numbers[k], all, bodies, nearby);
+    let parts: Vec<Vec<Cell>> = exec.map_with(numbers.len(), || pair.about(REACH), look)?;
     for (number, parts) in numbers.iter().zip(parts) {
         tree.split(*number, parts);
     }
@@ -359,14 +353,9 @@ fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Ex
     };
     let open: Vec<usize> =
         tree.leaves().filter(|(_, cell)| is_open(cell)).map(|(number, _)| number).collect();
-    let result: Vec<Option<Label>> = exec.install(|| {
-        let tube = Tube { bodies, tree };
-        let follow = |nearby: &mut Nearby<'_>, number: &usize| {
-            exec.check()?;
-            Ok(tube.follow(&tree.cells[*number], nearby))
-        };
-        open.par_iter().map_init(|| pair.about(REACH), follow).collect::<Result<_, Cancelled>>()
-    })?;
+    let tube = Tube { bodies, tree };
+    let follow = |nearby: &mut Nearby<'_>, k: usize| tube.follow(&tree.cells[open[k]], nearby);
+    let result: Vec<Option<Label>> = exec.map_with(open.len(), || pair.about(REACH), follow)?;
     for (number, label) in open.into_iter().zip(result) {
         tree.cells[number].label = label;
         tree.cells[number].followed = boxes;
@@ -409,12 +398,7 @@ impl SeatBoxes<'_> {
 impl Certified {
     /// The certain outcome of every cell of a grid: of all of its poses.
     pub(crate) fn acceptance(&self, grid: &Grid, exec: &Exec) -> Result<Acceptance, Cancelled> {
-        let outcome = |index: usize| {
-            exec.check()?;
-            Ok(self.outcome(grid, index))
-        };
-        let outcomes: Vec<Outcome> =
-            exec.install(|| (0..grid.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
+        let outcomes = exec.map(grid.len(), |index| self.outcome(grid, index))?;
         let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
         let note = format!(
             "{undecided} of {} cells hold poses that are not certain; docking is certain in the others that count as aligned",

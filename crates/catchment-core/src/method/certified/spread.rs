@@ -21,7 +21,6 @@ use super::flood::Seat;
 use super::tree::{Cell, Face, Label, Tree};
 use crate::exec::{Cancelled, Exec};
 use crate::tolerance::COINCIDENT;
-use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -76,10 +75,7 @@ fn back(
         |to: &Cell, from: &Cell, face: Face| through(from) && goes(from, to, face.axis(), !face.above);
     let mut leads = chained(tree, &sources, leads_on, exec)?;
     let way = SourceChains { tree, sources: &sources, leads: &leads };
-    let ruled_out: Vec<Vec<usize>> = exec.install(|| {
-        let ruled_out = |bearing: usize| way.ruled_out(bearing, exec);
-        (0..tree.bearings.len()).into_par_iter().map(ruled_out).collect::<Result<_, Cancelled>>()
-    })?;
+    let ruled_out = exec.try_map(tree.bearings.len(), |bearing| way.ruled_out(bearing, exec))?;
     for number in ruled_out.into_iter().flatten() {
         leads[number] = false;
     }

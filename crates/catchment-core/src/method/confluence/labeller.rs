@@ -98,13 +98,7 @@ impl Labeller<'_> {
         work: impl Fn(&mut Follower<'_>, u32) -> T + Sync,
     ) -> Result<Vec<T>, Cancelled> {
         let start = || Follower::new(self.pair, &self.settings.descent);
-        exec.install(|| {
-            let one = |follower: &mut Follower<'_>, cell: &u32| {
-                exec.check()?;
-                Ok(work(follower, *cell))
-            };
-            cells.par_iter().map_init(start, one).collect()
-        })
+        exec.map_with(cells.len(), start, |follower, k| work(follower, cells[k]))
     }
 
     /// Whether the time is over: then only the motions that measure the error rate of the labels are

@@ -39,7 +39,6 @@ use crate::landscape::Grid;
 use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
 pub use interval::{CombinedShares, StratumCounts};
-use rayon::prelude::*;
 pub use schedule::{Batch, allot, next};
 use serde::{Deserialize, Serialize};
 use strata::Strata;
@@ -178,12 +177,9 @@ pub fn estimate(
         let numbered: Vec<(usize, usize)> = (0..present.len())
             .flat_map(|k| (seen[k].descents..seen[k].descents + given[k]).map(move |j| (k, j)))
             .collect();
-        let poses = exec.install(|| {
-            let pose = |(k, j): &(usize, usize)| {
-                exec.check()?;
-                Ok(draw(grid, &strata, present[*k], seed, *j))
-            };
-            numbered.par_iter().map(pose).collect::<Result<_, Cancelled>>()
+        let poses = exec.map(numbered.len(), |number| {
+            let (k, j) = numbered[number];
+            draw(grid, &strata, present[k], seed, j)
         })?;
         let now = schedule::progress(stop, total, started.elapsed(), &whole);
         let share = batch.poses as f64 / (total + batch.poses) as f64;

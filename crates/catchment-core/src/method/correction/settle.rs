@@ -4,7 +4,6 @@ use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::pose::PoseError;
-use rayon::prelude::*;
 
 /// Number of cells between two checks for cancellation.
 const BLOCK: usize = 1 << 16;
@@ -22,23 +21,13 @@ pub fn ambiguous(
 ) -> Result<(usize, Vec<usize>), Cancelled> {
     let blocks = cells.div_ceil(BLOCK);
     let within = |block: usize| block * BLOCK..cells.min((block + 1) * BLOCK);
-    exec.install(|| {
-        let count = |block| {
-            exec.check()?;
-            Ok(within(block).filter(|cell| is_ambiguous(*cell)).count())
-        };
-        let counts: Vec<usize> = (0..blocks).into_par_iter().map(count).collect::<Result<_, _>>()?;
-        let count = counts.iter().sum();
-        if count > most {
-            return Ok((count, Vec::new()));
-        }
-        let listed = |block| {
-            exec.check()?;
-            Ok(within(block).filter(|cell| is_ambiguous(*cell)).collect::<Vec<_>>())
-        };
-        let lists: Vec<_> = (0..blocks).into_par_iter().map(listed).collect::<Result<_, _>>()?;
-        Ok((count, lists.concat()))
-    })
+    let found = |block| within(block).filter(|cell| is_ambiguous(*cell));
+    let count = exec.map(blocks, |block| found(block).count())?.into_iter().sum();
+    if count > most {
+        return Ok((count, Vec::new()));
+    }
+    let lists = exec.map(blocks, |block| found(block).collect::<Vec<_>>())?;
+    Ok((count, lists.concat()))
 }
 
 /// Follows the centres of `cells` by `follow`, which returns an outcome for each pose, and overwrites their

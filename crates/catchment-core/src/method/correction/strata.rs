@@ -14,7 +14,6 @@ use super::CorrectionError;
 use crate::acceptance::Outcome;
 use crate::diagnostic::Advice;
 use crate::exec::Exec;
-use rayon::prelude::*;
 
 /// A partition of the cells of a grid into a few strata. Any partition keeps the Sum unbiased; a good
 /// partition has strata in which nearly all poses have the same outcome.
@@ -56,18 +55,12 @@ impl<'a, S: Stratify> Strata<'a, S> {
         let blocks = cells.div_ceil(block);
         let needed = (blocks + 1) * (strata * size_of::<u64>() + size_of::<[u32; MOST_STRATA]>());
         exec.ensure_fits("the strata of the grid", needed as u64, |_| vec![Advice::MoreMemory])?;
-        let counted: Vec<[u32; MOST_STRATA]> = exec.install(|| {
-            (0..blocks)
-                .into_par_iter()
-                .map(|b| {
-                    exec.check()?;
-                    let mut counts = [0; MOST_STRATA];
-                    for cell in b * block..cells.min((b + 1) * block) {
-                        counts[place(by, cell, strata)] += 1;
-                    }
-                    Ok(counts)
-                })
-                .collect::<Result<_, CorrectionError>>()
+        let counted = exec.map(blocks, |b| {
+            let mut counts = [0u32; MOST_STRATA];
+            for cell in b * block..cells.min((b + 1) * block) {
+                counts[place(by, cell, strata)] += 1;
+            }
+            counts
         })?;
         let mut before = Vec::with_capacity(strata * (blocks + 1));
         for stratum in 0..strata {

@@ -333,24 +333,16 @@ fn each(
     let done = AtomicUsize::new(0);
     // Descents between two reports: some take seconds each.
     let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
-    let ends: Vec<End> = exec.install(|| {
-        (0..count)
-            .into_par_iter()
-            .map_init(
-                || Motion::new(pair, settings).homing(),
-                |motion, k| {
-                    exec.check()?;
-                    let end = motion.follow(&domain.pose(k), until, &mut NoObserver);
-                    finished(k, end);
-                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    if done.is_multiple_of(between) {
-                        exec.report(done as f64 / count as f64, "descents");
-                    }
-                    Ok(end)
-                },
-            )
-            .collect::<Result<_, Cancelled>>()
-    })?;
+    let follow = |motion: &mut Motion<'_>, k: usize| {
+        let end = motion.follow(&domain.pose(k), until, &mut NoObserver);
+        finished(k, end);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(between) {
+            exec.report(done as f64 / count as f64, "descents");
+        }
+        end
+    };
+    let ends = exec.map_with(count, || Motion::new(pair, settings).homing(), follow)?;
     let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
     let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
     let warnings =

@@ -54,7 +54,6 @@ use crate::pose::{Dof, PoseError};
 use engine::{Engine, Shapes};
 use glam::DVec3;
 use mass::Mass;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Why there are no drop tests.
@@ -126,19 +125,14 @@ fn run_observed(
     })?;
     let count = count.unwrap_or_default();
     let done = AtomicUsize::new(0);
-    let ends: Vec<End> = exec.install(|| {
-        (0..count)
-            .into_par_iter()
-            .map(|k| {
-                let end = decide(&engine, pair, settings, &domain.pose(k), exec)?;
-                finished(k, end);
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                if done.is_multiple_of(16) {
-                    exec.report(done as f64 / count as f64, "drop tests");
-                }
-                Ok(end)
-            })
-            .collect::<Result<_, Cancelled>>()
+    let ends = exec.try_map(count, |k| -> Result<End, Cancelled> {
+        let end = decide(&engine, pair, settings, &domain.pose(k), exec)?;
+        finished(k, end);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(16) {
+            exec.report(done as f64 / count as f64, "drop tests");
+        }
+        Ok(end)
     })?;
     let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
     let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();

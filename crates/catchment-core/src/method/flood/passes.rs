@@ -18,7 +18,6 @@ use super::drain::Basins;
 use super::sweep::{Slabs, level_of, number_of};
 use crate::disjoint::DisjointSets;
 use crate::exec::{Cancelled, Exec};
-use rayon::prelude::*;
 
 /// A pass between two basins; passes order by level first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,7 +42,9 @@ pub(super) fn passes(
     if count < 2 {
         return Ok(Vec::new());
     }
-    let of_run = |run: std::ops::Range<usize>| {
+    let runs = slabs.runs(exec);
+    let of_run = |number: usize| -> Result<Vec<Pass>, Cancelled> {
+        let run = runs[number].clone();
         let mut found = PassTable::new(count);
         let (mut here, mut next) = (Vec::new(), Vec::new());
         let load = |k: usize, words: &mut Vec<u64>, found: &mut PassTable| {
@@ -63,9 +64,7 @@ pub(super) fn passes(
         found.flush();
         Ok(found.passes)
     };
-    let found: Vec<Vec<Pass>> =
-        exec.install(|| slabs.runs(exec).into_par_iter().map(of_run).collect::<Result<_, _>>())?;
-    let mut passes = found.concat();
+    let mut passes = exec.try_map(runs.len(), of_run)?.concat();
     thin(&mut passes, count);
     Ok(passes)
 }

@@ -44,7 +44,6 @@ use crate::diagnostic::{Advice, Diagnostic};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::pose::{Dof, DofSet, Mount};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 use stepping::{Faces, Halt};
@@ -227,12 +226,10 @@ pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, K
     exec.ensure_fits("the outcome of every cell", cells, |_| vec![Advice::CoarserGrid])?;
     let (starts, cor) = (settings.starts(), design.alignment.center_of_rotation);
     let outcome = |cell: usize| {
-        exec.check()?;
         let error = grid.pose(cell);
-        Ok(starts.outcome(error.x - cor * error.pitch.sin(), -error.pitch))
+        starts.outcome(error.x - cor * error.pitch.sin(), -error.pitch)
     };
-    let outcomes: Vec<Outcome> =
-        exec.install(|| (0..grid.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
+    let outcomes = exec.map(grid.len(), outcome)?;
     let text = match settings.face {
         PlanarFace::VFace | PlanarFace::SFace => {
             "the kinematic bounds are the best case: outside them a start fails, inside it may"

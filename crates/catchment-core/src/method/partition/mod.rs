@@ -44,7 +44,6 @@ use compose::Compartment;
 use glam::DVec2;
 pub use outline::Corner;
 use pieces::Pieces;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 pub use solids::{Solid, SolidError, SolidShape, Solids, shapes};
 use watershed::{Parts, Watersheds};
@@ -222,15 +221,7 @@ pub fn run(pair: &Pair, settings: &PartitionSettings, exec: &Exec) -> Result<Par
         .collect();
     let mut cells = Cells::new(&result, free, alignment.rotation_length, limits);
     drop(result);
-    let gates: Vec<Vec<cells::Gate>> = exec.install(|| {
-        (0..cells.all.len())
-            .into_par_iter()
-            .map(|k| {
-                exec.check()?;
-                Ok(cells.gates_of(k))
-            })
-            .collect::<Result<_, Cancelled>>()
-    })?;
+    let gates = exec.map(cells.all.len(), |k| cells.gates_of(k))?;
     for (cell, gates) in cells.all.iter_mut().zip(gates) {
         cell.gates = gates;
     }
@@ -257,17 +248,11 @@ fn spaces(
     exec: &Exec,
 ) -> Result<Vec<(Compartment, Vec<space::Tile>)>, Cancelled> {
     let done = std::sync::atomic::AtomicUsize::new(0);
-    exec.install(|| {
-        compartments
-            .par_iter()
-            .map(|compartment| {
-                exec.check()?;
-                let tiles = space::tiles(pairs, compartment, alignment.free, exec)?;
-                let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-                exec.report(done as f64 / compartments.len() as f64, "contact space");
-                Ok((compartment.clone(), tiles))
-            })
-            .collect()
+    exec.try_map(compartments.len(), |k| {
+        let tiles = space::tiles(pairs, &compartments[k], alignment.free, exec)?;
+        let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+        exec.report(done as f64 / compartments.len() as f64, "contact space");
+        Ok((compartments[k].clone(), tiles))
     })
 }
 
@@ -336,14 +321,7 @@ impl Partition {
 
     /// Outcome of the centre of every cell of a grid, or of every pose.
     pub fn acceptance(&self, domain: Domain, exec: &Exec) -> Result<Acceptance, Cancelled> {
-        let outcome = |k: usize| {
-            if k.is_multiple_of(256) {
-                exec.check()?;
-            }
-            Ok(self.outcome(&domain.pose(k)))
-        };
-        let outcomes: Vec<Outcome> = exec
-            .install(|| (0..domain.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
+        let outcomes = exec.map(domain.len(), |k| self.outcome(&domain.pose(k)))?;
         let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
         let mut warnings = Vec::new();
         if self.watersheds.cut_off {

@@ -26,7 +26,6 @@ use crate::exec::{Cancelled, Exec};
 use crate::polytope::{Polytope, PolytopePoint};
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
-use rayon::prelude::*;
 
 /// The watersheds of a cell.
 #[derive(Debug, Clone)]
@@ -75,16 +74,8 @@ pub(super) fn drain(
     is_aligned: impl Fn(&PolytopePoint) -> bool,
     exec: &Exec,
 ) -> Result<Watersheds, Cancelled> {
-    let fates: Vec<Vec<Option<MotionEnd>>> = exec.install(|| {
-        (0..cells.all.len())
-            .into_par_iter()
-            .map(|k| {
-                exec.check()?;
-                Ok(gate_fates(cells, k))
-            })
-            .collect::<Result<_, Cancelled>>()
-    })?;
     let count = cells.all.len();
+    let fates = exec.map(count, |k| gate_fates(cells, k))?;
     let mut draining = Draining {
         cells,
         is_aligned,

@@ -5,7 +5,6 @@ use super::polygon_index::PolygonIndex;
 use super::sheet::{Sheet, area};
 use crate::exec::{Cancelled, Exec};
 use glam::DVec2;
-use rayon::prelude::*;
 
 /// Cells smaller than this square of the seam's width, in multiples of the seam, are rounding.
 const SLIVER: f64 = 10.0;
@@ -38,19 +37,13 @@ impl Border {
 
 /// The upper envelope of the sheets: every sheet keeps the region in which no other is higher.
 pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
-    exec.install(|| {
-        let seen = seen(sheets, exec)?;
-        let places = PolygonIndex::new(seen.iter().map(|i| &sheets[*i].footprint[..]), 0.0);
-        let parts = seen
-            .par_iter()
-            .map(|i| {
-                exec.check()?;
-                let polygons = uncovered(*i, &seen, sheets, &places, seam);
-                Ok(polygons.into_iter().map(|polygon| Cell { polygon, sheet: *i }).collect())
-            })
-            .collect::<Result<Vec<Vec<Cell>>, Cancelled>>()?;
-        Ok(parts.into_iter().flatten().collect())
-    })
+    let seen = seen(sheets, exec)?;
+    let places = PolygonIndex::new(seen.iter().map(|i| &sheets[*i].footprint[..]), 0.0);
+    let parts = exec.map(seen.len(), |k| {
+        let polygons = uncovered(seen[k], &seen, sheets, &places, seam);
+        polygons.into_iter().map(|polygon| Cell { polygon, sheet: seen[k] }).collect::<Vec<_>>()
+    })?;
+    Ok(parts.into_iter().flatten().collect())
 }
 
 /// The sheets that are not hidden by a single other sheet, ascending: about one in ten for pins and holes.
@@ -59,9 +52,8 @@ pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result
 /// the first is visible. Only the sheet that is the highest over the middle is tried.
 fn seen(sheets: &[Sheet], exec: &Exec) -> Result<Vec<usize>, Cancelled> {
     let places = PolygonIndex::new(sheets.iter().map(|sheet| &sheet.footprint[..]), 0.0);
-    let is_seen = |i: &usize| {
-        exec.check()?;
-        let own = &sheets[*i];
+    let is_seen = |i: usize| {
+        let own = &sheets[i];
         let middle = own.footprint.iter().sum::<DVec2>() / own.footprint.len() as f64;
         let above = |j: usize| (sheets[j].height(middle), std::cmp::Reverse(j));
         let order = |a: &(f64, std::cmp::Reverse<usize>), b: &(f64, std::cmp::Reverse<usize>)| {
@@ -69,21 +61,18 @@ fn seen(sheets: &[Sheet], exec: &Exec) -> Result<Vec<usize>, Cancelled> {
         };
         let top = places
             .near(&[middle])
-            .filter(|j| j != i && holds(&sheets[*j].footprint, middle))
+            .filter(|j| *j != i && holds(&sheets[*j].footprint, middle))
             .map(above)
             .max_by(order);
         let hidden = top.is_some_and(|(_, std::cmp::Reverse(j))| {
             let other = &sheets[j];
             let steps = own.footprint.iter().map(|p| other.height(*p) - own.height(*p));
             let (least, most) = steps.fold((f64::INFINITY, 0.0f64), |(lo, hi), d| (lo.min(d), hi.max(d)));
-            least >= 0.0
-                && (most > 0.0 || j < *i)
-                && own.footprint.iter().all(|p| holds(&other.footprint, *p))
+            least >= 0.0 && (most > 0.0 || j < i) && own.footprint.iter().all(|p| holds(&other.footprint, *p))
         });
-        Ok(!hidden)
+        !hidden
     };
-    let seen: Vec<bool> =
-        (0..sheets.len()).into_par_iter().map(|i| is_seen(&i)).collect::<Result<_, Cancelled>>()?;
+    let seen = exec.map(sheets.len(), is_seen)?;
     Ok((0..sheets.len()).filter(|i| seen[*i]).collect())
 }
 

@@ -55,7 +55,6 @@ use crate::problem::Problem;
 use clusters::Cluster;
 use images::Images;
 use pairs::touching;
-use rayon::prelude::*;
 use rests::{PoseFollower, RestEnd, RestFilter};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -260,15 +259,11 @@ fn of(
         RestGroup { symmetry: images.symmetry(&rests[cluster.middle].pose, found.above), ..found }
     };
     let mut groups: Vec<RestGroup> = found.iter().map(jam).collect();
-    let seen = exec.install(|| {
-        let examine = |(k, cluster): (usize, &Cluster)| {
-            exec.check()?;
-            let rest = &rests[cluster.middle];
-            Ok(follow.examine(rest, cluster, settings.seed.wrapping_add(k as u64)).0)
-        };
-        let looked: Vec<(usize, &Cluster)> = found.iter().enumerate().take(settings.examined).collect();
-        looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>()
-    })?;
+    let examine = |k: usize| {
+        let (cluster, seed) = (&found[k], settings.seed.wrapping_add(k as u64));
+        follow.examine(&rests[cluster.middle], cluster, seed).0
+    };
+    let seen = exec.map(found.len().min(settings.examined), examine)?;
     for (group, examined) in groups.iter_mut().zip(seen) {
         group.examined = Some(examined);
     }

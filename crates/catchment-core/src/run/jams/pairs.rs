@@ -7,7 +7,6 @@ use crate::exec::{Cancelled, Exec};
 use crate::method::descent;
 use crate::pose::PoseError;
 use crate::problem::Problem;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A pair of features, and in how many rests it touches.
@@ -40,15 +39,13 @@ pub fn stuck_pairs(
     let features = Features::of(problem.pair());
     let motions = descent::DescentSettings::default();
     let follow = PoseFollower { problem, features: &features, motions: &motions, which: RestFilter::Jams };
-    let rest = |(pose, friction): &(PoseError, f64)| {
-        exec.check()?;
-        let settings =
-            descent::DescentSettings { friction: *friction, ..descent::DescentSettings::default() };
-        let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
-        Ok(rested.map(|rested| (rested, *friction)))
+    let rest = |k: usize| {
+        let (pose, friction) = poses[k];
+        let settings = descent::DescentSettings { friction, ..descent::DescentSettings::default() };
+        let rested = follow.rested(&descent::settle(problem.pair(), &pose, &settings));
+        rested.map(|rested| (rested, friction))
     };
-    let rests: Vec<Option<(RestEnd, f64)>> =
-        exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
+    let rests = exec.map(poses.len(), rest)?;
     let (rests, frictions): (Vec<RestEnd>, Vec<f64>) = rests.into_iter().flatten().unzip();
     let sticks = touching(problem, &features, &rests).into_iter().map(|(touching, at)| {
         let mut critical: Vec<f64> = at.into_iter().map(|k| frictions[k]).collect();

@@ -12,7 +12,6 @@ use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length}
 use crate::problem::Problem;
 use crate::tolerance;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -80,23 +79,15 @@ impl PoseFollower<'_> {
         exec: &Exec,
     ) -> Result<Vec<(Outcome, Option<RestEnd>)>, Cancelled> {
         let done = AtomicUsize::new(0);
-        exec.install(|| {
-            poses
-                .par_iter()
-                .map_init(
-                    || Follower::new(self.problem.pair(), self.motions),
-                    |follower, pose| {
-                        exec.check()?;
-                        let rest = self.end(follower, pose);
-                        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                        if done.is_multiple_of(BETWEEN) {
-                            exec.report(done as f64 / poses.len() as f64, "motions");
-                        }
-                        Ok((rest.outcome, self.rested(&rest)))
-                    },
-                )
-                .collect()
-        })
+        let follow = |follower: &mut Follower<'_>, k: usize| {
+            let rest = self.end(follower, &poses[k]);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if done.is_multiple_of(BETWEEN) {
+                exec.report(done as f64 / poses.len() as f64, "motions");
+            }
+            (rest.outcome, self.rested(&rest))
+        };
+        exec.map_with(poses.len(), || Follower::new(self.problem.pair(), self.motions), follow)
     }
 
     /// Follows a pose as far as needed.

@@ -40,7 +40,6 @@ use crate::method::DecisionMethod;
 use crate::method::descent;
 use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -182,13 +181,11 @@ pub fn run(problem: &Problem, settings: &RestsSettings, exec: &Exec) -> Result<R
         .iter()
         .map(|cluster| RestGroup::of(problem, &features, &rests, rests.len(), false, cluster))
         .collect();
-    let examine = |(k, cluster): (usize, &Cluster)| {
-        exec.check()?;
-        let (rest, seed) = (&rests[cluster.middle], settings.seed.wrapping_add(k as u64));
-        Ok(follow.examine(rest, cluster, seed))
+    let examine = |k: usize| {
+        let (cluster, seed) = (&clusters[k], settings.seed.wrapping_add(k as u64));
+        follow.examine(&rests[cluster.middle], cluster, seed)
     };
-    let looked: Vec<(usize, &Cluster)> = clusters.iter().enumerate().take(settings.examined).collect();
-    let seen = exec.install(|| looked.into_par_iter().map(examine).collect::<Result<Vec<_>, Cancelled>>())?;
+    let seen = exec.map(clusters.len().min(settings.examined), examine)?;
     let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
     let ends: Vec<Option<PoseError>> = seen.iter().map(|(_, end)| *end).collect();
     for (group, (examined, _)) in groups.iter_mut().zip(seen) {

@@ -14,7 +14,6 @@ use crate::method::descent::{self, Follower};
 use crate::method::{affordable, motions_in};
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
-use rayon::prelude::*;
 
 /// Relative width to which the scale of a failing pose is bisected.
 const SHARP: f64 = 2e-4;
@@ -338,8 +337,8 @@ impl<'a> Search<'a> {
         exec: &Exec,
     ) -> Result<(), Cancelled> {
         let (pair, settings, space) = (self.problem.pair(), &self.settings, &self.space);
-        let look = |follower: &mut Follower<'_>, along: &Direction| {
-            let mut followed = 0;
+        let look = |follower: &mut Follower<'_>, k: usize| -> Result<(usize, Option<Failing>), Cancelled> {
+            let (along, mut followed) = (&all[k], 0);
             let mut fails = |scale: f64| {
                 followed += 1;
                 follower.follow(&space.pose(along, scale)).outcome != Outcome::Aligned
@@ -364,10 +363,8 @@ impl<'a> Search<'a> {
             }
             Ok((followed, None))
         };
-        let result: Vec<(usize, Option<Failing>)> = exec.install(|| {
-            all.par_iter().map_init(|| Follower::new(pair, settings), look).collect::<Result<_, Cancelled>>()
-        })?;
-        for (followed, failing) in result {
+        let result = exec.map_with(all.len(), || Follower::new(pair, settings), look)?;
+        for (followed, failing) in result.into_iter().collect::<Result<Vec<_>, _>>()? {
             self.followed += followed;
             self.keep(failing);
         }
@@ -397,20 +394,17 @@ impl<'a> Search<'a> {
             let until = motions.min(done + at_once);
             let (pair, settings, space) = (self.problem.pair(), &self.settings, &self.space);
             let widths = space.half_widths(scale);
-            let fails = |follower: &mut Follower<'_>, k: usize| -> Result<Option<Direction>, Cancelled> {
-                exec.check()?;
-                let beyond = from / scale;
+            let fails = |follower: &mut Follower<'_>, k: usize| {
+                let (k, beyond) = (done + k, from / scale);
                 let u: Direction = std::array::from_fn(|j| {
                     let part = 2.0 * random.uniform(5 * k as u64 + j as u64) - 1.0;
                     if space.grows(j) { part + beyond * (part.signum() - part) } else { part }
                 });
                 let error = space.within(&u, &widths);
-                Ok((follower.follow(&error).outcome != Outcome::Aligned).then_some(u))
+                (follower.follow(&error).outcome != Outcome::Aligned).then_some(u)
             };
-            let failed: Vec<Option<Direction>> = exec.install(|| {
-                let poses = (done..until).into_par_iter();
-                poses.map_init(|| Follower::new(pair, settings), fails).collect::<Result<_, Cancelled>>()
-            })?;
+            let failed: Vec<Option<Direction>> =
+                exec.map_with(until - done, || Follower::new(pair, settings), fails)?;
             self.followed += until - done;
             done = until;
             exec.report(done as f64 / motions as f64, "certificate");

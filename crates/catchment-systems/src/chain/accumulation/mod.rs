@@ -24,7 +24,6 @@ use super::random::{Draws, Term};
 use super::shape::{LatchingPair, ModuleFace};
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -255,10 +254,8 @@ impl Closing {
         chains: u64,
         exec: &Exec,
     ) -> Result<Vec<[f64; 3]>, Cancelled> {
-        exec.check()?;
         let bent = self.bent(errors);
-        let draw = |k| self.drawn_bent(errors, &bent, Draws::of(seed, k));
-        Ok(exec.install(|| (0..chains).into_par_iter().map(draw).collect()))
+        exec.map(chains as usize, |k| self.drawn_bent(errors, &bent, Draws::of(seed, k as u64)))
     }
 }
 

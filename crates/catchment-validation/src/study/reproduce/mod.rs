@@ -18,7 +18,6 @@ use crate::published::PublishedError;
 use crate::recipe::{self, ExactValue, RHO, RecipeError};
 use crate::tables::{ReproducibleTable, TABLES};
 use catchment::exec::{Cancelled, Exec};
-use rayon::prelude::*;
 use serde::Serialize;
 
 mod extremes;
@@ -151,10 +150,8 @@ fn beside(
 ) -> Result<TableComparison, ReproduceError> {
     let published = table.published()?;
     let columns = published.columns.len();
-    let rows: Vec<Vec<recipe::RecipeEntry>> = exec.install(|| {
-        let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
-        (0..published.rows.len()).into_par_iter().map(row).collect::<Result<_, _>>()
-    })?;
+    let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
+    let rows = exec.try_map(published.rows.len(), row)?;
     let result: Vec<recipe::RecipeEntry> = rows.into_iter().flatten().collect();
     let entry = |(k, &(ours, exact)): (usize, &recipe::RecipeEntry)| {
         let (row, column) = (k / columns, k % columns);

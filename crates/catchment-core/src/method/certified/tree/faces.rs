@@ -4,7 +4,6 @@ use super::{Cell, Parts, Tree, WHOLE};
 use crate::exec::{Cancelled, Exec};
 use crate::method::certified::interval::Interval;
 use crate::method::certified::placed::PoseBox;
-use rayon::prelude::*;
 
 /// A leaf that shares a face with another.
 #[derive(Debug, Clone, Copy)]
@@ -48,15 +47,14 @@ impl Tree {
         touched.retain(|number| !self.cells[*number].is_split());
         touched.sort_unstable();
         touched.dedup();
-        let beside = |number: &usize| {
+        let beside = |k: usize| {
             let mut faces = Vec::new();
-            self.beside(&self.cells[*number], |number, axis, above| {
+            self.beside(&self.cells[touched[k]], |number, axis, above| {
                 faces.push(Face { number: number as u32, axis: axis as u8, above });
             });
             faces.into_boxed_slice()
         };
-        let faces: Vec<Box<[Face]>> = exec.install(|| touched.par_iter().map(beside).collect());
-        exec.check()?;
+        let faces: Vec<Box<[Face]>> = exec.map(touched.len(), beside)?;
         for (number, faces) in touched.into_iter().zip(faces) {
             self.cells[number].faces = faces;
         }
