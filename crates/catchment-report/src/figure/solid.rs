@@ -360,24 +360,29 @@ impl Canvas {
     /// RGBA pixels of the finished image: averages blocks of fine pixels; pixels without drawing are
     /// transparent.
     fn averaged(&self) -> Vec<u8> {
-        let (width, height) = (self.width / FINER, self.height / FINER);
-        let mut pixels = Vec::with_capacity(4 * width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let (mut sum, mut covered) = ([0u32; 3], 0u32);
-                for index in
-                    (0..FINER * FINER).map(|k| x * FINER + k % FINER + (y * FINER + k / FINER) * self.width)
+        const BLOCK: u32 = (FINER * FINER) as u32;
+        let mut pixels = Vec::with_capacity(4 * self.depth.len() / (FINER * FINER));
+        for y in 0..self.height / FINER {
+            // Red, green and blue, and how many fine pixels are drawn.
+            let mut sums = vec![[0u32; 4]; self.width / FINER];
+            for row in FINER * y..FINER * (y + 1) {
+                let row = row * self.width..(row + 1) * self.width;
+                for (x, (depth, [red, green, blue])) in
+                    self.depth[row.clone()].iter().zip(&self.colour[row]).enumerate()
                 {
-                    if self.depth[index] > f64::NEG_INFINITY {
-                        covered += 1;
-                        for (total, channel) in sum.iter_mut().zip(self.colour[index]) {
-                            *total += u32::from(channel);
-                        }
+                    if *depth > f64::NEG_INFINITY {
+                        let sum = &mut sums[x / FINER];
+                        sum[0] += u32::from(*red);
+                        sum[1] += u32::from(*green);
+                        sum[2] += u32::from(*blue);
+                        sum[3] += 1;
                     }
                 }
-                let n = covered.max(1);
-                pixels.extend(sum.map(|total| ((total + n / 2) / n) as u8));
-                pixels.push((covered * 255 / (FINER * FINER) as u32) as u8);
+            }
+            for [red, green, blue, drawn] in sums {
+                let n = drawn.max(1);
+                let mean = |sum: u32| ((sum + n / 2) / n) as u8;
+                pixels.extend_from_slice(&[mean(red), mean(green), mean(blue), (drawn * 255 / BLOCK) as u8]);
             }
         }
         pixels
