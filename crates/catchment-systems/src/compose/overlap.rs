@@ -85,8 +85,10 @@ impl Convex {
         }
         let mut rest: Vec<Corner> =
             self.corners.iter().map(|p| Corner { at: *p, of_second: false }).collect();
+        let mut kept = Vec::with_capacity(self.corners.len() + other.corners.len());
         for [from, to] in sides(&other.corners) {
-            rest = cut(&rest, from + d, to - from, grown);
+            cut(&rest, from + d, to - from, grown, &mut kept);
+            std::mem::swap(&mut rest, &mut kept);
             if rest.len() < 3 {
                 return Common::default();
             }
@@ -111,13 +113,16 @@ fn sides(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + '_ {
 
 /// The part of a convex polygon left of a side of the second, which is moved outwards for a square of half
 /// side `grown`.
-fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64) -> Vec<Corner> {
+fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64, kept: &mut Vec<Corner>) {
     let outwards = grown * along.abs().element_sum();
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
     let left = |p: DVec2| along.perp_dot(p - from) + outwards;
+    kept.clear();
+    let first = left(polygon[0].at);
+    let mut there = first;
     for (k, corner) in polygon.iter().enumerate() {
+        let here = there;
         let next = polygon[(k + 1) % polygon.len()];
-        let (here, there) = (left(corner.at), left(next.at));
+        there = if k + 1 < polygon.len() { left(next.at) } else { first };
         if here >= 0.0 {
             kept.push(*corner);
         }
@@ -128,7 +133,6 @@ fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64) -> Vec<Corner>
             kept.push(Corner { at, of_second: here >= 0.0 || corner.of_second });
         }
     }
-    kept
 }
 
 impl RegionOverlap {
