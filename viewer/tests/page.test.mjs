@@ -31,7 +31,7 @@ function traced(design, { start }, ...given) {
 
 // Planar and spatial, with play, and of meshes.
 for (const [design, ...given] of [
-    ["v-face", "--resolution", "30"],
+    ["v-face", "--resolution", "30", "--leave-out", "window"],
     ["x-face-3d", "--resolution", "8", "--leave-out", "window"],
     ["gallery/peg-in-hole", "--resolution", "20", "--leave-out", "window,jams"],
     ["pyramid-stl", "--resolution", "4", "--leave-out", "window,jams"],
@@ -154,8 +154,8 @@ test("the page reports the end of drawing, and prints dark on white", async () =
 });
 
 test("slices show the cells of the result", async () => {
-    const { page } = await open(browser, written("v-face", "--resolution", "30"));
-    const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
+    const { page } = await open(browser, written("v-face", "--resolution", "30", "--leave-out", "window"));
+    const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30", "--leave-out", "window"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
     const expected = data.report.acceptance.outcomes;
     const counted = await page.evaluate(() => {
         const canvas = document.querySelector("canvas.slice");
@@ -200,7 +200,7 @@ test("speed of a page of 30³ cells, printed", async (t) => {
 });
 
 test("a jam that is clicked is shown where it rests", async () => {
-    const { page } = await open(browser, written("v-face", "--resolution", "30"));
+    const { page } = await open(browser, written("v-face", "--resolution", "30", "--leave-out", "window"));
     const shown = await page.evaluate(() => window.catchment.motion());
     await page.locator("button.jam").first().click();
     const found = await motion(page, shown);
