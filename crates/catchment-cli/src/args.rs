@@ -239,7 +239,7 @@ mod tests {
     /// a message without terminal control characters.
     #[test]
     fn spoilt_command_lines_are_read_or_refused() {
-        const RUNS: usize = 2000;
+        const RUNS: usize = 1000;
         let seeds = corpus("arguments");
         let mut dice = mutate::Dice::new(9);
         let mut refused = 0;

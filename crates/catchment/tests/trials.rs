@@ -242,7 +242,7 @@ fn drop_tests_agree_with_friction() {
     use catchment::method::drop;
     use catchment::problem::{Draft, Problem};
     use std::f64::consts::FRAC_PI_4;
-    const POSES: u32 = 40;
+    const POSES: u32 = 25;
     let family = |name: &str, aspect_ratio: f64| {
         format!("[connector]\nfamily = \"{name}\"\naspect_ratio = {aspect_ratio}\n")
     };

@@ -94,18 +94,8 @@ fn more_errors_are_compared_in_slices_and_one_has_no_picture() {
 #[test]
 fn every_method_that_applies_stands_beside_the_others() {
     let home = home();
-    let args = [
-        "run",
-        "v.toml",
-        "--method",
-        "all",
-        "--resolution",
-        "12",
-        "--samples",
-        "50",
-        "--time-limit",
-        "10 min",
-    ];
+    let args = "run v.toml --method all --resolution 8 --samples 20 --boxes 2000 --time-limit 10min";
+    let args: Vec<&str> = args.split(' ').collect();
     let printed = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     let report = fs::read(home.path().join("out/report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();

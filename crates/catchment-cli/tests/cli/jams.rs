@@ -106,7 +106,7 @@ fn errors_that_were_measured_and_covariances_have_their_shares() {
 fn friction_jams_and_docking_with_symmetry_are_reported() {
     let home = home();
     fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
-    let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "300", "-o", "jams.json"];
+    let args = ["jams", "pyramid.toml", "--friction", "0.5", "--motions", "150", "-o", "jams.json"];
     let printed = run(home.path(), &args);
     assert!(printed.contains("  if displaced   held by friction alone;"), "{printed}");
     assert!(!printed.contains("ridge") && printed.contains("  friction       may stick from"), "{printed}");

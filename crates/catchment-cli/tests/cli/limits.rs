@@ -44,7 +44,7 @@ fn a_small_address_space_ends_with_an_answer_or_a_message() {
         "check p.toml",
         "run v.toml --resolution 300 --samples 50",
         "run p.toml --free x,y,yaw --resolution 40 --method flood",
-        "run p.toml --free x,y,yaw --resolution 12 --samples 50 -o out",
+        "run p.toml --free x,y --resolution 12 --samples 50 -o out",
         "slices v.toml --resolution 100",
         "outcome p.toml --poses q.csv",
         "trace v.toml --pose x=0.1 -o t.png --force",
@@ -178,7 +178,7 @@ fn a_process_without_descriptors_leaves_nothing_behind() {
     let mut refused = 0;
     for most in 5..16 {
         for args in [
-            "run v.toml --free x --method flood --resolution 6 -o out",
+            "run v.toml --free x --method flood --resolution 6 --samples 0 -o out",
             "export v.toml --pose x=0.1 -o trial",
             "schema -o s.json --force",
         ] {

@@ -101,7 +101,7 @@ fn refinement_reports_when_it_is_stable() {
 #[test]
 fn an_early_stop_of_refinement_is_reported() {
     let home = home();
-    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "2 MB"];
+    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "1 MB"];
     let printed = run(home.path(), &args);
     assert!(printed.starts_with("exit 0\n") && printed.contains("stopped, not stable: at"), "{printed}");
     let printed = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);

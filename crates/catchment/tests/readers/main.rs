@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Mutated copies per reader; the environment variable `READER_RUNS` raises the number.
-const RUNS: usize = 6000;
+const RUNS: usize = 3000;
 
 /// Memory limit of a reader for an input of at most a megabyte, and its time limit on a busy machine.
 const MOST_BYTES: usize = 64 << 20;

@@ -102,7 +102,7 @@ fn no_motion_contradicts_a_planar_certificate() {
     for (family, cor, boxes, most) in [
         (Family::VFace, 0.0, 10_000, 0.3),
         (Family::XFace, 0.5, 20_000, 0.15),
-        (Family::SFace, 0.0, 20_000, 0.5),
+        (Family::SFace, 0.0, 15_000, 0.5),
     ] {
         let pair = pair_of(family, &[], cor);
         let found = certified(&pair, boxes);
@@ -137,11 +137,11 @@ fn no_motion_contradicts_the_other_certificates() {
     for (pair, boxes, least) in [
         (&planar(2.0, 0.5), 10_000, 0.2),
         (&planar(0.25, 0.5), 10_000, 0.2),
-        (&planar(1.0, 0.0), 10_000, 0.2),
-        (&pair_of(Family::XFace3d, &[x, y], 0.0), 5000, 0.5),
+        (&planar(1.0, 0.0), 5000, 0.2),
+        (&pair_of(Family::XFace3d, &[x, y], 0.0), 2500, 0.5),
         (&narrow(Family::XFace3d, 0.0, &[(x, 0.5), (y, 0.5), (yaw, 0.52)]), 20_000, 0.02),
         // Its border takes hundreds of thousands of boxes.
-        (charger.pair(), 10_000, 0.0),
+        (charger.pair(), 5000, 0.0),
     ] {
         let found = certified(pair, more * boxes);
         let labelled = contradicts_nothing(pair, &found, motions);

@@ -60,15 +60,15 @@ fn thin_jams_are_not_lost() {
     for cor in [0.5, 0.0] {
         let pair = pair(Family::XFace3d, 0.577, cor, 0.5, None);
         let labels = labels(&pair, 10);
-        // A third of the cells: of jams of which one in fifty is lost a third shows as many.
-        let cells: Vec<usize> = (0..labels.grid().len()).step_by(3).collect();
+        // A sixth of the cells: of jams of which one in fifty is lost a sixth shows as many.
+        let cells: Vec<usize> = (0..labels.grid().len()).step_by(6).collect();
         let poses = Domain::Poses(cells.iter().map(|cell| labels.grid().pose(*cell)).collect());
         let (exact, _) =
             descent::run(&pair, poses, &descent::DescentSettings::default(), &Exec::new()).unwrap();
         let jams = || cells.iter().zip(&exact.outcomes).filter(|(_, outcome)| **outcome == Outcome::Jammed);
         let all = jams().count();
         let lost = jams().filter(|(cell, _)| labels.outcome(**cell) != Outcome::Jammed).count();
-        assert!(all > 50 && lost * 50 <= all, "COR {cor}: {lost} of {all} lost");
+        assert!(all > 25 && lost * 50 <= all, "COR {cor}: {lost} of {all} lost");
     }
 }
 

@@ -95,7 +95,7 @@ fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
 /// the true value more often than 95 times in 100; for all others between 93 and 98.
 #[test]
 fn the_interval_has_its_coverage_and_the_mean_is_unbiased() {
-    const REPEATS: u64 = 1000;
+    const REPEATS: u64 = 600;
     for case in cases() {
         for stop in [Stop::Samples(300), Stop::Samples(1000)] {
             let [held, bias, width, descents, plain] = repeated(&case, stop, REPEATS);

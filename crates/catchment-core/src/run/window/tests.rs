@@ -46,7 +46,7 @@ fn poses_of_the_window_dock_and_a_larger_window_fails() {
         (problem(Family::Pyramid, all), quick()),
         (problem(Family::Pyramid, all), fixed),
         (problem(Family::XFace3d, all), quick()),
-        (of_gallery("usb-a.toml"), quick()),
+        (of_gallery("usb-a.toml"), WindowSettings { motions: Some(2000), ..quick() }),
         (of_gallery("charging-dock.toml"), quick()),
     ];
     for (problem, settings) in cases {
