@@ -27,7 +27,6 @@ use catchment_core::method::correction::{CombinedShares, Stop, Z95, allot, next}
 use catchment_core::method::descent::Follower;
 use catchment_core::pose::Dof;
 use catchment_core::problem::Problem;
-use rayon::prelude::*;
 use std::time::Duration;
 
 /// Number of errors drawn for each that is followed: the uncertainty of their shares equals that of as many
@@ -35,7 +34,7 @@ use std::time::Duration;
 const DRAWN_PER_MOTION: usize = 256;
 const FEWEST_DRAWN: usize = 1 << 16;
 const MOST_DRAWN: usize = 1 << 21;
-/// Number of errors drawn between two checks for cancellation.
+/// Number of errors whose scores are one partial sum.
 const BLOCK: usize = 4096;
 
 /// A pose that was followed.
@@ -135,18 +134,7 @@ fn labels(
     drawn: usize,
     exec: &Exec,
 ) -> Result<Vec<u8>, Cancelled> {
-    let mut labels = vec![0u8; drawn];
-    exec.install(|| {
-        labels.par_chunks_mut(BLOCK).enumerate().try_for_each(|(block, labels)| {
-            exec.check()?;
-            for (k, label) in labels.iter_mut().enumerate() {
-                let z = source.standard((block * BLOCK + k) as u64);
-                *label = strata.of(&source.pose(&z, factors)) as u8;
-            }
-            Ok(())
-        })
-    })?;
-    Ok(labels)
+    exec.map(drawn, |k| strata.of(&source.pose(&source.standard(k as u64), factors)) as u8)
 }
 
 /// Outcomes of errors, by their numbers.
