@@ -398,7 +398,7 @@ impl PrintArgs {
     /// Rejects requirements that no report of this kind can answer. `absent` are places that are null with
     /// the given options.
     fn check(&self, report: &str, absent: &[&str]) -> Result<(), Failure> {
-        // The schema is a large text: read only if asked for.
+        // The schema is a large text: read only for `--require`.
         if self.require.is_empty() {
             return Ok(());
         }
