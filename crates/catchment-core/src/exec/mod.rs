@@ -10,6 +10,7 @@ mod guard;
 mod map;
 mod memory;
 mod progress;
+mod tally;
 mod threads;
 
 pub use clock::Stopwatch;
@@ -17,6 +18,7 @@ pub(crate) use guard::attempt;
 pub use guard::is_expected as is_panic_expected;
 pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
+pub use tally::Tally;
 pub use threads::ThreadsError;
 
 use crate::diagnostic::{Advice, Advised};
@@ -24,7 +26,7 @@ use clock::Deadline;
 use progress::Reporter;
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use threads::Threads;
 
@@ -151,10 +153,9 @@ impl Exec {
         work: impl Fn(usize, &Self) -> T + Sync,
     ) -> Vec<T> {
         let lanes = self.threads().min(side_by_side).min(count);
-        let done = AtomicUsize::new(0);
+        let tally = self.tally(count, stage);
         let finished = |value| {
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.report(done as f64 / count as f64, stage);
+            tally.add(1);
             value
         };
         self.report(0.0, stage);

@@ -22,7 +22,6 @@ use crate::pose::{self, CorPose};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Five numbers of a gradient: ∂h/∂x and ∂h/∂y at the COR (D/D), ∂h/∂ω about the COR in world axes (D/rad);
 /// or a linear function of them, chosen by a method.
@@ -230,7 +229,7 @@ where
     })?;
     let mut energies = vec![0f32; kept];
     let mut values = vec![C::default(); kept];
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(representatives.len(), "heights");
     let all = exec.install(|| {
         energies
             .par_chunks_exact_mut(slab)
@@ -243,8 +242,7 @@ where
                     let error = grid.pose(fold.rotation(representatives.start + k) * slab);
                     let patches = buffer.fill(grid, &error, linear(&error), energies, carriers)?;
                     let made = keep(carriers, patches, values);
-                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    exec.report(done as f64 / representatives.len() as f64, "heights");
+                    tally.add(1);
                     Ok(made)
                 },
             )

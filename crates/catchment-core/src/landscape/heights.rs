@@ -8,7 +8,6 @@ use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::pose::Dof;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The height of first contact at every cell of an error grid.
 ///
@@ -172,19 +171,17 @@ fn fill(
     heights: &mut [f32],
     exec: &Exec,
 ) -> Result<(), Cancelled> {
-    const STAGE: &str = "heights";
     let slab = slab(grid);
     let count = rotations.len();
     let at_once = (count / (4 * exec.threads())).clamp(1, AT_ONCE);
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(count, "heights");
     exec.install(|| {
         heights.par_chunks_mut(slab * at_once).enumerate().try_for_each(|(k, out)| {
             exec.check()?;
             let first = rotations.start + k * at_once;
             let here = out.len() / slab;
             backend.heights(pair, grid, first..first + here, out);
-            let done = done.fetch_add(here, Ordering::Relaxed) + here;
-            exec.report(done as f64 / count as f64, STAGE);
+            tally.add(here);
             Ok(())
         })
     })

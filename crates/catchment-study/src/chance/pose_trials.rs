@@ -12,7 +12,6 @@ use catchment_core::method::drop::Bench;
 use catchment_core::pose::PoseError;
 use catchment_core::poses::Circumstance;
 use catchment_core::problem::Problem;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 const STAGE: &str = "drop tests";
 /// Streams of poses and of errors that are expected.
@@ -166,12 +165,11 @@ impl Trials<'_> {
     fn poses(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<PoseChance>, ChanceError> {
         let trials = self.settings.trials;
         let all = poses.len() * trials;
-        let done = AtomicUsize::new(0);
+        let tally = exec.tally(all, STAGE);
         let outcomes = exec.try_map(all, |k| -> Result<Outcome, ChanceError> {
             let error = &poses[k / trials];
             let outcome = self.fall(error, &self.draws(error)(k % trials), 1.0, exec)?;
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            exec.report(done as f64 / all as f64, STAGE);
+            tally.add(1);
             Ok(outcome)
         })?;
         let quasi_static = exec.try_map(poses.len(), |k| self.quasi_static(&poses[k], exec))?;

@@ -19,7 +19,6 @@ use catchment_core::acceptance::{Outcome, Stream};
 use catchment_core::exec::Exec;
 use catchment_core::method::descent::Follower;
 use catchment_core::poses::Spread;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Exact motions for each trial: a motion takes a tenth of a millisecond, a trial some milliseconds.
 const MOTIONS_PER_TRIAL: usize = 4;
@@ -125,11 +124,10 @@ fn each(
     exec: &Exec,
     outcome: impl Fn(u64) -> Result<Outcome, ChanceError> + Sync,
 ) -> Result<Vec<Outcome>, ChanceError> {
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(numbered.len(), STAGE);
     exec.try_map(numbered.len(), |k| {
         let outcome = outcome(numbered[k].1)?;
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        exec.report(done as f64 / numbered.len() as f64, STAGE);
+        tally.add(1);
         Ok(outcome)
     })
 }

@@ -43,7 +43,6 @@ use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use catchment_core::run::jams::{NamedFeature, Sticks, stuck_pairs};
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Settings that change the result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -240,15 +239,14 @@ pub fn run(problem: &Problem, settings: &FrictionSettings, exec: &Exec) -> Resul
         .collect::<Result<_, _>>()?;
     let without = descent::DescentSettings::default();
     let top = settings.frictions.last().copied().unwrap_or_default();
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(poses.len(), "poses");
     let start = || {
         let followers = ladder.iter().map(|settings| Follower::new(problem.pair(), settings));
         (Follower::new(problem.pair(), &without), followers.collect::<Vec<_>>())
     };
     let ways = exec.map_with(poses.len(), start, |(free, followers), k| {
         let way = PoseByFriction::of(problem, &poses[k], free, followers, &settings.frictions);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        exec.report(done as f64 / poses.len() as f64, "poses");
+        tally.add(1);
         way
     })?;
     let first = first_lost(&poses, &ways);

@@ -8,7 +8,6 @@ use catchment_core::pose::PoseError;
 use catchment_core::poses::ObservedOutcome;
 use catchment_core::problem::Problem;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Prediction of a pose by exact motion. Distances are null if the error box contains no border.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -73,11 +72,10 @@ pub(crate) fn for_each<T: Send, A: Send>(
     tool: impl Fn() -> A + Sync,
     work: impl Fn(&mut A, usize) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(count, "motions");
     exec.map_with(count, tool, |tool, k| {
         let result = work(tool, k);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        exec.report(done as f64 / count as f64, "motions");
+        tally.add(1);
         result
     })
 }

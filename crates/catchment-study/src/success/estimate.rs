@@ -145,11 +145,10 @@ fn follow(
     numbered: &[(usize, u64)],
     exec: &Exec,
 ) -> Result<Vec<Outcome>, Cancelled> {
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let tally = exec.tally(numbered.len(), "random motions");
     let outcome = |follower: &mut Follower<'_>, k: usize| {
         let result = follower.follow(&source.pose(&source.standard(numbered[k].1), factors)).outcome;
-        let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        exec.report(done as f64 / numbered.len() as f64, "random motions");
+        tally.add(1);
         result
     };
     exec.map_with(numbered.len(), || Follower::new(problem.pair(), &source.motions), outcome)

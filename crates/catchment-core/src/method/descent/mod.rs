@@ -63,7 +63,6 @@ use crate::pose::PoseError;
 use motion::{Motion, NoObserver, Until};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use sticking::{AmbiguityObserver, HoldingFrictionObserver};
 
 /// Settings of [`run`] that may change its result.
@@ -232,10 +231,6 @@ pub fn trace(pair: &Pair, error: &PoseError, settings: &DescentSettings) -> Traj
     Trajectory { waypoints, outcome }
 }
 
-/// How often progress is reported at least, and the most descents in between.
-const REPORTS: usize = 100;
-const MOST_BETWEEN: usize = 256;
-
 /// Follows every pose of a domain until its outcome is known, in parallel; the ends are in the order of the
 /// domain.
 ///
@@ -299,9 +294,7 @@ pub fn rests_of_rows(
     exec: &Exec,
 ) -> Result<(), Cancelled> {
     let Rows { poses, ends, heights, outcomes } = rows;
-    let count = poses.len();
-    let done = AtomicUsize::new(0);
-    let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
+    let tally = exec.tally(poses.len(), "descents");
     exec.install(|| {
         (poses, ends, heights, outcomes).into_par_iter().try_for_each_init(
             || Motion::new(pair, settings).homing(),
@@ -311,10 +304,7 @@ pub fn rests_of_rows(
                 let result = motion.follow(&pose, Until::AtRest, &mut NoObserver);
                 (*end, *code) = (result.error.to_array(), result.outcome as u8);
                 *height = result.height.unwrap_or(f64::NAN);
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                if done.is_multiple_of(between) {
-                    exec.report(done as f64 / count as f64, "descents");
-                }
+                tally.add(1);
                 Ok(())
             },
         )
@@ -330,16 +320,11 @@ fn each(
     finished: PoseObserver<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     let count = domain.len();
-    let done = AtomicUsize::new(0);
-    // Descents between two reports: some take seconds each.
-    let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
+    let tally = exec.tally(count, "descents");
     let follow = |motion: &mut Motion<'_>, k: usize| {
         let end = motion.follow(&domain.pose(k), until, &mut NoObserver);
         finished(k, end);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if done.is_multiple_of(between) {
-            exec.report(done as f64 / count as f64, "descents");
-        }
+        tally.add(1);
         end
     };
     let ends = exec.map_with(count, || Motion::new(pair, settings).homing(), follow)?;

@@ -54,7 +54,6 @@ use crate::pose::{Dof, PoseError};
 use engine::{Engine, Shapes};
 use glam::DVec3;
 use mass::Mass;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Why there are no drop tests.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -124,14 +123,11 @@ fn run_observed(
         vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })?;
     let count = count.unwrap_or_default();
-    let done = AtomicUsize::new(0);
+    let tally = exec.tally(count, "drop tests");
     let ends = exec.try_map(count, |k| -> Result<End, Cancelled> {
         let end = decide(&engine, pair, settings, &domain.pose(k), exec)?;
         finished(k, end);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if done.is_multiple_of(16) {
-            exec.report(done as f64 / count as f64, "drop tests");
-        }
+        tally.add(1);
         Ok(end)
     })?;
     let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();

@@ -183,7 +183,7 @@ fn invalid_and_unaffordable_runs_are_refused() {
     let small = Exec::new().with_memory_budget(10);
     assert!(matches!(refused(&DropSettings::default(), &small), DropError::OutOfBudget(_)));
     let stopped = Exec::new();
-    stopped.cancel_flag().store(true, Ordering::Relaxed);
+    stopped.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     assert_eq!(refused(&DropSettings::default(), &stopped), DropError::Cancelled(Cancelled));
 }
 

@@ -247,11 +247,10 @@ fn spaces(
     alignment: &Alignment,
     exec: &Exec,
 ) -> Result<Vec<(Compartment, Vec<space::Tile>)>, Cancelled> {
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let tally = exec.tally(compartments.len(), "contact space");
     exec.try_map(compartments.len(), |k| {
         let tiles = space::tiles(pairs, &compartments[k], alignment.free, exec)?;
-        let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-        exec.report(done as f64 / compartments.len() as f64, "contact space");
+        tally.add(1);
         Ok((compartments[k].clone(), tiles))
     })
 }

@@ -14,7 +14,7 @@ use super::links::{CellFlow, Link, Links, Scratch};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::GradientField;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Shares of a cell's motion: aligned and jammed; the rest loses contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,9 +66,9 @@ pub(super) fn solve(
         })
         .collect();
     let links = Links::new(field);
-    let done = AtomicUsize::new(0);
     let slab = field.fold.slab();
     let slabs = field.fold.representatives();
+    let tally = exec.tally(slabs, "arrivals");
     exec.install(|| {
         (0..slabs).into_par_iter().try_for_each_init(
             || Solver {
@@ -83,10 +83,7 @@ pub(super) fn solve(
                 for cell in number * slab..(number + 1) * slab {
                     solver.solve(cell as u32, exec)?;
                 }
-                let done = done.fetch_add(1, Relaxed) + 1;
-                if done.is_multiple_of(64) || done == slabs {
-                    exec.report(done as f64 / slabs as f64, "arrivals");
-                }
+                tally.add(1);
                 Ok(())
             },
         )

@@ -13,12 +13,9 @@ use crate::problem::Problem;
 use crate::tolerance;
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Contact points closer than this are equal, in D.
 const SAME_PLACE: f64 = tolerance::TOUCHING;
-/// Descents between two reports of progress.
-const BETWEEN: usize = 64;
 /// Displacement of rests in the test whether they come back, in the metric of the motion, in D.
 const OFF: f64 = 5e-3;
 /// Pushes per free error.
@@ -78,13 +75,10 @@ impl PoseFollower<'_> {
         poses: &[PoseError],
         exec: &Exec,
     ) -> Result<Vec<(Outcome, Option<RestEnd>)>, Cancelled> {
-        let done = AtomicUsize::new(0);
+        let tally = exec.tally(poses.len(), "motions");
         let follow = |follower: &mut Follower<'_>, k: usize| {
             let rest = self.end(follower, &poses[k]);
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if done.is_multiple_of(BETWEEN) {
-                exec.report(done as f64 / poses.len() as f64, "motions");
-            }
+            tally.add(1);
             (rest.outcome, self.rested(&rest))
         };
         exec.map_with(poses.len(), || Follower::new(self.problem.pair(), self.motions), follow)
