@@ -1,6 +1,6 @@
 //! `catchment report`: a result as one interactive page.
 
-use super::run::{refused, resolution};
+use super::run::{SampleArgs, refused, resolution};
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
@@ -33,7 +33,7 @@ Examples:
       a result that holds jams and tolerance window
   catchment report design.toml -o page.html --leave-out window,jams
   catchment report design.toml --free x,y,yaw --resolution 24 -o page.html
-  catchment report design.toml --friction 0.2 -o page.html
+  catchment report design.toml --friction 0.2 --samples 500 -o page.html
 
 For a design, the command computes slices, jams and tolerance window too. A
 stored result shows the jams and the window that it holds. If its mesh files
@@ -65,6 +65,8 @@ pub(super) struct MadeArgs {
     /// Coefficient of friction between the halves [default: 0]
     #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
+    #[command(flatten)]
+    sample: SampleArgs,
     /// Leave these parts out of the page
     #[arg(long, value_name = "PARTS", value_enum, value_delimiter = ',')]
     leave_out: Vec<Study>,
@@ -96,6 +98,7 @@ impl MadeArgs {
         ]
         .into_iter()
         .filter_map(|(option, given)| given.then_some(option))
+        .chain(self.sample.requested())
     }
 
     /// The run settings for a design.
@@ -104,7 +107,7 @@ impl MadeArgs {
         let change = |value| Change { option: "--friction", setting: "friction", value: Value::from(value) };
         let changes: Vec<Change> = self.friction.map(change).into_iter().collect();
         let method = with_changes(&self.method.clone().unwrap_or_default(), &changes)?;
-        Ok(Run { over, ..Run::by(method) })
+        Ok(Run { over, sample: self.sample.sample(), seed: self.sample.seed, ..Run::by(method) })
     }
 
     /// Removes deselected parts from the page of a stored result, and notes requested parts that the result

@@ -20,13 +20,14 @@ fn home() -> tempfile::TempDir {
 #[test]
 fn a_page_of_a_result_is_that_of_its_design() {
     let home = home();
-    let printed = run(home.path(), &["run", "v.toml", "--resolution", "8", "-o", "out"]);
-    assert!(printed.starts_with("exit 0\n"), "{printed}");
+    let sample = ["--resolution", "8", "--samples", "300", "--seed", "5"];
+    let alone = ["report", "v.toml", "-o", "fresh.html", "--leave-out", "slices,jams,window"];
     for args in [
-        &["report", "out", "-o", "stored.html", "--leave-out", "jams,window"][..],
-        &["report", "v.toml", "--resolution", "8", "-o", "fresh.html", "--leave-out", "slices,jams,window"],
+        [&["run", "v.toml", "-o", "out"][..], &sample].concat(),
+        vec!["report", "out", "-o", "stored.html", "--leave-out", "jams,window"],
+        [&alone[..], &sample].concat(),
     ] {
-        let printed = run(home.path(), args);
+        let printed = run(home.path(), &args);
         assert!(printed.starts_with("exit 0\n"), "{printed}");
     }
     let [stored, fresh] =
@@ -38,6 +39,13 @@ fn a_page_of_a_result_is_that_of_its_design() {
     // An existing file is replaced only with `--force`.
     let printed = run(home.path(), &["report", "out", "-o", "stored.html"]);
     assert!(printed.starts_with("exit 2\n") && printed.contains("--force replaces it"), "{printed}");
+    // A stored result has its sample.
+    for option in ["--samples=300", "--budget=1s", "--tolerance=1%", "--seed=5"] {
+        let printed = run(home.path(), &["report", "out", "-o", "other.html", option]);
+        let refusal =
+            format!("{}: out is a result, which has been decided", option.split_once('=').unwrap().0);
+        assert!(printed.starts_with("exit 2\n") && printed.contains(&refusal), "{printed}");
+    }
 }
 
 /// A setting that is changed for a page applies to everything in it.

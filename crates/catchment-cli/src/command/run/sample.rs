@@ -6,7 +6,7 @@ use clap::Args;
 use std::time::Duration;
 
 /// When the sampling stops, and what it starts from.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct SampleArgs {
     /// Number of sampled poses; 0 leaves the Sum uncorrected [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
@@ -18,18 +18,29 @@ pub(crate) struct SampleArgs {
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["samples", "tolerance"], help_heading = SUM)]
     budget: Option<Duration>,
     /// Sample until the 95 % interval is ± this share of the Sum, such as 1% or 0.01
-    ///
-    /// With --converge: the largest change that counts as stable.
     #[arg(long, hide_short_help = true, value_name = "SHARE", value_parser = share, conflicts_with = "samples", help_heading = SUM)]
     pub(super) tolerance: Option<f64>,
     /// Seed of the sampled poses
-    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
+    #[arg(long, hide_short_help = true, value_name = "SEED", default_value_t = SEED, help_heading = SUM)]
     pub(crate) seed: u64,
 }
 
 const SUM: &str = "Sampling";
+const SEED: u64 = 1;
 
 impl SampleArgs {
+    /// The given options.
+    pub(crate) fn requested(&self) -> impl Iterator<Item = &'static str> {
+        [
+            ("--samples", self.samples.is_some()),
+            ("--budget", self.budget.is_some()),
+            ("--tolerance", self.tolerance.is_some()),
+            ("--seed", self.seed != SEED),
+        ]
+        .into_iter()
+        .filter_map(|(option, given)| given.then_some(option))
+    }
+
     /// The requested sample.
     pub(crate) fn sample(&self) -> Sample {
         match (self.samples, self.budget, self.tolerance) {
