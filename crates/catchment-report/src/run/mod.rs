@@ -95,11 +95,13 @@ impl RunBody {
             if o.undecided > 0 { format!(", undecided {}", share(o.undecided)) } else { String::new() };
         let split = format!("jammed {}, missed {}{open}", share(o.jammed), share(o.missed));
         // A certificate has poses that neither dock nor fail for certain.
-        if self.axes.is_empty() || self.certificate.is_some() {
+        if self.certificate.is_some() {
             return split;
         }
         let all = percent(1.0 - a.fraction);
-        if a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
+        if self.axes.is_empty() {
+            format!("{all}: {split}")
+        } else if a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
             format!("{all}; the grid is too coarse to tell jams from misses")
         } else {
             format!("{all}; by the grid {split}")
