@@ -30,7 +30,7 @@ const COMMANDS: [&str; 24] = [
     "run v.toml --free x --resolution 6 --samples 0",
     "run v.toml --free x --samples 20 --sensitivity",
     "window v.toml --samples 50",
-    "success v.toml --error-sigma x=0.2 --samples 100",
+    "success v.toml --error-sigma x=0.2 --samples 100 --cells 0",
     "trace v.toml --pose x=0.1",
     "trace v.toml --poses p.csv",
     "rests v.toml --samples 50",
