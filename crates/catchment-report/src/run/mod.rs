@@ -98,7 +98,10 @@ impl RunBody {
         if self.certificate.is_some() {
             return split;
         }
-        let all = percent(1.0 - a.fraction);
+        let all = match upper_end(a) {
+            Some(hi) => format!("above {}", percent(1.0 - hi / self.design.alignment.error_box_measure())),
+            None => percent(1.0 - a.fraction),
+        };
         if self.axes.is_empty() {
             format!("{all}: {split}")
         } else if a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
