@@ -322,7 +322,7 @@ fn a_first_run_on_many_facets_answers_without_a_grid() {
         "tolerance window",
         "single-axis limit",
         "docked         below 16.11 % of the error box",
-        "not docked     above 83.89 %: jammed 10.0 %, missed 90.0 %",
+        "not docked     above 83.89 %; of the sampled poses jammed 10.0 %",
         "; by 20 poses sampled in the error box",
     ] {
         assert!(printout.contains(words), "{words} is missing in\n{printout}");

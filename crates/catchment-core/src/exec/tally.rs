@@ -3,12 +3,12 @@
 use super::Exec;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Reports per stage, as long as there are no more than [`MOST_BETWEEN`] items between two.
+/// Least number of reports of a stage that has as many items.
 const REPORTS: usize = 100;
-/// Items of a stage may take seconds each.
+/// Most items between two reports: they may take seconds each.
 const MOST_BETWEEN: usize = 256;
 
-/// Counts finished items and reports their share of the stage: after every hundredth of them, and at least
+/// Counts finished items and reports their share of the stage: at least after every hundredth of them, and
 /// after every 256.
 pub struct Tally<'a> {
     exec: &'a Exec,

@@ -103,7 +103,7 @@ impl RunBody {
             None => percent(1.0 - a.fraction),
         };
         if self.axes.is_empty() {
-            format!("{all}: {split}")
+            format!("{all}; of the sampled poses {split}")
         } else if a.sum_ci95.is_some_and(|[lo, hi]| !(lo..=hi).contains(&a.sum_grid)) {
             format!("{all}; the grid is too coarse to tell jams from misses")
         } else {
