@@ -238,7 +238,7 @@ pub(super) fn contour(frame: &PlotFrame, [width, height]: [usize; 2], field: &[f
     for j in 1..height {
         for i in 1..width {
             let corners = [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)];
-            let values = corners.map(|(i, j)| at(i, j));
+            let values = [at(i - 1, j - 1), at(i, j - 1), at(i, j), at(i - 1, j)];
             if values.iter().any(|v| !v.is_finite()) {
                 continue;
             }

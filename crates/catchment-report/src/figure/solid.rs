@@ -14,6 +14,7 @@ use catchment_core::connector::{Connector, Surface};
 use catchment_core::design::Design;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Draws the two halves in space at a pose.
 ///
@@ -215,13 +216,7 @@ const FINER: usize = 3;
 fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureError> {
     let fine = size.map(|n| n * FINER);
     let camera = Camera::new(bodies, fine)?;
-    let mut canvas = Canvas {
-        width: fine[0],
-        height: fine[1],
-        depth: vec![f64::NEG_INFINITY; fine[0] * fine[1]],
-        colour: vec![[255; 3]; fine[0] * fine[1]],
-        facet: vec![u32::MAX; fine[0] * fine[1]],
-    };
+    let mut canvas = Canvas::new(fine);
     // Facets are numbered through all bodies.
     let counts = bodies.iter().scan(0, |next, body| {
         let first = *next;
@@ -263,11 +258,16 @@ fn shade(fill: Rgb, normal: DVec3) -> Rgb {
     }
 }
 
+fn packed([red, green, blue]: Rgb) -> u32 {
+    u32::from_be_bytes([0, red, green, blue])
+}
+
 struct Canvas {
     width: usize,
     height: usize,
     depth: Vec<f64>,
-    colour: Vec<Rgb>,
+    /// Red, green and blue of every pixel, in one number each.
+    colour: Vec<u32>,
     /// Number of the facet that is seen.
     facet: Vec<u32>,
 }
@@ -294,8 +294,35 @@ const DISC: [[f64; 2]; 13] = {
 /// of rounding is visible.
 const COINCIDENT: f64 = 1e-6;
 
+/// The columns in which slope·(x + ½ − origin) ≥ least, give or take one on either side.
+fn inside(columns: Range<usize>, slope: f64, least: f64, origin: f64) -> Range<usize> {
+    /// Below this slope rounding could move a border by more than a column.
+    const STEEP: f64 = 1e-3;
+    if slope.abs() < STEEP {
+        return columns;
+    }
+    let border = (least / slope + origin - 0.5).clamp(columns.start as f64, columns.end as f64);
+    if slope > 0.0 {
+        (border.floor() as usize).saturating_sub(1).max(columns.start)..columns.end
+    } else {
+        columns.start..(border.ceil() as usize + 2).min(columns.end)
+    }
+}
+
 impl Canvas {
+    fn new([width, height]: [usize; 2]) -> Self {
+        let pixels = width * height;
+        Self {
+            width,
+            height,
+            depth: vec![f64::NEG_INFINITY; pixels],
+            colour: vec![packed([255; 3]); pixels],
+            facet: vec![u32::MAX; pixels],
+        }
+    }
+
     fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb, facet: u32) {
+        let shade = packed(colour);
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area.abs() < 1e-9 {
             return;
@@ -308,48 +335,63 @@ impl Canvas {
         let (origin, to_b, to_c) = (a.truncate(), (b - a).truncate(), (c - a).truncate());
         let columns = range(a.x, b.x, c.x, self.width);
         for y in range(a.y, b.y, c.y, self.height) {
-            let row = y * self.width;
-            let span = row + columns.start..row + columns.end;
-            let pixels = self.depth[span.clone()].iter_mut().zip(&mut self.colour[span.clone()]);
-            let pixels = pixels.zip(&mut self.facet[span]).zip(columns.clone());
-            for (((depth, shade), number), x) in pixels {
-                let p = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - origin;
-                let wb = p.perp_dot(to_c) / area;
-                let wc = to_b.perp_dot(p) / area;
-                if wb < 0.0 || wc < 0.0 || wb + wc > 1.0 {
-                    continue;
+            let py = y as f64 + 0.5 - origin.y;
+            // On this line the three weights are linear in the column: (x·Δ − …)/area.
+            let mut span = columns.clone();
+            for (slope, least) in [
+                (to_c.y, py * to_c.x),
+                (-to_b.y, -py * to_b.x),
+                (to_b.y - to_c.y, py * (to_b.x - to_c.x) - area),
+            ] {
+                span = inside(span, slope * area.signum(), least * area.signum(), origin.x);
+            }
+            let row = y * self.width + span.start..y * self.width + span.end;
+            let (depths, colours) = (&mut self.depth[row.clone()], &mut self.colour[row.clone()]);
+            let facets = &mut self.facet[row];
+            let mut k = 0;
+            while k < depths.len() {
+                let px = (span.start + k) as f64 + 0.5 - origin.x;
+                let wb = (px * to_c.y - py * to_c.x) / area;
+                let wc = (to_b.x * py - to_b.y * px) / area;
+                if wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0 {
+                    let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
+                    if z > depths[k] + COINCIDENT {
+                        (depths[k], colours[k], facets[k]) = (z, shade, facet);
+                    }
                 }
-                let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
-                if z > *depth + COINCIDENT {
-                    (*depth, *shade, *number) = (z, colour, facet);
-                }
+                k += 1;
             }
         }
     }
 
     /// The pixels no farther than [`HALF`] from a place.
-    fn around(&self, p: DVec3) -> impl Iterator<Item = usize> + use<> {
-        let (width, height) = (self.width, self.height);
-        DISC.into_iter().filter_map(move |[dx, dy]| {
+    fn around(&self, p: DVec3) -> Vec<usize> {
+        let (width, height) = (self.width as f64, self.height as f64);
+        let mut pixels = Vec::with_capacity(DISC.len());
+        for [dx, dy] in &DISC {
             let (x, y) = (p.x + dx, p.y + dy);
-            let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
-            inside.then(|| x as usize + y as usize * width)
-        })
+            if x >= 0.0 && y >= 0.0 && x < width && y < height {
+                pixels.push(x as usize + y as usize * self.width);
+            }
+        }
+        pixels
     }
 
     /// A line slightly in front of its facets, if one of them is visible.
     fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb, facets: &[u32]) {
         /// Its offset to the front, in fine pixels.
         const PROUD: f64 = 9.0;
+        let line = packed(colour);
         let steps = (b - a).truncate().length().ceil().max(1.0);
         for k in 0..=steps as usize {
             let p = a + (b - a) * (k as f64 / steps);
-            if !self.around(p).any(|index| facets.contains(&self.facet[index])) {
+            let pixels = self.around(p);
+            if !pixels.iter().any(|index| facets.contains(&self.facet[*index])) {
                 continue;
             }
-            for index in self.around(p) {
+            for index in pixels {
                 if p.z + PROUD > self.depth[index] {
-                    self.colour[index] = colour;
+                    self.colour[index] = line;
                     // Covered from now on, but no nearer than the facet: a later line may cross it.
                     self.depth[index] = self.depth[index].max(p.z);
                 }
@@ -367,15 +409,18 @@ impl Canvas {
             let mut sums = vec![[0u32; 4]; self.width / FINER];
             for row in FINER * y..FINER * (y + 1) {
                 let row = row * self.width..(row + 1) * self.width;
-                for (x, (depth, [red, green, blue])) in
-                    self.depth[row.clone()].iter().zip(&self.colour[row]).enumerate()
-                {
-                    if *depth > f64::NEG_INFINITY {
-                        let sum = &mut sums[x / FINER];
-                        sum[0] += u32::from(*red);
-                        sum[1] += u32::from(*green);
-                        sum[2] += u32::from(*blue);
-                        sum[3] += 1;
+                let (depths, colours) = (&self.depth[row.clone()], &self.colour[row]);
+                for (x, sum) in sums.iter_mut().enumerate() {
+                    let mut k = FINER * x;
+                    while k < FINER * (x + 1) {
+                        if depths[k] > f64::NEG_INFINITY {
+                            let [_, red, green, blue] = colours[k].to_be_bytes();
+                            sum[0] += u32::from(red);
+                            sum[1] += u32::from(green);
+                            sum[2] += u32::from(blue);
+                            sum[3] += 1;
+                        }
+                        k += 1;
                     }
                 }
             }
@@ -394,7 +439,9 @@ mod tests {
     use super::super::testing::{look, pyramid, v_face, x_face};
     use super::*;
     use crate::schema::testing::design;
+    use catchment_core::acceptance::Stream;
     use catchment_core::pose::{DofSet, PoseError};
+    use glam::DVec2;
 
     #[test]
     fn solids_of_every_kind() {
@@ -446,7 +493,7 @@ mod tests {
         let (camera, canvas) = draw(&bodies, [300, 240]).unwrap();
         let near = |point: [f64; 3], colour: Rgb| {
             let at = camera.project(DVec3::from_array(point));
-            canvas.around(at).filter(|index| canvas.colour[*index] == colour).count()
+            canvas.around(at).into_iter().filter(|index| canvas.colour[*index] == packed(colour)).count()
         };
         // In front, within the first box and beyond it; its own front edge; the back of the second.
         assert_eq!(near([0.5, 0.0, 0.5], edges[1]), 0);
@@ -456,6 +503,31 @@ mod tests {
         assert_eq!(near([1.4, 1.0, 0.2], edges[1]), 0);
         // A little behind the lower left corner of the first.
         assert_eq!(near([0.0, 0.06, 0.0], edges[0]), 0);
+    }
+
+    /// Brute judge: the weights of every pixel, of wide triangles and slivers, partly outside the image.
+    #[test]
+    fn no_pixel_of_a_triangle_is_left_out() {
+        const SIDE: usize = 30;
+        let random = Stream::new(7);
+        for case in 0..400 {
+            let number = |k: u64| random.branch(case).uniform(k);
+            let corner = |k: u64| {
+                DVec3::new(50.0 * number(3 * k) - 10.0, 50.0 * number(3 * k + 1) - 10.0, number(3 * k + 2))
+            };
+            let [a, b] = [corner(0), corner(1)];
+            let c = if case % 2 == 0 { corner(2) } else { a.lerp(b, number(9)) + 1e-3 * corner(2) };
+            let c = if case % 5 == 0 { DVec3::new(c.x, a.y, c.z) } else { c };
+            let mut canvas = Canvas::new([SIDE, SIDE]);
+            canvas.triangle([a, b, c], [1, 2, 3], 4);
+            let area = (b - a).truncate().perp_dot((c - a).truncate());
+            for (k, facet) in canvas.facet.iter().enumerate() {
+                let p = DVec2::new((k % SIDE) as f64 + 0.5, (k / SIDE) as f64 + 0.5) - a.truncate();
+                let weights = [p.perp_dot((c - a).truncate()) / area, (b - a).truncate().perp_dot(p) / area];
+                let inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
+                assert_eq!(*facet == 4, inside, "{case}: pixel {k} of {a}, {b}, {c}");
+            }
+        }
     }
 
     #[test]
