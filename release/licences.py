@@ -41,6 +41,8 @@ TAKEN = {
 }
 #: Texts that do not name a licensor: this repository's copies are used.
 COMMON = {"MIT": "LICENSE-MIT", "Apache-2.0": "LICENSE-APACHE"}
+#: The licences of SPDX, read once.
+SPDX = get_spdx_licensing()
 HEAD = """Software of others in catchment
 ===============================
 
@@ -65,9 +67,8 @@ def linked():
 
 def taken(stated):
     """The accepted licences of a package's licence expression: one of each choice, in the order of TAKEN."""
-    spdx = get_spdx_licensing()
-    choices = spdx.dnf(spdx.parse(stated.replace("/", " OR ")))
-    ways = [way.args if isinstance(way, spdx.AND) else (way,) for way in (choices.args if isinstance(choices, spdx.OR) else (choices,))]
+    choices = SPDX.dnf(SPDX.parse(stated.replace("/", " OR ")))
+    ways = [way.args if isinstance(way, SPDX.AND) else (way,) for way in (choices.args if isinstance(choices, SPDX.OR) else (choices,))]
     known = [[licence.render() for licence in way] for way in ways]
     order = list(TAKEN)
     known = [sorted(way, key=order.index) for way in known if all(licence in TAKEN for licence in way)]
