@@ -336,7 +336,7 @@ fn gather<T: Copy>(
         let index = row.zip(others).try_fold(0, |index, (k, n)| (k < *n).then_some(index * n + k));
         if let Some(row) = index {
             let start = row * along + first;
-            // Tens of millions of cells in a crate that is not optimised: an iterator takes three times as long.
+            // Tens of millions of cells, in a crate that is not optimised: there an iterator is a call or two for each.
             let mut cell = start;
             while cell < start + inside {
                 data.push(value(cell));
