@@ -46,6 +46,7 @@ mod bodies;
 mod chance;
 mod convergence;
 mod curves;
+mod depth_buffer;
 mod difference;
 pub mod draw;
 mod faces;

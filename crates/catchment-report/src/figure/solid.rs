@@ -5,6 +5,7 @@
 //! bends. A point of an edge is drawn if an adjacent facet is visible next to it: depth alone would show
 //! edges that lie in a facet of another body, and the ends of receding edges.
 
+use super::depth_buffer::{DepthBuffer, FINER};
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::layout::{Layout, Panel};
 use super::draw::svg::{Rect, Svg};
@@ -14,7 +15,6 @@ use catchment_core::connector::{Connector, Surface};
 use catchment_core::design::Design;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// Draws the two halves in space at a pose.
 ///
@@ -96,16 +96,16 @@ const PIXELS: f64 = 2.0;
 /// The same, with the map from points of the world to the picture.
 fn seen(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<RenderedImage, FigureError> {
     let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
-    let (camera, canvas) = draw(bodies, size)?;
-    svg.image(rect, &raster::encode(size[0], size[1], true, &canvas.averaged())?, false);
-    Ok(RenderedImage { rect, camera, canvas })
+    let (camera, buffer) = draw(bodies, size)?;
+    svg.image(rect, &raster::encode(size[0], size[1], true, &buffer.averaged())?, false);
+    Ok(RenderedImage { rect, camera, buffer })
 }
 
 /// A finished image.
 struct RenderedImage {
     rect: Rect,
     camera: Camera,
-    canvas: Canvas,
+    buffer: DepthBuffer,
 }
 
 impl RenderedImage {
@@ -115,9 +115,9 @@ impl RenderedImage {
         const HIDES: f64 = 12.0;
         let at = self.camera.project(point);
         let to_svg = 1.0 / (PIXELS * FINER as f64);
-        let [column, row] = [(at.x, self.canvas.width), (at.y, self.canvas.height)]
+        let [column, row] = [(at.x, self.buffer.width), (at.y, self.buffer.height)]
             .map(|(value, most)| (value.max(0.0) as usize).min(most - 1));
-        let is_hidden = self.canvas.depth[column + row * self.canvas.width] > at.z + HIDES;
+        let is_hidden = self.buffer.depth[column + row * self.buffer.width] > at.z + HIDES;
         ([self.rect.x + at.x * to_svg, self.rect.y + at.y * to_svg], is_hidden)
     }
 }
@@ -209,14 +209,11 @@ impl Camera {
     }
 }
 
-/// How many times larger than shown the image is drawn, each way.
-const FINER: usize = 3;
-
 /// Draws an image of so many pixels.
-fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureError> {
+fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, DepthBuffer), FigureError> {
     let fine = size.map(|n| n * FINER);
     let camera = Camera::new(bodies, fine)?;
-    let mut canvas = Canvas::new(fine);
+    let mut buffer = DepthBuffer::new(fine);
     // Facets are numbered through all bodies.
     let counts = bodies.iter().scan(0, |next, body| {
         let first = *next;
@@ -234,17 +231,17 @@ fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureErr
                 facet.corners.iter().map(|i| camera.project(body.corners[*i as usize])).collect();
             for k in 1..corners.len() - 1 {
                 let number = (first + number) as u32;
-                canvas.triangle([corners[0], corners[k], corners[k + 1]], shade, number);
+                buffer.triangle([corners[0], corners[k], corners[k + 1]], shade, number);
             }
         }
     }
     for (first, body) in &numbered {
         for (ends, facets) in body.bends() {
             let facets: Vec<u32> = facets.into_iter().map(|number| (first + number) as u32).collect();
-            canvas.edge(ends.map(|p| camera.project(p)), body.edge, &facets);
+            buffer.edge(ends.map(|p| camera.project(p)), body.edge, &facets);
         }
     }
-    Ok((camera, canvas))
+    Ok((camera, buffer))
 }
 
 /// Light from the upper left front, and a floor of brightness.
@@ -258,190 +255,13 @@ fn shade(fill: Rgb, normal: DVec3) -> Rgb {
     }
 }
 
-fn packed([red, green, blue]: Rgb) -> u32 {
-    u32::from_be_bytes([0, red, green, blue])
-}
-
-struct Canvas {
-    width: usize,
-    height: usize,
-    depth: Vec<f64>,
-    /// Red, green and blue of every pixel, in one number each.
-    colour: Vec<u32>,
-    /// Number of the facet that is seen.
-    facet: Vec<u32>,
-}
-
-/// Half-width of a line, in fine pixels.
-const HALF: i32 = 2;
-
-/// The pixels no farther than [`HALF`] from the centre, row by row.
-const DISC: [[f64; 2]; 13] = {
-    let (mut disc, mut count) = ([[0.0; 2]; 13], 0);
-    let (mut dx, mut dy) = (-HALF, -HALF);
-    while dy <= HALF {
-        if dx * dx + dy * dy <= HALF * HALF {
-            disc[count] = [dx as f64, dy as f64];
-            count += 1;
-        }
-        [dx, dy] = if dx < HALF { [dx + 1, dy] } else { [-HALF, dy + 1] };
-    }
-    assert!(count == disc.len());
-    disc
-};
-
-/// Facets this close to each other, in fine pixels, are coplanar: the first drawn stays, so that no pattern
-/// of rounding is visible.
-const COINCIDENT: f64 = 1e-6;
-
-/// The columns in which slope·(x + ½ − origin) ≥ least, give or take one on either side.
-fn inside(columns: Range<usize>, slope: f64, least: f64, origin: f64) -> Range<usize> {
-    /// Below this slope rounding could move a border by more than a column.
-    const STEEP: f64 = 1e-3;
-    if slope.abs() < STEEP {
-        return columns;
-    }
-    let border = (least / slope + origin - 0.5).clamp(columns.start as f64, columns.end as f64);
-    if slope > 0.0 {
-        (border.floor() as usize).saturating_sub(1).max(columns.start)..columns.end
-    } else {
-        columns.start..(border.ceil() as usize + 2).min(columns.end)
-    }
-}
-
-impl Canvas {
-    fn new([width, height]: [usize; 2]) -> Self {
-        let pixels = width * height;
-        Self {
-            width,
-            height,
-            depth: vec![f64::NEG_INFINITY; pixels],
-            colour: vec![packed([255; 3]); pixels],
-            facet: vec![u32::MAX; pixels],
-        }
-    }
-
-    fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb, facet: u32) {
-        let shade = packed(colour);
-        let area = (b - a).truncate().perp_dot((c - a).truncate());
-        if area.abs() < 1e-9 {
-            return;
-        }
-        let range = |u: f64, v: f64, w: f64, n: usize| {
-            let lo = u.min(v).min(w).floor().max(0.0) as usize;
-            let hi = (u.max(v).max(w).ceil().max(0.0) as usize).min(n);
-            lo.min(hi)..hi
-        };
-        let (origin, to_b, to_c) = (a.truncate(), (b - a).truncate(), (c - a).truncate());
-        let columns = range(a.x, b.x, c.x, self.width);
-        for y in range(a.y, b.y, c.y, self.height) {
-            let py = y as f64 + 0.5 - origin.y;
-            // On this line the three weights are linear in the column: (x·Δ − …)/area.
-            let mut span = columns.clone();
-            for (slope, least) in [
-                (to_c.y, py * to_c.x),
-                (-to_b.y, -py * to_b.x),
-                (to_b.y - to_c.y, py * (to_b.x - to_c.x) - area),
-            ] {
-                span = inside(span, slope * area.signum(), least * area.signum(), origin.x);
-            }
-            let row = y * self.width + span.start..y * self.width + span.end;
-            let (depths, colours) = (&mut self.depth[row.clone()], &mut self.colour[row.clone()]);
-            let facets = &mut self.facet[row];
-            let mut k = 0;
-            while k < depths.len() {
-                let px = (span.start + k) as f64 + 0.5 - origin.x;
-                let wb = (px * to_c.y - py * to_c.x) / area;
-                let wc = (to_b.x * py - to_b.y * px) / area;
-                if wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0 {
-                    let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
-                    if z > depths[k] + COINCIDENT {
-                        (depths[k], colours[k], facets[k]) = (z, shade, facet);
-                    }
-                }
-                k += 1;
-            }
-        }
-    }
-
-    /// The pixels no farther than [`HALF`] from a place.
-    fn around(&self, p: DVec3) -> Vec<usize> {
-        let (width, height) = (self.width as f64, self.height as f64);
-        let mut pixels = Vec::with_capacity(DISC.len());
-        for [dx, dy] in &DISC {
-            let (x, y) = (p.x + dx, p.y + dy);
-            if x >= 0.0 && y >= 0.0 && x < width && y < height {
-                pixels.push(x as usize + y as usize * self.width);
-            }
-        }
-        pixels
-    }
-
-    /// A line slightly in front of its facets, if one of them is visible.
-    fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb, facets: &[u32]) {
-        /// Its offset to the front, in fine pixels.
-        const PROUD: f64 = 9.0;
-        let line = packed(colour);
-        let steps = (b - a).truncate().length().ceil().max(1.0);
-        for k in 0..=steps as usize {
-            let p = a + (b - a) * (k as f64 / steps);
-            let pixels = self.around(p);
-            if !pixels.iter().any(|index| facets.contains(&self.facet[*index])) {
-                continue;
-            }
-            for index in pixels {
-                if p.z + PROUD > self.depth[index] {
-                    self.colour[index] = line;
-                    // Covered from now on, but no nearer than the facet: a later line may cross it.
-                    self.depth[index] = self.depth[index].max(p.z);
-                }
-            }
-        }
-    }
-
-    /// RGBA pixels of the finished image: averages blocks of fine pixels; pixels without drawing are
-    /// transparent.
-    fn averaged(&self) -> Vec<u8> {
-        const BLOCK: u32 = (FINER * FINER) as u32;
-        let mut pixels = Vec::with_capacity(4 * self.depth.len() / (FINER * FINER));
-        for y in 0..self.height / FINER {
-            // Red, green and blue, and how many fine pixels are drawn.
-            let mut sums = vec![[0u32; 4]; self.width / FINER];
-            for row in FINER * y..FINER * (y + 1) {
-                let row = row * self.width..(row + 1) * self.width;
-                let (depths, colours) = (&self.depth[row.clone()], &self.colour[row]);
-                for (x, sum) in sums.iter_mut().enumerate() {
-                    let mut k = FINER * x;
-                    while k < FINER * (x + 1) {
-                        if depths[k] > f64::NEG_INFINITY {
-                            let [_, red, green, blue] = colours[k].to_be_bytes();
-                            sum[0] += u32::from(red);
-                            sum[1] += u32::from(green);
-                            sum[2] += u32::from(blue);
-                            sum[3] += 1;
-                        }
-                        k += 1;
-                    }
-                }
-            }
-            for [red, green, blue, drawn] in sums {
-                let n = drawn.max(1);
-                let mean = |sum: u32| ((sum + n / 2) / n) as u8;
-                pixels.extend_from_slice(&[mean(red), mean(green), mean(blue), (drawn * 255 / BLOCK) as u8]);
-            }
-        }
-        pixels
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::depth_buffer::packed;
     use super::super::testing::{look, pyramid, v_face, x_face};
     use super::*;
     use crate::schema::testing::design;
-    use catchment_core::acceptance::Stream;
     use catchment_core::pose::{DofSet, PoseError};
-    use glam::DVec2;
 
     #[test]
     fn solids_of_every_kind() {
@@ -490,10 +310,10 @@ mod tests {
             .zip(edges)
             .map(|(s, edge)| Body::new(s, DMat3::IDENTITY, DVec3::ZERO, [[255; 3], edge]))
             .collect();
-        let (camera, canvas) = draw(&bodies, [300, 240]).unwrap();
+        let (camera, buffer) = draw(&bodies, [300, 240]).unwrap();
         let near = |point: [f64; 3], colour: Rgb| {
             let at = camera.project(DVec3::from_array(point));
-            canvas.around(at).into_iter().filter(|index| canvas.colour[*index] == packed(colour)).count()
+            buffer.around(at).into_iter().filter(|index| buffer.colour[*index] == packed(colour)).count()
         };
         // In front, within the first box and beyond it; its own front edge; the back of the second.
         assert_eq!(near([0.5, 0.0, 0.5], edges[1]), 0);
@@ -503,31 +323,6 @@ mod tests {
         assert_eq!(near([1.4, 1.0, 0.2], edges[1]), 0);
         // A little behind the lower left corner of the first.
         assert_eq!(near([0.0, 0.06, 0.0], edges[0]), 0);
-    }
-
-    /// Brute judge: the weights of every pixel, of wide triangles and slivers, partly outside the image.
-    #[test]
-    fn no_pixel_of_a_triangle_is_left_out() {
-        const SIDE: usize = 30;
-        let random = Stream::new(7);
-        for case in 0..400 {
-            let number = |k: u64| random.branch(case).uniform(k);
-            let corner = |k: u64| {
-                DVec3::new(50.0 * number(3 * k) - 10.0, 50.0 * number(3 * k + 1) - 10.0, number(3 * k + 2))
-            };
-            let [a, b] = [corner(0), corner(1)];
-            let c = if case % 2 == 0 { corner(2) } else { a.lerp(b, number(9)) + 1e-3 * corner(2) };
-            let c = if case % 5 == 0 { DVec3::new(c.x, a.y, c.z) } else { c };
-            let mut canvas = Canvas::new([SIDE, SIDE]);
-            canvas.triangle([a, b, c], [1, 2, 3], 4);
-            let area = (b - a).truncate().perp_dot((c - a).truncate());
-            for (k, facet) in canvas.facet.iter().enumerate() {
-                let p = DVec2::new((k % SIDE) as f64 + 0.5, (k / SIDE) as f64 + 0.5) - a.truncate();
-                let weights = [p.perp_dot((c - a).truncate()) / area, (b - a).truncate().perp_dot(p) / area];
-                let inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
-                assert_eq!(*facet == 4, inside, "{case}: pixel {k} of {a}, {b}, {c}");
-            }
-        }
     }
 
     #[test]
