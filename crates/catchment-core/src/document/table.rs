@@ -212,10 +212,13 @@ impl Table {
         Self::new(keys.split_whitespace().map(Column::data))
     }
 
-    /// Adds a row. It has a cell for every column.
+    /// Adds a row.
+    ///
+    /// # Panics
+    /// If it has not a cell for every column.
     pub fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
         let row: Vec<Cell> = row.into_iter().collect();
-        debug_assert_eq!(row.len(), self.columns.len(), "a row has a cell for every column");
+        assert_eq!(row.len(), self.columns.len(), "a row has a cell for every column");
         self.rows.push(row);
     }
 

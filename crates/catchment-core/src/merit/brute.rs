@@ -30,12 +30,14 @@ pub fn inner_and_outer(grid: &Grid, accepted: &[bool]) -> [usize; 2] {
 /// Edge, in cells, of the largest cube of accepted cells: dynamic programming in O(2ⁿ · cells) time and two
 /// slabs of memory.
 ///
-/// `shape` is the number of cells per axis, `accepted` has a flag for each cell, first axis fastest; their
-/// lengths must agree.
+/// `shape` is the number of cells per axis, `accepted` has a flag for each cell, first axis fastest.
+///
+/// # Panics
+/// If there are more or fewer flags than cells.
 pub fn largest_cube(shape: &[usize], accepted: &[bool]) -> usize {
     let Some((&slabs, face)) = shape.split_last() else { return 0 };
     let slab: usize = face.iter().product();
-    debug_assert_eq!(slab * slabs, accepted.len());
+    assert_eq!(slab * slabs, accepted.len());
     if slab == 0 {
         return 0;
     }
