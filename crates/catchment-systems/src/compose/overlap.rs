@@ -56,82 +56,117 @@ struct Common {
 }
 
 /// A corner of an intersection, and whether the side that begins there belongs to the second polygon.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Corner {
-    at: DVec2,
+    x: f64,
+    y: f64,
     of_second: bool,
 }
 
+/// Room for the corners of what is left of a polygon, before a cut and after it.
+type Scratch = [Vec<Corner>; 2];
+
+// Nearly all time of a search for the largest overlap is spent here. Plain loops over numbers: this package is compiled without
+// optimisation, where every call of an iterator or of a vector's operator stays a call.
 impl Convex {
     fn of(part: &[Node]) -> Self {
         let corners: Vec<DVec2> = part.iter().map(|p| place(*p)).collect();
         let ends = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = corners.iter().fold(ends, |(low, high), p| (low.min(*p), high.max(*p)));
-        let area = sides(&corners).map(|[p, q]| p.perp_dot(q)).sum::<f64>() / 2.0;
+        let next = corners.iter().cycle().skip(1);
+        let area = corners.iter().zip(next).map(|(p, q)| p.perp_dot(*q)).sum::<f64>() / 2.0;
         Self { corners, area, low, high }
     }
 
     /// Whether the rectangles around the two come within `near` of each other, with the other moved by d.
     fn is_near(&self, other: &Self, d: DVec2, near: f64) -> bool {
-        let near = DVec2::splat(near);
-        self.low.cmple(other.high + d + near).all() && (other.low + d).cmple(self.high + near).all()
+        self.low.x <= other.high.x + d.x + near
+            && self.low.y <= other.high.y + d.y + near
+            && other.low.x + d.x <= self.high.x + near
+            && other.low.y + d.y <= self.high.y + near
     }
 
     /// The intersection with another polygon that is moved by d, and grown: each of its sides is moved
     /// outwards, so that a square with half the side `grown` about every point of it is inside.
-    fn common(&self, other: &Self, d: DVec2, grown: f64) -> Common {
+    fn common(&self, other: &Self, d: DVec2, grown: f64, [rest, kept]: &mut Scratch) -> Common {
         if !self.is_near(other, d, grown) {
             return Common::default();
         }
-        let mut rest: Vec<Corner> =
-            self.corners.iter().map(|p| Corner { at: *p, of_second: false }).collect();
-        let mut kept = Vec::with_capacity(self.corners.len() + other.corners.len());
-        for [from, to] in sides(&other.corners) {
-            cut(&rest, from + d, to - from, grown, &mut kept);
-            std::mem::swap(&mut rest, &mut kept);
-            if rest.len() < 3 {
+        let (own, sides): (&[DVec2], &[DVec2]) = (&self.corners, &other.corners);
+        let mut count = own.len();
+        rest.clear();
+        rest.extend(own.iter().map(|p| Corner { x: p.x, y: p.y, of_second: false }));
+        let mut k = 0;
+        while k < sides.len() {
+            let (from, to) = (sides[k], sides[if k + 1 < sides.len() { k + 1 } else { 0 }]);
+            let side = Side { x: from.x + d.x, y: from.y + d.y, along: [to.x - from.x, to.y - from.y] };
+            if kept.len() < 2 * count {
+                kept.resize(2 * count, Corner::default());
+            }
+            count = side.cut(&rest[..count], grown, kept);
+            std::mem::swap(rest, kept);
+            if count < 3 {
                 return Common::default();
             }
+            k += 1;
         }
-        let mut found = Common::default();
-        for (k, corner) in rest.iter().enumerate() {
-            let next = rest[(k + 1) % rest.len()].at;
-            found.area += 0.5 * (corner.at - rest[0].at).perp_dot(next - rest[0].at);
-            if corner.of_second {
-                let along = next - corner.at;
-                found.gradient += DVec2::new(along.y, -along.x);
+        let corners: &[Corner] = &rest[..count];
+        let (x, y) = (corners[0].x, corners[0].y);
+        let (mut area, mut gradient) = (0.0, DVec2::ZERO);
+        k = 0;
+        while k < count {
+            let (here, next) = (corners[k], corners[if k + 1 < count { k + 1 } else { 0 }]);
+            area += 0.5 * ((here.x - x) * (next.y - y) - (here.y - y) * (next.x - x));
+            if here.of_second {
+                gradient.x += next.y - here.y;
+                gradient.y -= next.x - here.x;
             }
+            k += 1;
         }
-        if found.area > 0.0 { found } else { Common::default() }
+        if area > 0.0 { Common { area, gradient } } else { Common::default() }
     }
 }
 
-/// The sides of a closed outline.
-fn sides(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + '_ {
-    (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]])
+/// A side of the second polygon: where it begins, and from there to its end.
+struct Side {
+    x: f64,
+    y: f64,
+    along: [f64; 2],
 }
 
-/// The part of a convex polygon left of a side of the second, which is moved outwards for a square of half
-/// side `grown`.
-fn cut(polygon: &[Corner], from: DVec2, along: DVec2, grown: f64, kept: &mut Vec<Corner>) {
-    let outwards = grown * along.abs().element_sum();
-    let left = |p: DVec2| along.perp_dot(p - from) + outwards;
-    kept.clear();
-    let first = left(polygon[0].at);
-    let mut there = first;
-    for (k, corner) in polygon.iter().enumerate() {
-        let here = there;
-        let next = polygon[(k + 1) % polygon.len()];
-        there = if k + 1 < polygon.len() { left(next.at) } else { first };
-        if here >= 0.0 {
-            kept.push(*corner);
+impl Side {
+    /// The part of a convex polygon left of the side, which is moved outwards for a square of half side `grown`: its corners are
+    /// the first of `kept`, which has room for twice as many; returns how many there are.
+    fn cut(&self, polygon: &[Corner], grown: f64, kept: &mut [Corner]) -> usize {
+        let (x, y, [along_x, along_y]) = (self.x, self.y, self.along);
+        let outwards = grown * (along_x.abs() + along_y.abs());
+        let mut found = 0;
+        let first = along_x * (polygon[0].y - y) - along_y * (polygon[0].x - x) + outwards;
+        let (mut here, mut k) = (first, 0);
+        while k < polygon.len() {
+            let is_last = k + 1 == polygon.len();
+            let (corner, next) = (polygon[k], polygon[if is_last { 0 } else { k + 1 }]);
+            let there =
+                if is_last { first } else { along_x * (next.y - y) - along_y * (next.x - x) + outwards };
+            if here >= 0.0 {
+                kept[found] = corner;
+                found += 1;
+            }
+            if (here >= 0.0) != (there >= 0.0) {
+                let share = here / (here - there);
+                // At an exit from the half-plane the side of the second polygon begins; at an entry the polygon's
+                // own side continues.
+                kept[found] = Corner {
+                    x: corner.x * (1.0 - share) + next.x * share,
+                    y: corner.y * (1.0 - share) + next.y * share,
+                    of_second: here >= 0.0 || corner.of_second,
+                };
+                found += 1;
+            }
+            here = there;
+            k += 1;
         }
-        if (here >= 0.0) != (there >= 0.0) {
-            let at = corner.at.lerp(next.at, here / (here - there));
-            // At an exit from the half-plane the side of the second polygon begins; at an entry the polygon's
-            // own side continues.
-            kept.push(Corner { at, of_second: here >= 0.0 || corner.of_second });
-        }
+        found
     }
 }
 
@@ -149,22 +184,26 @@ impl RegionOverlap {
 
     /// Area of A ∩ (B + d).
     pub fn at(&self, d: DVec2) -> f64 {
-        self.second.iter().map(|b| self.first.iter().map(|a| a.common(b, d, 0.0).area).sum::<f64>()).sum()
+        let mut scratch = Scratch::default();
+        let mut of =
+            |b: &Convex| self.first.iter().map(|a| a.common(b, d, 0.0, &mut scratch).area).sum::<f64>();
+        self.second.iter().map(&mut of).sum()
     }
 
     /// Area of A ∩ (B + d), and the most it is at places no farther from d than `half` along either axis.
     pub(super) fn around(&self, d: DVec2, half: f64) -> Around {
         // Roundings of some dozens of terms are far below this share.
         const ROUNDING: f64 = 1e-10;
+        let mut scratch = Scratch::default();
         let (mut value, mut gradient, mut bent, mut rough, mut together) = (0.0, DVec2::ZERO, 0.0, 0.0, 0.0);
         for b in &self.second {
             for a in &self.first {
                 if !a.is_near(b, d, half) {
                     continue;
                 }
-                let found = a.common(b, d, 0.0);
+                let found = a.common(b, d, 0.0, &mut scratch);
                 value += found.area;
-                let grown = a.common(b, d, half).area.min(a.area.min(b.area));
+                let grown = a.common(b, d, half, &mut scratch).area.min(a.area.min(b.area));
                 let most = (grown - found.area).max(0.0);
                 let turn = half * found.gradient.abs().element_sum();
                 let bend = 0.25 * turn * turn / found.area;
