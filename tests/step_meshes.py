@@ -17,7 +17,7 @@ from pathlib import Path
 
 here = Path(__file__).parent
 sys.path.insert(0, str(here / "step"))
-script = (here.parent / "crates/catchment-core/src/connector/step/mesh.py").read_text()
+script = (here.parent / "crates/catchment-connector/src/step/mesh.py").read_text()
 catchment = Path(sys.argv[1]).resolve()
 environment = {**os.environ, "CATCHMENT_PYTHON": sys.executable, "NO_COLOR": "1"}
 

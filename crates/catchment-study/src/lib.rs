@@ -13,7 +13,6 @@
 //!   chance       probability of docking in drop tests             one design, declared laws, trials in a rigid-body engine
 //!   plan         test poses for a robot                          one design, exact motions at every pose
 //!   validate     test of the prediction by a robot's trials      one design, exact motions and the trials
-//!   proposal     all orientations in which two parts may dock   two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 
@@ -25,7 +24,6 @@ pub mod friction;
 pub mod hold;
 pub mod plan;
 pub mod planes;
-pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;
 pub mod slices;

@@ -94,6 +94,7 @@
 //! - [`run`]: plan, decide, correct, settle, measure: from a problem to its result, also distributed over
 //!   several machines.
 //! - [`study`]: studies of many runs, and their combined results.
+//! - [`proposal`]: the design that docks two parts from CAD files.
 //! - [`report`]: JSON, text, tables, pictures, Zarr: the only module that formats results.
 //!
 //! [`pose`] owns frames, signs, the order of angles and the metric. [`exec`] owns threads, the clock, cancellation, progress
@@ -117,5 +118,6 @@ pub use catchment_core::{
     acceptance, budget, connector, contact, design, diagnostic, disjoint, document, exec, landscape, merit,
     method, polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
 };
+pub use catchment_proposal as proposal;
 pub use catchment_report as report;
 pub use catchment_study as study;

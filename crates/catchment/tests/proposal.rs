@@ -6,7 +6,7 @@ use catchment::connector::{Half, Surface, convex_hull, stl};
 use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
-use catchment::study::proposal::{
+use catchment::proposal::{
     PartDetail, PartFile, PartFrames, PartLayout, Proposal, ProposalError, ProposalSettings, propose,
 };
 use glam::{DAffine3, DMat3, DVec2};

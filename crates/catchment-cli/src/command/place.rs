@@ -10,11 +10,11 @@ use catchment::design::{DesignDefect, LengthScale, LengthUnit, Quantity, Quantit
 use catchment::diagnostic::Diagnostic;
 use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
-use catchment::report::figure;
-use catchment::study::proposal::{
+use catchment::proposal::{
     AxisDirection, PartDetail, PartFile, PartFrames, Proposal, ProposalError, ProposalSettings, propose,
     shown_length,
 };
+use catchment::report::figure;
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::{Component, Path, PathBuf};

@@ -1,0 +1,14 @@
+//! What serves every step of a computation: poses, execution, diagnostics, tolerances, limits on inputs, and
+//! convex polytopes. Programs use the crate `catchment`.
+//!
+//! Lengths are in D, the connector's width; angles are in radians.
+
+pub mod budget;
+pub mod diagnostic;
+pub mod disjoint;
+pub mod exec;
+pub mod polytope;
+pub mod pose;
+pub mod suggest;
+pub mod terminal;
+pub mod tolerance;
