@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   tolerance  ├──┤            range = 4 · 2^(−k/2) · R/4 with the least k whose quarter docks on this side,
-//!   range      ├──────────┤    R = 1 D or 90 degrees, k = 0 … 8: between 2.8 and 4 times the tolerance
+//!   range      ├──────────┤    R = 1 D or 90 degrees, k = 0 … 20: between 2.8 and 4 times the tolerance
 //! ```
 //!
 //! Not promised: that no pose beyond it docks in combination with other errors.
@@ -60,11 +60,16 @@ fn ranges(pair: &Pair, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     Ok(ranges)
 }
 
-/// Ranges that are tried: 1, 2^(−1/2), 1/2 … 1/16, to two digits.
-const STEPS: u32 = 8;
+/// Ranges that are tried: 1, 2^(−1/2), 1/2 … 1/1024, to two digits. The least is that of fits of 1/4000 D.
+const STEPS: u32 = 20;
 
 fn share(step: u32) -> f64 {
-    (100.0 * (-0.5 * f64::from(step)).exp2()).ceil() / 100.0
+    let exact = (-0.5 * f64::from(step)).exp2();
+    let mut digits = 100.0;
+    while digits * exact < 10.0 {
+        digits *= 10.0;
+    }
+    (digits * exact).ceil() / digits
 }
 
 /// The first step whose share is accepted, by bisection; the last is not tested.
@@ -83,13 +88,13 @@ mod tests {
 
     #[test]
     fn a_range_is_three_to_four_times_the_tolerance() {
-        for tolerance in [0.3, 0.25, 0.2, 0.1, 0.09, 0.05, 0.03] {
+        for tolerance in [0.3, 0.25, 0.2, 0.1, 0.09, 0.05, 0.03, 0.01, 0.0053, 0.0015, 0.0006] {
             let range = share(largest(STEPS, |share| 0.25 * share <= tolerance));
             assert!(
                 range <= 4.0 * tolerance && (range == 1.0 || range > 2.6 * tolerance),
                 "{tolerance}: {range}"
             );
         }
-        assert_eq!(share(largest(STEPS, |_| false)), 0.07);
+        assert_eq!(share(largest(STEPS, |_| false)), 0.00098);
     }
 }

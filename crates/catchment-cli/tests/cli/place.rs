@@ -73,6 +73,19 @@ fn an_assembly_is_recognised_and_paths_lead_from_the_design() {
     assert!(apart.starts_with("exit 0") && apart.contains("facing = \"-y\""), "{apart}");
 }
 
+/// A play of 0.05 mm beside a width of 20 mm, without a chamfer: errors of 0.05 mm dock, and the error box is not 20 times as large.
+#[test]
+fn a_tight_fit_gets_an_error_box_of_its_size() {
+    let home = two_parts(&on_a_plate(&socket(10.05)), &plug(10.0, [0.0, 12.0]));
+    assert!(run(home.path(), &TWO).starts_with("exit 0"));
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(text.contains("About four times the single-axis limits ("), "{text}");
+    let range =
+        text.lines().find_map(|line| line.strip_prefix("x = ")?.strip_suffix(" # D")?.parse::<f64>().ok());
+    let limit = 0.05 / 20.0;
+    assert!(range.is_some_and(|range| range > 2.6 * limit && range <= 4.0 * limit), "{text}");
+}
+
 #[test]
 fn a_design_is_replaced_only_with_force() {
     let home = home();
