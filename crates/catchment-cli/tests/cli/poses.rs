@@ -286,10 +286,24 @@ fn offsets_are_measured_at_the_chosen_point() {
     assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(4)]);
 }
 
-/// The output of `outcome` when interrupted shortly after its start, with more poses than it can follow by
-/// then.
+/// The output of `outcome` when interrupted once it has decided some of more poses than it can follow by then: after 0.1 s, or twice as long
+/// until that suffices.
 #[cfg(target_os = "linux")]
 fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::process::Output {
+    let after = |wait: u64| interrupted_after(folder, args, signal, wait);
+    let decided = |output: &std::process::Output| {
+        !output.stdout.is_empty() || String::from_utf8_lossy(&output.stderr).contains("partial: ")
+    };
+    (0..6).map(|doubled| after(100 << doubled)).find(decided).expect("a pose is decided within 3 seconds")
+}
+
+#[cfg(target_os = "linux")]
+fn interrupted_after(
+    folder: &std::path::Path,
+    args: &[&str],
+    signal: &str,
+    milliseconds: u64,
+) -> std::process::Output {
     let child = catchment(folder)
         .args(["outcome", "v.toml", "--poses", "poses.csv", "--threads", "1"])
         .args(args)
@@ -309,7 +323,7 @@ fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::pr
     while !listens() {
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
-    std::thread::sleep(std::time::Duration::from_millis(100));
+    std::thread::sleep(std::time::Duration::from_millis(milliseconds));
     let pid = child.id().to_string();
     assert!(std::process::Command::new("kill").args([signal, &pid]).status().unwrap().success());
     child.wait_with_output().unwrap()

@@ -15,7 +15,7 @@ else:
 
 
 class Docked(TypedDict):
-    """Docking tolerance. `crate::contact::Seat` defines its effect on a pair of halves."""
+    """Docking tolerance. `Seat` of the module `contact` defines its effect on a pair of halves."""
 
     #: Largest height above the mated height at which a half at rest counts as docked, in D.
     depth: float
