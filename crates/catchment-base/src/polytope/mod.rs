@@ -36,7 +36,7 @@
 //! # Example
 //!
 //! ```
-//! use catchment_core::polytope::{Collection, Polytope, minkowski_sum_of};
+//! use catchment_base::polytope::{Collection, Polytope, minkowski_sum_of};
 //!
 //! # fn example() -> Option<()> {
 //! let square = Polytope::cuboid(2, &[0.0; 6], &[1.0; 6])?;

@@ -84,7 +84,7 @@ fn looks_like(c: char) -> Option<char> {
 ///
 /// # Examples
 /// ```
-/// assert_eq!(catchment_core::suggest::as_it_looks("\u{445}_mm"), "x_mm");
+/// assert_eq!(catchment_base::suggest::as_it_looks("\u{445}_mm"), "x_mm");
 /// ```
 pub fn as_it_looks(text: &str) -> String {
     text.chars().map(|c| looks_like(c).unwrap_or(c)).collect()
@@ -95,7 +95,7 @@ pub fn as_it_looks(text: &str) -> String {
 ///
 /// # Examples
 /// ```
-/// let odd = catchment_core::suggest::odd("\u{445}_mm");
+/// let odd = catchment_base::suggest::odd("\u{445}_mm");
 /// assert_eq!(odd, "; its character 1, `\u{445}` (U+0445), only looks like the ASCII `x`");
 /// ```
 pub fn odd(name: &str) -> String {

@@ -14,7 +14,7 @@ const NOTHING: [&str; 12] =
 ///
 /// # Examples
 /// ```
-/// use catchment_core::suggest::number_help;
+/// use catchment_base::suggest::number_help;
 /// assert_eq!(number_help("100%").as_deref(), Some("write 1: a share is a plain number, 100 % is 1"));
 /// assert_eq!(number_help("5,5 mm").as_deref(), Some("write 5.5 mm: decimals follow a point"));
 /// ```

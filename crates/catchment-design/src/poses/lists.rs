@@ -57,8 +57,8 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], D
 ///
 /// # Examples
 /// ```
-/// # fn main() -> Result<(), catchment_core::diagnostic::Diagnostics> {
-/// let angles = catchment_core::poses::parse_angles("0..45:2.25 deg")?;
+/// # fn main() -> Result<(), catchment_base::diagnostic::Diagnostics> {
+/// let angles = catchment_design::poses::parse_angles("0..45:2.25 deg")?;
 /// assert_eq!((angles.len(), angles[20]), (21, 45f64.to_radians()));
 /// # Ok(())
 /// # }

@@ -17,10 +17,10 @@ use std::ops::Range;
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let design = catchment_core::design::read("[connector]\nfamily = \"pyramid\"\n", ".".as_ref())?.design;
-/// let error = catchment_core::poses::parse_pose("x=0.2,pitch=10 deg", &design)?;
+/// let design = catchment_design::design::read("[connector]\nfamily = \"pyramid\"\n", ".".as_ref())?.design;
+/// let error = catchment_design::poses::parse_pose("x=0.2,pitch=10 deg", &design)?;
 /// assert_eq!((error.x, error.pitch), (0.2, 10f64.to_radians()));
-/// let refusal = catchment_core::poses::parse_pose("x=0.2,pich=10 deg", &design).unwrap_err();
+/// let refusal = catchment_design::poses::parse_pose("x=0.2,pich=10 deg", &design).unwrap_err();
 /// assert_eq!(refusal.list[0].span, Some(6..17));
 /// # Ok(())
 /// # }
