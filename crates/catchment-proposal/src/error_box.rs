@@ -72,6 +72,11 @@ fn share(step: u32) -> f64 {
     (digits * exact).ceil() / digits
 }
 
+/// Whether this is the smallest range that is tried: nothing shows that a quarter of it docks.
+pub(super) fn is_least(range: f64) -> bool {
+    range <= share(STEPS)
+}
+
 /// The first step whose share is accepted, by bisection; the last is not tested.
 fn largest(last: u32, mut accepts: impl FnMut(f64) -> bool) -> u32 {
     let (mut few, mut many) = (0, last);

@@ -3,7 +3,7 @@
 use super::halves::{design_unit, file_unit, may_state_unit};
 use super::layout::PartLayout;
 use super::seat_check::{Seat, SeatCandidate};
-use super::{PartDetail, PartFile, ProposalSettings};
+use super::{PartDetail, PartFile, ProposalSettings, error_box};
 use catchment_core::design::{FileSpec, LengthUnit};
 use catchment_core::pose::{Dof, DofSet, Mount};
 use glam::DVec2;
@@ -191,6 +191,9 @@ pub(super) fn text(
         } else {
             format!("{} # D", decimal(number(share, 1e-9)))
         };
+        if error_box::is_least(share) {
+            line("# The smallest range that is proposed: the limit may be less than a quarter of it.");
+        }
         line(&format!("{} = {range}", dof.name()));
     }
     text

@@ -84,6 +84,15 @@ fn a_tight_fit_gets_an_error_box_of_its_size() {
         text.lines().find_map(|line| line.strip_prefix("x = ")?.strip_suffix(" # D")?.parse::<f64>().ok());
     let limit = 0.05 / 20.0;
     assert!(range.is_some_and(|range| range > 2.6 * limit && range <= 4.0 * limit), "{text}");
+    // With 0.002 mm the limit is less than a quarter of the smallest range.
+    assert!(!text.contains("smallest range"), "{text}");
+    let home = two_parts(&on_a_plate(&socket(10.002)), &plug(10.0, [0.0, 12.0]));
+    assert!(run(home.path(), &TWO).starts_with("exit 0"));
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(
+        text.contains("# The smallest range that is proposed") && text.contains("\nx = 0.00098 # D"),
+        "{text}"
+    );
 }
 
 #[test]
