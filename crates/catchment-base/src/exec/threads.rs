@@ -106,15 +106,20 @@ impl Threads {
     }
 
     pub(super) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        let (mut work, mut result) = (Some(work), None);
+        self.run(&mut || result = work.take().map(|work| work()));
+        match result {
+            Some(result) => result,
+            None => unreachable!("run calls its work"),
+        }
+    }
+
+    /// Calls work without a type, once: compiled once.
+    pub(super) fn run(&self, work: &mut (dyn FnMut() + Send)) {
         match self.pool() {
             Some(pool) => pool.install(work),
             None => alone(work),
         }
-    }
-
-    /// The same for work without a type: compiled once.
-    pub(super) fn run(&self, work: &mut (dyn FnMut() + Send)) {
-        self.install(work);
     }
 }
 
