@@ -114,7 +114,7 @@ impl Threads {
         }
     }
 
-    /// Calls work without a type, once: compiled once.
+    /// Calls `work` once. It has no type of its own, so this is compiled once for all.
     pub(super) fn run(&self, work: &mut (dyn FnMut() + Send)) {
         match self.pool() {
             Some(pool) => pool.install(work),
