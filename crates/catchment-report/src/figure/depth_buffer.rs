@@ -7,7 +7,8 @@
 //!    a────────────b
 //! ```
 //!
-//! The loops over pixels are plain, because this crate is not optimised in every profile.
+//! The loops over pixels are plain, because this crate is not optimised in every profile. Nothing drawn is zero in every field, so what stays
+//! empty is neither written nor read.
 
 use super::draw::colour::Rgb;
 use glam::DVec3;
@@ -16,21 +17,26 @@ use std::ops::Range;
 /// How many times larger than shown the image is drawn, each way.
 pub(super) const FINER: usize = 3;
 
-/// Red, green and blue in one number.
+/// Red, green and blue in one number that is not [`NOTHING`].
 pub(super) fn packed([red, green, blue]: Rgb) -> u32 {
-    u32::from_be_bytes([0, red, green, blue])
+    u32::from_be_bytes([255, red, green, blue])
 }
+
+/// The colour where nothing is drawn.
+const NOTHING: u32 = 0;
 
 /// The image while it is drawn, in fine pixels.
 pub(super) struct DepthBuffer {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Towards the eye; −∞ where nothing is drawn.
-    pub(super) depth: Vec<f64>,
-    /// As [`packed`].
+    /// Towards the eye.
+    depth: Vec<f64>,
+    /// As [`packed`], or [`NOTHING`].
     pub(super) colour: Vec<u32>,
-    /// Number of the facet that is seen.
+    /// Number of the facet that is seen, from 1; 0 is none.
     facet: Vec<u32>,
+    /// Columns of each row that may be drawn.
+    drawn: Vec<Range<usize>>,
 }
 
 /// Half-width of a line, in fine pixels.
@@ -76,13 +82,25 @@ impl DepthBuffer {
         Self {
             width,
             height,
-            depth: vec![f64::NEG_INFINITY; pixels],
-            colour: vec![packed([255; 3]); pixels],
-            facet: vec![u32::MAX; pixels],
+            depth: vec![0.0; pixels],
+            colour: vec![NOTHING; pixels],
+            facet: vec![0; pixels],
+            drawn: vec![width..0; height],
         }
     }
 
-    /// A triangle with corners in fine pixels and depth, in one colour, as part of a facet.
+    /// Towards the eye; −∞ where nothing is drawn.
+    pub(super) fn depth(&self, index: usize) -> f64 {
+        if self.colour[index] == NOTHING { f64::NEG_INFINITY } else { self.depth[index] }
+    }
+
+    /// Columns of a row may be drawn.
+    fn extend(&mut self, row: usize, columns: Range<usize>) {
+        let drawn = &mut self.drawn[row];
+        *drawn = drawn.start.min(columns.start)..drawn.end.max(columns.end);
+    }
+
+    /// A triangle with corners in fine pixels and depth, in one colour, as part of a facet. Facets are numbered from 1.
     pub(super) fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb, facet: u32) {
         let shade = packed(colour);
         let area = (b - a).truncate().perp_dot((c - a).truncate());
@@ -107,6 +125,7 @@ impl DepthBuffer {
             ] {
                 span = inside(span, slope * area.signum(), least * area.signum(), origin.x);
             }
+            self.extend(y, span.clone());
             let row = y * self.width + span.start..y * self.width + span.end;
             let (depths, colours) = (&mut self.depth[row.clone()], &mut self.colour[row.clone()]);
             let facets = &mut self.facet[row];
@@ -117,7 +136,7 @@ impl DepthBuffer {
                 let wc = (to_b.x * py - to_b.y * px) / area;
                 if wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0 {
                     let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
-                    if z > depths[k] + COINCIDENT {
+                    if colours[k] == NOTHING || z > depths[k] + COINCIDENT {
                         (depths[k], colours[k], facets[k]) = (z, shade, facet);
                     }
                 }
@@ -152,10 +171,13 @@ impl DepthBuffer {
                 continue;
             }
             for index in pixels {
-                if p.z + PROUD > self.depth[index] {
+                let depth = self.depth(index);
+                if p.z + PROUD > depth {
                     self.colour[index] = line;
                     // Covered from now on, but no nearer than the facet: a later line may cross it.
-                    self.depth[index] = self.depth[index].max(p.z);
+                    self.depth[index] = depth.max(p.z);
+                    let column = index % self.width;
+                    self.extend(index / self.width, column..column + 1);
                 }
             }
         }
@@ -165,31 +187,41 @@ impl DepthBuffer {
     /// transparent.
     pub(super) fn averaged(&self) -> Vec<u8> {
         const BLOCK: u32 = (FINER * FINER) as u32;
-        let mut pixels = Vec::with_capacity(4 * self.depth.len() / (FINER * FINER));
-        for y in 0..self.height / FINER {
-            // Red, green and blue, and how many fine pixels are drawn.
-            let mut sums = vec![[0u32; 4]; self.width / FINER];
-            for row in FINER * y..FINER * (y + 1) {
-                let row = row * self.width..(row + 1) * self.width;
-                let (depths, colours) = (&self.depth[row.clone()], &self.colour[row]);
-                for (x, sum) in sums.iter_mut().enumerate() {
-                    let mut k = FINER * x;
-                    while k < FINER * (x + 1) {
-                        if depths[k] > f64::NEG_INFINITY {
-                            let [_, red, green, blue] = colours[k].to_be_bytes();
-                            sum[0] += u32::from(red);
-                            sum[1] += u32::from(green);
-                            sum[2] += u32::from(blue);
-                            sum[3] += 1;
+        let width = self.width / FINER;
+        let mut pixels = vec![0; 4 * width * (self.height / FINER)];
+        for (y, line) in pixels.chunks_exact_mut(4 * width).enumerate() {
+            let rows = FINER * y..FINER * (y + 1);
+            let drawn = &self.drawn[rows.clone()];
+            let [mut start, mut end] = [self.width, 0];
+            for columns in drawn {
+                [start, end] = [start.min(columns.start), end.max(columns.end)];
+            }
+            let mut x = start / FINER;
+            while x < end.div_ceil(FINER).min(width) {
+                // Red, green and blue, and how many fine pixels are drawn.
+                let mut sums = [0u32; 4];
+                let mut row = rows.start;
+                while row < rows.end {
+                    let mut k = row * self.width + FINER * x;
+                    let past = k + FINER;
+                    while k < past {
+                        let colour = self.colour[k];
+                        if colour != NOTHING {
+                            sums[0] += colour >> 16 & 255;
+                            sums[1] += colour >> 8 & 255;
+                            sums[2] += colour & 255;
+                            sums[3] += 1;
                         }
                         k += 1;
                     }
+                    row += 1;
                 }
-            }
-            for [red, green, blue, drawn] in sums {
-                let n = drawn.max(1);
-                let mean = |sum: u32| ((sum + n / 2) / n) as u8;
-                pixels.extend_from_slice(&[mean(red), mean(green), mean(blue), (drawn * 255 / BLOCK) as u8]);
+                let n = sums[3].max(1);
+                for channel in 0..3 {
+                    line[4 * x + channel] = ((sums[channel] + n / 2) / n) as u8;
+                }
+                line[4 * x + 3] = (sums[3] * 255 / BLOCK) as u8;
+                x += 1;
             }
         }
         pixels

@@ -117,7 +117,7 @@ impl RenderedImage {
         let to_svg = 1.0 / (PIXELS * FINER as f64);
         let [column, row] = [(at.x, self.buffer.width), (at.y, self.buffer.height)]
             .map(|(value, most)| (value.max(0.0) as usize).min(most - 1));
-        let is_hidden = self.buffer.depth[column + row * self.buffer.width] > at.z + HIDES;
+        let is_hidden = self.buffer.depth(column + row * self.buffer.width) > at.z + HIDES;
         ([self.rect.x + at.x * to_svg, self.rect.y + at.y * to_svg], is_hidden)
     }
 }
@@ -214,8 +214,8 @@ fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, DepthBuffer), Figu
     let fine = size.map(|n| n * FINER);
     let camera = Camera::new(bodies, fine)?;
     let mut buffer = DepthBuffer::new(fine);
-    // Facets are numbered through all bodies.
-    let counts = bodies.iter().scan(0, |next, body| {
+    // Facets are numbered from 1 through all bodies.
+    let counts = bodies.iter().scan(1, |next, body| {
         let first = *next;
         *next += body.surface.facets.len();
         Some(first)
