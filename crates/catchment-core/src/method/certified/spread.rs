@@ -74,7 +74,7 @@ fn back(
     let leads_on =
         |to: &Cell, from: &Cell, face: Face| through(from) && goes(from, to, face.axis(), !face.above);
     let mut leads = chained(tree, &sources, leads_on, exec)?;
-    let way = SourceChains { tree, sources: &sources, leads: &leads };
+    let way = SourceChains::of(tree, &sources, &leads);
     let ruled_out = exec.try_map(tree.bearings.len(), |bearing| way.ruled_out(bearing, exec))?;
     for number in ruled_out.into_iter().flatten() {
         leads[number] = false;
@@ -88,6 +88,10 @@ struct SourceChains<'a> {
     sources: &'a [usize],
     /// The leaves that such chains lead through.
     leads: &'a [bool],
+    /// The faces through which chains lead to each leaf, one leaf after the other.
+    faces: Vec<Face>,
+    /// Where the faces of each leaf begin, and where those of the last end.
+    starts: Vec<usize>,
 }
 
 /// A leaf that a source may reach, and the distance reached along a bearing; ordered by the farthest, then by
@@ -112,19 +116,37 @@ impl PartialOrd for FarthestLeaf {
     }
 }
 
-impl SourceChains<'_> {
+impl<'a> SourceChains<'a> {
+    fn of(tree: &'a Tree, sources: &'a [usize], leads: &'a [bool]) -> Self {
+        let (mut faces, mut starts) = (Vec::new(), vec![0]);
+        for (to, is_on_chain) in tree.cells.iter().zip(leads) {
+            let leads_here = |face: &&Face| {
+                let next = face.number();
+                leads[next] && goes(&tree.cells[next], to, face.axis(), !face.above)
+            };
+            if *is_on_chain {
+                faces.extend(to.faces.iter().filter(leads_here));
+            }
+            starts.push(faces.len());
+        }
+        Self { tree, sources, leads, faces, starts }
+    }
+
     /// The leaves all of whose chains would have to go back along a bearing: the farthest reach along it of
     /// all leaves that may lead on stays behind the whole leaf.
     ///
     /// The reach of a leaf in which no motion goes back is that of its outgoing faces, limited by the reach
     /// of the leaves behind them.
     fn ruled_out(&self, bearing: usize, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
-        let Self { tree, sources, leads } = *self;
+        let Self { tree, sources, leads, faces, starts } = self;
         let rises = |cell: &Cell| cell.rising >> bearing & 1 == 1;
-        let range = |number: usize| tree.bearings.range(bearing, &tree.cells[number].poses);
+        let range = |(cell, is_on_chain): (&Cell, &bool)| {
+            if *is_on_chain { tree.bearings.range(bearing, &cell.poses) } else { [0.0; 2] }
+        };
+        let ranges: Vec<[f64; 2]> = tree.cells.iter().zip(*leads).map(range).collect();
         let mut farthest = vec![f64::NEG_INFINITY; tree.cells.len()];
-        for number in sources {
-            farthest[*number] = range(*number)[1];
+        for number in *sources {
+            farthest[*number] = ranges[*number][1];
         }
         let far = |number: usize, farthest: f64| FarthestLeaf { farthest, number };
         let mut open: BinaryHeap<FarthestLeaf> = sources.iter().map(|k| far(*k, farthest[*k])).collect();
@@ -138,12 +160,12 @@ impl SourceChains<'_> {
                 exec.check()?;
             }
             let to = &tree.cells[number];
-            for face in &to.faces {
+            for face in &faces[starts[number]..starts[number + 1]] {
                 let next = face.number();
-                let from = &tree.cells[next];
-                if !leads[next] || !goes(from, to, face.axis(), !face.above) {
+                if farthest[next] >= ranges[next][1] {
                     continue;
                 }
+                let from = &tree.cells[next];
                 let shared = tree.shared(to, from, *face);
                 let [first, last] = tree.bearings.range(bearing, &shared);
                 if farthest[number] < first - COINCIDENT {
@@ -151,7 +173,7 @@ impl SourceChains<'_> {
                 }
                 // If an axis is periodic, positions on the two sides of the face differ.
                 let reach = if !rises(from) || tree.closes(to, *face) {
-                    range(next)[1]
+                    ranges[next][1]
                 } else {
                     farthest[number].min(last)
                 };
@@ -162,7 +184,7 @@ impl SourceChains<'_> {
             }
         }
         let all = tree.leaves().filter(|(number, cell)| leads[*number] && rises(cell));
-        Ok(all.map(|(k, _)| k).filter(|k| farthest[*k] < range(*k)[0] - COINCIDENT).collect())
+        Ok(all.map(|(k, _)| k).filter(|k| farthest[*k] < ranges[*k][0] - COINCIDENT).collect())
     }
 }
 
