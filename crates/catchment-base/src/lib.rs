@@ -1,5 +1,5 @@
-//! What serves every step of a computation: poses, execution, diagnostics, tolerances, limits on inputs, and
-//! convex polytopes. Programs use the crate `catchment`.
+//! What serves every step of a computation: poses, execution, diagnostics, tolerances, limits on inputs, convex
+//! polygons and polytopes. Programs use the crate `catchment`.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
 
@@ -7,6 +7,7 @@ pub mod budget;
 pub mod diagnostic;
 pub mod disjoint;
 pub mod exec;
+pub mod polygon;
 pub mod polytope;
 pub mod pose;
 pub mod suggest;

@@ -18,6 +18,8 @@ pub mod method;
 pub mod problem;
 pub mod run;
 
-pub use catchment_base::{budget, diagnostic, disjoint, exec, polytope, pose, suggest, terminal, tolerance};
+pub use catchment_base::{
+    budget, diagnostic, disjoint, exec, polygon, polytope, pose, suggest, terminal, tolerance,
+};
 pub use catchment_connector as connector;
 pub use catchment_design::{design, poses, xml};

@@ -116,7 +116,7 @@ pub mod prelude;
 
 pub use catchment_core::{
     acceptance, budget, connector, contact, design, diagnostic, disjoint, document, exec, landscape, merit,
-    method, polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
+    method, polygon, polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
 };
 pub use catchment_proposal as proposal;
 pub use catchment_report as report;
