@@ -28,7 +28,7 @@ PICTURES = ROOT / "docs/gallery"
 PAGE = ROOT / "docs/gallery.md"
 
 RUN = ["--samples", "1000"]
-CELLS = {1: "200", 2: "60", 3: "24"}
+CELLS = {1: "200", 2: "60", 3: "20"}
 WINDOW = ["--motions", "1000"]
 #: Sines of another system's library may differ in their last bits.
 CLOSE = 1e-9
@@ -178,7 +178,7 @@ most {100 * window["failing_at_most"]:.1f} % of the poses in there fail, 95 %.{e
 HEAD = """# Gallery
 
 How much do connectors that you know forgive? Fifteen of them, each with its design file, its picture and its numbers. `site/gallery.py` writes this page from the program's
-output: `run` with 24 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where the source reads *typical*;
+output: `run` with 20 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where the source reads *typical*;
 none of them is a maker's drawing. Everything here is without friction and without play in the approach: what docks here may stick in the field
 ([friction](friction.md)). A star marks an error that reaches the border of what was tried; *alone* means that the other errors are zero. All of them are in `designs/gallery/`. Terms: [glossary](glossary.md):
 
