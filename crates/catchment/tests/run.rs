@@ -294,7 +294,7 @@ fn reported_cubes_dock_and_larger_ones_do_not() {
         (Family::XFace3d, DofSet::ALL, 7),
     ] {
         let problem = problem(family, free);
-        let merits = run("confluence", cells, 2000).on(&problem, &Exec::new()).unwrap().merits;
+        let merits = run("confluence", cells, 1000).on(&problem, &Exec::new()).unwrap().merits;
         let (onaa, centred) = (merits.onaa.unwrap(), merits.centered.unwrap());
         assert!(onaa.followed && centred.followed && onaa.edge >= centred.edge, "{family:?}");
         assert!(centred.edge > 0.0, "{family:?}");

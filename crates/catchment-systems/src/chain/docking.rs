@@ -166,7 +166,7 @@ mod tests {
         ];
         for (degrees, published) in rows {
             for (n, published) in [4, 8, 12, 16, 20].into_iter().zip(published) {
-                let cloud = Closing::straight(body, n).cloud(&joints(degrees), 1, 4000, &exec).unwrap();
+                let cloud = Closing::straight(body, n).cloud(&joints(degrees), 1, 2000, &exec).unwrap();
                 let result = Probability::of(&docks(&problem, &body, &cloud, &exec).unwrap());
                 println!("{degrees}° {n}: {:.3} {:?} for {published}", result.probability, result.ci95);
                 let own = 0.5 * (result.ci95[1] - result.ci95[0]);
