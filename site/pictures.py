@@ -37,7 +37,7 @@ PICTURES = {
     "chain": ["chain designs/systems/p-sequence.toml -o PICTURE"],
     "chance": [
         "dynamics designs/v-face.toml --draw 'speed=2 ± 0.4' --draw 'drift_x=0 ± 1' --draw height=0.3 --draw friction=0.1..0.3 "
-        "--error-sigma 'x=0.2,pitch=20 deg' --times 0.01,0.1,3 --samples 300 --map x,pitch --resolution 12 --trials 8 -o PICTURE"
+        "--error-sigma 'x=0.2,pitch=20 deg' --times 0.01,0.1,3 --samples 200 --map x,pitch --resolution 10 --trials 6 -o PICTURE"
     ],
     "chance-trace": [
         "trace designs/v-face.toml --pose x=0.45 --method drop --damping 10 --push 20 --speed 2 --drift 1,0 --drop-height 0.3 --friction 0.1 -o PICTURE"

@@ -221,7 +221,7 @@ fn all_of_a_box_of_three_errors_docks() {
 #[test]
 fn a_border_in_three_errors_is_reported() {
     let pair = narrow(Family::Pyramid, 0.0, &[(Dof::X, 0.6), (Dof::Y, 0.6), (Dof::Yaw, 0.35)]);
-    let found = certified(&pair, 50_000);
+    let found = certified(&pair, 70_000);
     let BoxCertificate { yes, no, undecided, .. } = found.certificate;
     assert!(yes > 0.6 && no > 0.2 && undecided < 0.12, "{:?}", found.certificate);
     let motions = motions();
