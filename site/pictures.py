@@ -58,7 +58,7 @@ PICTURES = {
         "run designs/v-face.toml --aspect-ratio 0.5 --cor=-0.5 --method meyer --resolution 100 --samples 0 -o out",
         "out/watersheds",
     ],
-    "friction": ["friction designs/pyramid.toml --samples 500 -o PICTURE"],
+    "friction": ["friction designs/pyramid.toml --samples 300 -o PICTURE"],
     "hold": ["hold designs/x-face-3d.toml --preload 40 --friction 0.2 -o PICTURE"],
     "invert": ["invert designs/pyramid.toml --heights designs/systems/wanted-bowl.csv -o PICTURE"],
     "jams": ["rests designs/v-face.toml --jams -o PICTURE"],
@@ -83,7 +83,7 @@ PICTURES = {
     "solids-x-face-3d": ["solids designs/x-face-3d.toml --free x,y -o PICTURE"],
     "success": ["success designs/v-face.toml --error-sigma 'x=0.15,pitch=15 deg' -o PICTURE"],
     "sweep": [
-        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --samples 100 -o out",
+        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --resolution 100 --samples 100 -o out",
         "out/outlines",
     ],
     "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21 -o PICTURE"],
