@@ -42,8 +42,8 @@ fn a_small_address_space_ends_with_an_answer_or_a_message() {
     fs::write(dir.join("q.csv"), "x\n".to_owned() + &"0.01\n".repeat(2000)).unwrap();
     let commands = [
         "check p.toml",
-        "run v.toml --resolution 300 --samples 50",
-        "run p.toml --free x,y,yaw --resolution 40 --method flood",
+        "run v.toml --resolution 200 --samples 50",
+        "run p.toml --free x,y,yaw --resolution 30 --method flood",
         "run p.toml --free x,y --resolution 12 --samples 50 -o out",
         "slices v.toml --resolution 100",
         "outcome p.toml --poses q.csv",
