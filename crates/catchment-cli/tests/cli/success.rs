@@ -87,7 +87,7 @@ fn the_robots_of_the_designs_are_read() {
     let folder = designs();
     let report = json(
         &folder,
-        &["success", "pyramid-stl.toml", "--robots", "robots/robots.toml", "--motions", "40", "--json"],
+        &["success", "pyramid-stl.toml", "--robots", "robots/robots.toml", "--motions", "100", "--json"],
     );
     assert_eq!(report["robots"].as_array().unwrap().len(), 5);
 }
