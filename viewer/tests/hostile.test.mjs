@@ -45,7 +45,7 @@ function made(result, page) {
 
 test("a stored result with every string hostile: nothing of it runs, and its version is refused", async () => {
     const [result, path] = [join(home, "stored"), join(home, "stored.html")];
-    catchment("run", "designs/pyramid-stl.toml", "--free", "x", "--resolution", "12", "--samples", "100", "--jams", "--window", "-o", result);
+    catchment("run", "designs/pyramid-stl.toml", "--free", "x,yaw", "--resolution", "12", "--samples", "100", "--jams", "--window", "-o", result);
     const file = join(result, "result.zarr/zarr.json");
     const whole = JSON.parse(readFileSync(file, "utf8"));
     const { report } = whole.attributes;
