@@ -58,7 +58,7 @@ PICTURES = {
         "run designs/v-face.toml --aspect-ratio 0.5 --cor=-0.5 --method meyer --resolution 100 --samples 0 -o out",
         "out/watersheds",
     ],
-    "friction": ["friction designs/pyramid.toml --samples 300 -o PICTURE"],
+    "friction": ["friction designs/pyramid.toml --samples 500 -o PICTURE"],
     "hold": ["hold designs/x-face-3d.toml --preload 40 --friction 0.2 -o PICTURE"],
     "invert": ["invert designs/pyramid.toml --heights designs/systems/wanted-bowl.csv -o PICTURE"],
     "jams": ["rests designs/v-face.toml --jams -o PICTURE"],

@@ -101,8 +101,8 @@
 //! and the memory budget; none of them changes a bit of a result. [`budget`] limits the resources a reader may spend on one
 //! input. [`suggest`] finds the intended word for a misspelt one. [`diagnostic`] defines every error, warning and note with
 //! its code, place and advice. [`terminal`] sanitises foreign names before they are printed. [`tolerance`] holds the scales
-//! below which two lengths count as equal. [`disjoint`] is a union-find structure. [`polygon`] finds what two convex polygons have in common. [`polytope`] is the geometry of convex
-//! sets in up to six dimensions. [`prelude`] imports everything that a typical program needs in one `use`.
+//! below which two lengths count as equal. [`disjoint`] is a union-find structure. [`polygon`] finds what two convex
+//! polygons have in common. [`polytope`] is the geometry of convex sets in up to six dimensions. [`prelude`] imports everything that a typical program needs in one `use`.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
 //!
