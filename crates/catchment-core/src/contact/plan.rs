@@ -32,10 +32,8 @@ impl Plan {
 
     /// Whether the two have a point in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
-        other.low.x <= self.high.x
-            && other.high.x >= self.low.x
-            && other.low.y <= self.high.y
-            && other.high.y >= self.low.y
+        // Without branches, which a processor would mostly guess wrong.
+        (other.low.cmple(self.high) & other.high.cmpge(self.low)).all()
     }
 
     fn with(self, other: &Self) -> Self {
