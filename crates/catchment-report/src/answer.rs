@@ -3,7 +3,7 @@
 use super::Report;
 use super::envelope::{ReportBody, ReportEnvelope};
 use super::json_schema;
-use super::schema::{PartitionReport, RunBody, SuccessReport, Timing, WatershedsReport, WindowSection};
+use super::schema::{PartitionReport, RunBody, Timing, WatershedsReport, WindowSection};
 use catchment_core::acceptance::Domain;
 use catchment_core::pose::DofSet;
 use catchment_core::problem::Problem;
@@ -33,9 +33,7 @@ impl Report {
             None => report,
         };
         report.inherited = answer.by_products.inherited;
-        if let (Some(distribution), Some(success)) = (&answer.run.errors, &answer.success) {
-            report.success = Some(SuccessReport::new(distribution.clone(), success));
-        }
+        report.success.clone_from(&answer.success);
         report.upright.clone_from(&answer.upright);
         report.jams.clone_from(&answer.jams);
         report.window =

@@ -21,18 +21,22 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use crate::poses::covariance::cholesky;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};
 
-/// A success probability.
-#[derive(Debug, Clone, PartialEq)]
+/// Success probability for a distribution of errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuccessProbability {
-    /// Probability that the error is accepted, in [0, 1].
+    /// Distribution of the errors.
+    pub distribution: Distribution,
+    /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
     pub probability: f64,
-    /// The probability with all cells at the border of the accepted set counted as failures, and as successes.
+    /// The probability with border cells of the accepted set counted as failures, and as successes.
     pub bracket: [f64; 2],
-    /// Wilson's 95 % interval of `probability` if it was sampled; the exact sums have no interval.
+    /// Wilson's 95 % interval of `probability`; null for an exact sum over cells.
     pub ci95: Option<[f64; 2]>,
-    /// Probability of an error outside the error box, which counts as failure.
+    /// Probability of an error outside the error box.
     pub outside: f64,
 }
 
@@ -52,15 +56,30 @@ pub fn success(
         Distribution::Normal { mean, sigma } => {
             let cdf = |z: f64| 0.5 * (1.0 + libm::erf(z / SQRT_2));
             let weights = cell_weights(grid, mean, sigma, "a standard deviation", cdf)?;
-            Ok(masks.integrate(&weights, exec)?)
+            Ok(masks.integrate(distribution, &weights, exec)?)
         }
         Distribution::Uniform { mean, half_width } => {
             let cdf = |z: f64| (0.5 * (z + 1.0)).clamp(0.0, 1.0);
             let weights = cell_weights(grid, mean, half_width, "a half-width", cdf)?;
-            Ok(masks.integrate(&weights, exec)?)
+            Ok(masks.integrate(distribution, &weights, exec)?)
         }
         Distribution::Correlated { mean, covariance, samples, seed } => {
-            masks.sample(grid, mean, covariance, *samples, *seed, exec)
+            for (dof, row) in Dof::ALL.into_iter().zip(covariance) {
+                if mean.to_array()[dof.index()] != 0.0 || row.iter().any(|c| *c != 0.0) {
+                    axis_number(grid, dof)?;
+                }
+            }
+            let factor = cholesky(covariance).map_err(|row| MeritError::NotACovariance { row: row + 1 })?;
+            let mut random = Random(*seed);
+            let draw = || {
+                let z = random.normals();
+                let mut error = mean.to_array();
+                for (value, row) in error.iter_mut().zip(&factor) {
+                    *value += row.iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
+                }
+                error
+            };
+            Ok(masks.sample(distribution, grid, draw, *samples, exec)?)
         }
     }
 }
@@ -85,9 +104,16 @@ impl Masks {
         Ok(Self { decided, inner, outer })
     }
 
-    fn integrate(&self, weights: &[Vec<f64>], exec: &Exec) -> Result<SuccessProbability, Cancelled> {
+    /// By the exact sum over cells.
+    fn integrate(
+        &self,
+        distribution: &Distribution,
+        weights: &[Vec<f64>],
+        exec: &Exec,
+    ) -> Result<SuccessProbability, Cancelled> {
         let in_box: f64 = weights.iter().map(|w| w.iter().sum::<f64>()).product();
         Ok(SuccessProbability {
+            distribution: distribution.clone(),
             probability: weigh(&self.decided, weights, exec)?,
             bracket: [weigh(&self.inner, weights, exec)?, weigh(&self.outer, weights, exec)?],
             ci95: None,
@@ -95,32 +121,21 @@ impl Masks {
         })
     }
 
+    /// By drawn errors.
     fn sample(
         &self,
+        distribution: &Distribution,
         grid: &Grid,
-        mean: &PoseError,
-        covariance: &[[f64; 5]; 5],
+        mut draw: impl FnMut() -> [f64; 5],
         samples: u32,
-        seed: u64,
         exec: &Exec,
-    ) -> Result<SuccessProbability, MeritError> {
-        for (dof, row) in Dof::ALL.into_iter().zip(covariance) {
-            if mean.to_array()[dof.index()] != 0.0 || row.iter().any(|c| *c != 0.0) {
-                axis_number(grid, dof)?;
-            }
-        }
-        let factor = cholesky(covariance).map_err(|row| MeritError::NotACovariance { row: row + 1 })?;
-        let mut random = Random(seed);
+    ) -> Result<SuccessProbability, Cancelled> {
         let [mut decided, mut inner, mut outer, mut outside] = [0usize; 4];
         for number in 0..samples {
             if number.is_multiple_of(SAMPLES_BETWEEN_CHECKS) {
                 exec.check()?;
             }
-            let z = random.normals();
-            let mut error = mean.to_array();
-            for (value, row) in error.iter_mut().zip(&factor) {
-                *value += row.iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
-            }
+            let error = draw();
             let cell: Option<Vec<usize>> =
                 grid.axes.iter().map(|a| a.cell_of(error[a.dof.index()])).collect();
             match cell.map(|c| grid.index(&c)) {
@@ -135,6 +150,7 @@ impl Masks {
         let trials = samples as usize;
         let share = |n: usize| if trials == 0 { 0.0 } else { n as f64 / trials as f64 };
         Ok(SuccessProbability {
+            distribution: distribution.clone(),
             probability: share(decided),
             bracket: [share(inner), share(outer)],
             ci95: Some(wilson95(decided, trials)),

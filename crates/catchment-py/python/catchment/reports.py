@@ -215,7 +215,7 @@ class Upright(TypedDict):
     tolerances: list[Tolerance]
 
 
-class SuccessReport(TypedDict):
+class SuccessProbability(TypedDict):
     """Success probability for a distribution of errors."""
 
     #: Distribution of the errors.
@@ -224,7 +224,7 @@ class SuccessReport(TypedDict):
     probability: float
     #: The probability with border cells of the accepted set counted as failures, and as successes.
     bracket: list[float]
-    #: 95 % interval of `probability`; null for an exact sum over cells.
+    #: Wilson's 95 % interval of `probability`; null for an exact sum over cells.
     ci95: list[float] | None
     #: Probability of an error outside the error box.
     outside: float
@@ -778,7 +778,7 @@ class RunReport(TypedDict):
     #: Figures of merit with roll and pitch locked, if all five errors are free and motions were followed; null if not, and in reports of older versions.
     upright: Upright | None
     #: Success probability for the given errors; null if no errors were given.
-    success: SuccessReport | None
+    success: SuccessProbability | None
     #: The basins behind the outcomes; null for methods without basins.
     basins: BasinsReport | None
     #: The watersheds behind the outcomes, before and after merging; null for methods without flooding, and in reports of older versions.

@@ -47,7 +47,7 @@ pub struct RunBody {
     #[serde(default)]
     pub upright: Option<Upright>,
     /// Success probability for the given errors; null if no errors were given.
-    pub success: Option<SuccessReport>,
+    pub success: Option<SuccessProbability>,
     /// The basins behind the outcomes; null for methods without basins.
     pub basins: Option<BasinsReport>,
     /// The watersheds behind the outcomes, before and after merging; null for methods without flooding, and
@@ -156,22 +156,6 @@ pub struct Outcomes {
     pub undecided: usize,
 }
 
-/// Success probability for a distribution of errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SuccessReport {
-    /// Distribution of the errors.
-    pub distribution: Distribution,
-    /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
-    pub probability: f64,
-    /// The probability with border cells of the accepted set counted as failures, and as successes.
-    pub bracket: [f64; 2],
-    /// 95 % interval of `probability`; null for an exact sum over cells.
-    pub ci95: Option<[f64; 2]>,
-    /// Probability of an error outside the error box.
-    pub outside: f64,
-}
-
 /// Time of the computation. Only this part of a report differs between equal runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -250,11 +234,10 @@ impl Report {
     pub fn with_success(
         mut self,
         acceptance: &Acceptance,
-        distribution: Distribution,
+        distribution: &Distribution,
         exec: &Exec,
     ) -> Result<Self, MeritError> {
-        let found = success(acceptance, &distribution, exec)?;
-        self.success = Some(SuccessReport::new(distribution, &found));
+        self.success = Some(success(acceptance, distribution, exec)?);
         Ok(self)
     }
 }
@@ -280,19 +263,6 @@ impl From<Sum> for AcceptanceReport {
             cells: sum.tried,
             outcomes: Outcomes::new(sum.counts),
             sample: None,
-        }
-    }
-}
-
-impl SuccessReport {
-    /// Of a probability that was found for a distribution.
-    pub fn new(distribution: Distribution, found: &SuccessProbability) -> Self {
-        Self {
-            distribution,
-            probability: found.probability,
-            bracket: found.bracket,
-            ci95: found.ci95,
-            outside: found.outside,
         }
     }
 }

@@ -13,7 +13,7 @@ fn report() -> Report {
     let sigma = PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() };
     let normal = Distribution::Normal { mean: PoseError::default(), sigma };
     Report::new(&design, &blob, settings, Some(Timing { total_s: 0.25, threads: 2 }), &Exec::new())
-        .and_then(|r| r.with_success(&blob, normal, &Exec::new()))
+        .and_then(|r| r.with_success(&blob, &normal, &Exec::new()))
         .unwrap()
 }
 
