@@ -302,7 +302,7 @@ fn neither_steps_nor_threads_change_outcomes() {
         let settings = DescentSettings::with_friction(friction).unwrap();
         let outcomes = |settings: &DescentSettings, threads: usize| {
             let exec = Exec::new().with_threads(threads).unwrap();
-            run(&pair, random(200), settings, &exec).unwrap().0.outcomes
+            run(&pair, random(300), settings, &exec).unwrap().0.outcomes
         };
         let result = outcomes(&settings, 1);
         assert_eq!(result, outcomes(&settings, 2));
