@@ -33,6 +33,15 @@ const AFTER: [&str; 3] = ["study", "proposal", "report"];
 const SERVANTS: [&str; 8] =
     ["pose", "disjoint", "exec", "budget", "suggest", "terminal", "tolerance", "diagnostic"];
 
+/// The engine of drop tests has glam compute with `libm`. Whatever else is compiled, results have the same bits only if we ask for it, too.
+#[test]
+fn rotations_have_the_same_bits_with_and_without_the_engine() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
+    let manifest = fs::read_to_string(manifest).unwrap();
+    let glam = manifest.lines().find(|line| line.starts_with("glam = { version")).unwrap();
+    assert!(glam.contains("\"libm\""), "{glam}");
+}
+
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]
 struct Violation {

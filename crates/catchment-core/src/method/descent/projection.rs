@@ -42,7 +42,7 @@ pub(super) struct Projection {
     columns: Vec<Column>,
     passive: Passive,
     /// Divisor of the last displacement.
-    rest: f64,
+    residual: f64,
 }
 
 impl Projection {
@@ -72,10 +72,11 @@ impl Projection {
         if free {
             return Some(*push);
         }
-        let rest = self.non_negative_rest();
-        self.rest = rest[GAPS];
-        // That of the gaps is 0 only if the constraints contradict each other.
-        (rest[GAPS].abs() > 1e-14).then(|| std::array::from_fn(|k| push[k] - scale * rest[k] / rest[GAPS]))
+        let residual = self.non_negative_residual();
+        self.residual = residual[GAPS];
+        // The last residual is 0 only if the constraints contradict each other.
+        (residual[GAPS].abs() > 1e-14)
+            .then(|| std::array::from_fn(|k| push[k] - scale * residual[k] / residual[GAPS]))
     }
 
     /// The rows that the last displacement presses against: those with a multiplier above 0.
@@ -87,19 +88,19 @@ impl Projection {
     /// `scale` 1.
     pub(super) fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let Passive { count, columns, lambda, .. } = &self.passive;
-        columns.iter().zip(lambda).take(*count).map(|(column, lambda)| (*column, lambda / self.rest))
+        columns.iter().zip(lambda).take(*count).map(|(column, lambda)| (*column, lambda / self.residual))
     }
 
-    /// The rest `f − E λ` of non-negative least squares `min |f − E λ|, λ ≥ 0` with f = 1 in the row of the gaps.
-    fn non_negative_rest(&mut self) -> Column {
+    /// Residual `f − E λ` of non-negative least squares `min |f − E λ|, λ ≥ 0` with f = 1 in the row of the gaps.
+    fn non_negative_residual(&mut self) -> Column {
         let Self { columns, passive, .. } = self;
-        let mut rest = TARGET;
+        let mut residual = TARGET;
         let limit = 3 * columns.len() + 20;
         for _ in 0..limit {
-            // The column along which the rest falls fastest: the largest sine, here squared.
+            // The column along which the residual falls fastest: the largest sine, here squared.
             let (mut most, mut steepest) = (1e-24, usize::MAX);
             for (j, column) in columns.iter().enumerate() {
-                let slope = product(column, &rest);
+                let slope = product(column, &residual);
                 if slope > 0.0 && slope * slope > most * product(column, column) && !passive.contains(j) {
                     most = slope * slope / product(column, column);
                     steepest = j;
@@ -113,9 +114,9 @@ impl Projection {
             {
                 break;
             }
-            rest = passive.rest[passive.count];
+            residual = passive.residuals[passive.count];
         }
-        rest
+        residual
     }
 }
 
@@ -137,8 +138,8 @@ struct Passive {
     r: [[f64; MOST]; MOST],
     /// Qᵀ f.
     right: [f64; MOST],
-    /// The rest of f after the first k columns.
-    rest: [Column; MOST + 1],
+    /// The residual of f after the first k columns.
+    residuals: [Column; MOST + 1],
 }
 
 impl Default for Passive {
@@ -150,7 +151,7 @@ impl Default for Passive {
             q: [[0.0; ROWS]; MOST],
             r: [[0.0; MOST]; MOST],
             right: [0.0; MOST],
-            rest: [TARGET; MOST + 1],
+            residuals: [TARGET; MOST + 1],
         }
     }
 }
@@ -178,9 +179,9 @@ impl Passive {
         }
         let inverse = 1.0 / norm.sqrt();
         // Of local numbers, so that two are computed at a time.
-        let (unit, before) = (q.map(|x| x * inverse), self.rest[k]);
+        let (unit, before) = (q.map(|x| x * inverse), self.residuals[k]);
         let right = product(&unit, &before);
-        self.rest[k + 1] = std::array::from_fn(|i| before[i] - right * unit[i]);
+        self.residuals[k + 1] = std::array::from_fn(|i| before[i] - right * unit[i]);
         (self.r[k][k], self.q[k], self.right[k]) = (inverse, unit, right);
         self.columns[k] = column;
         self.lambda[k] = 0.0;
