@@ -20,7 +20,7 @@
 use super::Pair;
 use super::hold::inside;
 use super::plan::Plan;
-use super::shape::{Ridge, Shape};
+use super::shape::{Ridge, Shape, Span};
 use crate::tolerance::ROUNDING;
 use glam::{DMat3, DVec3};
 
@@ -128,12 +128,15 @@ impl Segment {
     /// Whether A overlaps B along this edge of A; `in_a` is the test whether a point, in the frame of B, lies
     /// inside A.
     fn enters(&self, b: &Shape, in_a: impl Fn(DVec3) -> bool) -> bool {
-        let plan = self.plan();
-        if !b.plans.facets.bounds().meets(&plan) {
+        let (plan, span) = (self.plan(), Span::of(self.ends.into_iter()).widened(MARGIN));
+        if !b.plans.facets.bounds().meets(&plan) || !b.span.meets(&span) {
             return false;
         }
         let (mut cuts, mut may_enter) = (Vec::new(), false);
         let through = b.plans.facets.any(&plan, |facet| {
+            if !b.spans[facet as usize].meets(&span) {
+                return false;
+            }
             match self.meets(b, facet) {
                 Crossing::None => {}
                 Crossing::Through => return true,
@@ -181,12 +184,11 @@ impl Segment {
 
     /// Whether a segment in a facet's plane has a point in common with the facet.
     fn overlaps_facet(&self, b: &Shape, facet: u32) -> bool {
-        let facet = &b.facets[facet as usize];
-        let corners = facet.corners.iter().map(|&k| b.at(k));
+        let normal = b.facets[facet as usize].normal;
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
-        for (p, q) in corners.clone().zip(corners.cycle().skip(1)) {
-            let side = facet.normal.cross(q - p).normalize_or_zero();
-            let [start, end] = self.ends.map(|e| side.dot(e - p) + MARGIN);
+        for side in b.sides_of(facet) {
+            let inward = normal.cross(side.along);
+            let [start, end] = self.ends.map(|e| inward.dot(e - side.from) + MARGIN);
             if start < 0.0 && end < 0.0 {
                 return false;
             }

@@ -57,6 +57,31 @@ pub(super) struct Plans {
     pub(super) ridges: PlanTree,
 }
 
+/// The heights that a feature reaches over.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    low: f64,
+    high: f64,
+}
+
+impl Span {
+    pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Self {
+        let nowhere = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+        points.fold(nowhere, |span, p| Self { low: span.low.min(p.z), high: span.high.max(p.z) })
+    }
+
+    /// Larger by `by` on both sides.
+    pub(super) const fn widened(self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    /// Whether the two have a height in common.
+    pub(super) const fn meets(&self, other: &Self) -> bool {
+        // Without branches, as in plan view.
+        (self.low <= other.high) & (self.high >= other.low)
+    }
+}
+
 /// A surface with its touching features.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
@@ -64,6 +89,9 @@ pub(super) struct Shape {
     pub(super) facets: Vec<Facet>,
     /// `normal·p` for the points p of each facet.
     pub(super) levels: Vec<f64>,
+    /// Heights of all facets together, and of each.
+    pub(super) span: Span,
+    pub(super) spans: Vec<Span>,
     /// The sides of all facets, one facet after the other, and the start of each facet.
     sides: Vec<FacetSide>,
     first_sides: Vec<u32>,
@@ -126,6 +154,8 @@ impl Shape {
         Self {
             vertices: surface.vertices.clone(),
             levels: surface.facets.iter().map(|f| f.normal.dot(at(f.corners[0]))).collect(),
+            span: Span::of(surface.vertices.iter().copied()),
+            spans: surface.facets.iter().map(|f| Span::of(f.corners.iter().map(|&k| at(k)))).collect(),
             facets: surface.facets.clone(),
             sides,
             first_sides,
