@@ -74,11 +74,9 @@ use search::Trees;
 use shape::Shape;
 use turned::Turned;
 
-/// Product of the numbers of facets from which on halves have trees, for heights and motions: for pins in
-/// tight holes motions are 1.6 times as fast with trees at 150 × 150 facets, 2.5 times at 300 × 300, and 0.8
-/// times at 20 × 20.
-const MANY: usize = 300 * 300;
-const MANY_WHERE_TIGHT: usize = 100 * 100;
+/// Product of the numbers of facets from which on halves have trees, for heights and motions. Motions with trees are half as fast at 10 × 10 facets,
+/// as fast at 25 × 25 to 75 × 75, 1.7 times as fast at 140 × 140, and 4 times at 300 × 300.
+const MANY: usize = 100 * 100;
 /// From this product on grids use the trees, too: below it a list of all possible carriers, which serves all
 /// cells of a rotation, is as fast.
 const MOST_LISTED: usize = 3000 * 3000;
@@ -86,11 +84,6 @@ const MOST_LISTED: usize = 3000 * 3000;
 /// Facets of a half.
 fn facets(half: &Half) -> usize {
     half.surfaces.iter().map(|surface| surface.facets.len()).sum()
-}
-
-/// Whether halves with this product of their numbers of facets have trees.
-const fn has_trees(count: usize, is_tight: bool) -> bool {
-    count >= if is_tight { MANY_WHERE_TIGHT } else { MANY }
 }
 
 /// A connector whose moving half is given from the COR: ready for heights.
@@ -104,7 +97,7 @@ pub struct Pair {
     pub alignment: Alignment,
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
-    /// Of halves of [`MANY`] facets, or [`MANY_WHERE_TIGHT`].
+    /// Of halves of [`MANY`] facets.
     trees: Option<Trees>,
     /// Whether all that can carry at a rotation is listed for a grid.
     lists: bool,
@@ -127,7 +120,7 @@ impl Pair {
         let lists = count < MOST_LISTED;
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
-        let trees = has_trees(count, tight).then(|| Trees::over(&fixed_shapes, &moving_shapes));
+        let trees = (count >= MANY).then(|| Trees::over(&fixed_shapes, &moving_shapes));
         let (alignment, mated_height) = (alignment.clone(), f64::NEG_INFINITY);
         let mut pair = Self {
             fixed,
@@ -154,11 +147,6 @@ impl Pair {
         let mut pair = self.clone();
         pair.alignment.free = free;
         pair.tight = walls::are_close(&pair.fixed_shapes, &pair.moving_shapes, &pair.alignment);
-        if !has_trees(facets(&pair.fixed) * facets(&pair.moving), pair.tight) {
-            pair.trees = None;
-        } else if pair.trees.is_none() {
-            pair.trees = Some(Trees::over(&pair.fixed_shapes, &pair.moving_shapes));
-        }
         if free != self.alignment.free {
             pair.seat_cache = SeatCache::default();
             pair.motion_cache = MotionCache::default();
