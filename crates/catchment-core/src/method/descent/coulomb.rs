@@ -77,6 +77,8 @@ pub(super) struct Coulomb {
     before: Vec<f64>,
     /// The contacts that are pressed.
     pressed: Vec<usize>,
+    /// Planes with positive forces, and their multipliers: the next iteration starts with them.
+    start: Vec<(usize, f64)>,
     /// The last displacement, relative to that by the push alone: a slip continues.
     last: Option<Vector>,
 }
@@ -115,6 +117,7 @@ impl Default for Coulomb {
             missing: Vec::new(),
             before: Vec::new(),
             pressed: Vec::new(),
+            start: Vec::new(),
             last: None,
         }
     }
@@ -203,15 +206,18 @@ impl Coulomb {
         self.planes.clear();
         self.owners.clear();
         self.missing.clear();
+        self.start.clear();
         let mut boldness = 1.0;
         let mut u = *push;
         // With given slips all planes are kept, and few rounds suffice.
         let rounds = if free { self.rounds } else { ROUNDS };
         for round in 0..rounds {
             let gaps = self.owners.iter().map(|&k| gap(k) + self.slips[k]);
-            u = projection.closest_allowed(push, &self.planes, gaps, scale)?;
+            u = projection.closest_allowed_from(&self.start, push, &self.planes, gaps, scale)?;
+            self.start.clear();
+            self.start.extend(projection.multipliers());
             if free {
-                self.keep_pressed(projection);
+                self.keep_pressed();
             }
             std::mem::swap(&mut self.before, &mut self.missing);
             self.missing.clear();
@@ -306,21 +312,20 @@ impl Coulomb {
         (ahead <= EXACT).then_some([0.0; MAX_COORDINATES])
     }
 
-    /// Keeps the planes with positive forces in the last projection, and their contacts.
-    fn keep_pressed(&mut self, projection: &Projection) {
+    /// Keeps the planes with positive forces, and their contacts.
+    fn keep_pressed(&mut self) {
         self.pressed.clear();
-        let mut kept = 0;
-        let mut planes: Vec<usize> = projection.pressed().to_vec();
-        planes.sort_unstable();
-        for plane in planes {
-            self.planes.swap(kept, plane);
-            self.owners.swap(kept, plane);
+        self.start.sort_unstable_by_key(|(plane, _)| *plane);
+        for (kept, (plane, _)) in self.start.iter_mut().enumerate() {
+            self.planes.swap(kept, *plane);
+            self.owners.swap(kept, *plane);
+            *plane = kept;
             let contact = self.owners[kept];
             if !self.pressed.contains(&contact) {
                 self.pressed.push(contact);
             }
-            kept += 1;
         }
+        let kept = self.start.len();
         self.planes.truncate(kept);
         self.owners.truncate(kept);
     }

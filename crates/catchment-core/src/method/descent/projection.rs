@@ -57,6 +57,18 @@ impl Projection {
         gaps: impl Iterator<Item = f64>,
         scale: f64,
     ) -> Option<Vector> {
+        self.closest_allowed_from(&[], push, rows, gaps, scale)
+    }
+
+    /// The same, faster if `start` is close to the rows that it presses against and their multipliers.
+    pub(super) fn closest_allowed_from(
+        &mut self,
+        start: &[(usize, f64)],
+        push: &Vector,
+        rows: &[Vector],
+        gaps: impl Iterator<Item = f64>,
+        scale: f64,
+    ) -> Option<Vector> {
         self.columns.clear();
         self.passive.count = 0;
         let mut free = true;
@@ -72,6 +84,7 @@ impl Projection {
         if free {
             return Some(*push);
         }
+        self.passive.start_at(start, &self.columns);
         let residual = self.non_negative_residual();
         self.residual = residual[GAPS];
         // The last residual is 0 only if the constraints contradict each other.
@@ -84,17 +97,23 @@ impl Projection {
         &self.passive.columns[..self.passive.count]
     }
 
+    /// Those rows, with their multipliers.
+    pub(super) fn multipliers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let Passive { count, columns, lambda, .. } = &self.passive;
+        columns.iter().copied().zip(lambda.iter().copied()).take(*count)
+    }
+
     /// Forces of the rows on the last displacement, zero for all others: `u = push + Σ force · row` for
     /// `scale` 1.
     pub(super) fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let Passive { count, columns, lambda, .. } = &self.passive;
-        columns.iter().zip(lambda).take(*count).map(|(column, lambda)| (*column, lambda / self.residual))
+        self.multipliers().map(|(column, lambda)| (column, lambda / self.residual))
     }
 
-    /// Residual `f − E λ` of non-negative least squares `min |f − E λ|, λ ≥ 0` with f = 1 in the row of the gaps.
+    /// Residual `f − E λ` of non-negative least squares `min |f − E λ|, λ ≥ 0` with f = 1 in the row of the gaps, from the
+    /// passive columns on.
     fn non_negative_residual(&mut self) -> Column {
         let Self { columns, passive, .. } = self;
-        let mut residual = TARGET;
+        let mut residual = passive.residuals[passive.count];
         let limit = 3 * columns.len() + 20;
         for _ in 0..limit {
             // The column along which the residual falls fastest: the largest sine, here squared.
@@ -187,6 +206,21 @@ impl Passive {
         self.lambda[k] = 0.0;
         self.count += 1;
         true
+    }
+
+    /// Starts anew with these columns and their λ, or with none if they are dependent.
+    fn start_at(&mut self, start: &[(usize, f64)], all: &[Column]) {
+        self.count = 0;
+        let independent = start.iter().all(|&(column, lambda)| {
+            let is_new = self.push(column, all);
+            if is_new {
+                self.lambda[self.count - 1] = lambda;
+            }
+            is_new
+        });
+        if !independent || !self.settle(all) {
+            self.count = 0;
+        }
     }
 
     /// Moves λ to the least-squares solution over the passive columns, letting go those that would turn negative;
