@@ -77,8 +77,7 @@ impl Span {
 
     /// Whether the two have a height in common.
     pub(super) const fn meets(&self, other: &Self) -> bool {
-        // Without branches, as in plan view.
-        (self.low <= other.high) & (self.high >= other.low)
+        self.low <= other.high && self.high >= other.low
     }
 }
 
