@@ -182,12 +182,13 @@ impl Touching {
         self.coulomb = Coulomb::patient();
         let push = self.push;
         let holds_from = self.holds_from(&push, MOST, HOLDS_TO);
-        let slips_until = holds_from.and_then(|holds| self.slips_until(holds));
+        // Where no force holds the half, it slips.
+        let slips_until = holds_from.and_then(|holds| Some(self.slips_until(holds)?.max(holds)));
         Sticking { holds_from, slips_until, wedges_from: self.wedges_from() }
     }
 
-    /// Friction coefficient at which the speed of the slip becomes zero, at least that at which forces can
-    /// hold: by secants, because iterations close to it are slow.
+    /// Friction coefficient at which the speed of the slip becomes zero, with `holds` that from which on forces can hold:
+    /// by secants, because iterations close to it are slow.
     fn slips_until(&mut self, holds: f64) -> Option<f64> {
         let mut way = None;
         let mut known: Option<[f64; 2]> = None;
