@@ -337,7 +337,7 @@ pub(super) fn is_still(u: &Vector) -> bool {
 }
 
 fn size([a, b]: [f64; 2]) -> f64 {
-    a.hypot(b)
+    (a * a + b * b).sqrt()
 }
 
 fn norm(u: &Vector) -> f64 {
