@@ -94,7 +94,8 @@ impl Mask {
     /// Indices of the marked cells, in memory order.
     pub(super) fn marked(&self) -> impl ParallelIterator<Item = usize> + '_ {
         let (first, row) = (self.shape[0], self.row());
-        self.words.par_iter().enumerate().filter(|(_, word)| **word != 0).flat_map_iter(move |(k, word)| {
+        let words = self.words.par_iter().enumerate().with_min_len(PIECE);
+        words.filter(|(_, word)| **word != 0).flat_map_iter(move |(k, word)| {
             let start = k / row * first + k % row * WORD;
             bits(*word).map(move |bit| start + bit)
         })

@@ -58,10 +58,13 @@ impl Onaa {
     /// If the outcomes are of listed poses, the cells do not fit into memory as bits, or it is cancelled.
     pub fn of(acceptance: &Acceptance, exec: &Exec) -> Result<Self, MeritError> {
         let grid = grid_of(acceptance)?;
-        let accepted = Mask::of(&grid.shape(), &acceptance.outcomes, |o| o == Outcome::Aligned, exec)?;
-        let fitting = Fitting::largest(&grid.shape(), accepted, exec)?;
-        let bounds = fitting.nearest_to_zero(grid, exec);
-        Ok(Self { edge: fitting.edge.value(), bounds, followed: false })
+        // On these threads as a whole: to enter them again and again takes longer than a small grid.
+        exec.install(|| {
+            let accepted = Mask::of(&grid.shape(), &acceptance.outcomes, |o| o == Outcome::Aligned, exec)?;
+            let fitting = Fitting::largest(&grid.shape(), accepted, exec)?;
+            let bounds = fitting.nearest_to_zero(grid);
+            Ok(Self { edge: fitting.edge.value(), bounds, followed: false })
+        })
     }
 
     /// The form that the dissertation's planar tables print.
@@ -127,7 +130,7 @@ impl Fitting {
     }
 
     /// The position of the cube nearest to zero: among equals, the first in memory.
-    fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<Interval> {
+    fn nearest_to_zero(&self, grid: &Grid) -> Vec<Interval> {
         if self.edge.cells == 0 {
             return Vec::new();
         }
@@ -155,8 +158,7 @@ impl Fitting {
             }
             sum
         };
-        let corner = exec.install(|| {
-            let nearest = self.corners.marked().map(distance).min_by(f64::total_cmp)?;
+        let corner = self.corners.marked().map(distance).min_by(f64::total_cmp).and_then(|nearest| {
             // Symmetric places are equally far except for rounding.
             let limit = nearest + ROUNDING;
             self.corners.marked().find_first(|index| distance(*index).total_cmp(&limit).is_le())

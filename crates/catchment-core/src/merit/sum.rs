@@ -96,9 +96,11 @@ pub fn bracket(acceptance: &Acceptance, exec: &Exec) -> Result<[f64; 2], MeritEr
     // Not in the inner part are the rejected cells and their neighbours.
     let count_grown = |accepted: bool| -> Result<usize, MeritError> {
         let wanted = |outcome| (outcome == Outcome::Aligned) == accepted;
-        let mut mask = Mask::of(&grid.shape(), &acceptance.outcomes, wanted, exec)?;
-        mask.grow(exec)?;
-        Ok(mask.count(exec))
+        exec.install(|| {
+            let mut mask = Mask::of(&grid.shape(), &acceptance.outcomes, wanted, exec)?;
+            mask.grow(exec)?;
+            Ok(mask.count(exec))
+        })
     };
     let cells = acceptance.outcomes.len();
     let share = |count: usize| if cells == 0 { 0.0 } else { count as f64 / cells as f64 };
