@@ -1,6 +1,7 @@
 //! Pose errors, rotations, the mounting half turn, and the centre of rotation of a pose error.
 
 use super::{Dof, DofSet};
+use crate::tolerance::ROUNDING;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +53,7 @@ pub fn euler_angles(rotation: &DMat3) -> (f64, f64, f64) {
     let [c0, c1, c2] = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
     let cos_pitch = c0.x.hypot(c0.y);
     let pitch = (-c0.z).atan2(cos_pitch);
-    if cos_pitch > 1e-12 {
+    if cos_pitch > ROUNDING {
         (c1.z.atan2(c2.z), pitch, c0.y.atan2(c0.x))
     } else {
         (0.0, pitch, (-c1.x).atan2(c1.y))

@@ -5,6 +5,7 @@ use super::heights::{Heights, apart, common, width};
 use super::{NARROW, REACHED, SIDEWAYS};
 use catchment::connector::Half;
 use catchment::method::zraa::area;
+use catchment::tolerance::PARALLEL;
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
@@ -66,7 +67,7 @@ pub(super) fn patch(fixed: &Half, moving: &Heights, height: Option<f64>) -> f64 
     let Some(height) = height else { return 0.0 };
     let mut touching = 0.0;
     for surface in &fixed.surfaces {
-        for facet in surface.facets.iter().filter(|f| f.normal.z > 1e-9) {
+        for facet in surface.facets.iter().filter(|f| f.normal.z > PARALLEL) {
             let corners: Vec<DVec3> = facet.corners.iter().map(|k| surface.vertices[*k as usize]).collect();
             let plan: Vec<DVec2> = corners.iter().map(|c| c.truncate()).collect();
             let level = facet.normal.dot(corners[0]);

@@ -14,6 +14,7 @@ use crate::connector::{Half, Surface};
 use crate::contact::Pair;
 use crate::polytope::{Halfspace, MAX_DIMENSION, Polytope, PolytopePoint};
 use crate::pose::{Dof, DofSet};
+use crate::tolerance::ROUNDING;
 use glam::DVec3;
 
 /// A convex piece of a half.
@@ -225,7 +226,6 @@ pub(super) fn joined(mut cells: Vec<Polytope>) -> Vec<Polytope> {
 /// The union of two polytopes with disjoint interiors, if it is convex.
 fn union(a: &Polytope, b: &Polytope) -> Option<Polytope> {
     // Volumes of order 1 are sums of as many terms as there are simplices: they round by about 1e-14.
-    const ROUNDING: f64 = 1e-12;
     let corners: Vec<PolytopePoint> = a.vertices().iter().chain(b.vertices()).copied().collect();
     let hull = Polytope::hull(a.dimension(), &corners)?;
     let (whole, parts) = (hull.volume(), a.volume() + b.volume());
