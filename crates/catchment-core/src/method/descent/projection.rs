@@ -320,5 +320,25 @@ mod tests {
                 prop_assert!(toward <= 1e-9, "{toward}");
             }
         }
+
+        /// From the multipliers for other gaps, and from any others, it is the same displacement.
+        #[test]
+        fn the_start_changes_nothing(
+            push in proptest::array::uniform6(-1.0..1.0f64),
+            rows in proptest::collection::vec(proptest::array::uniform6(-1.0..1.0f64), 1..12),
+            gaps in proptest::collection::vec(0.0..0.3f64, 12),
+            others in proptest::collection::vec(0.0..0.3f64, 12),
+            multipliers in proptest::collection::vec(0.01..2.0f64, 3),
+        ) {
+            let u = closest_allowed(&push, &rows, &gaps[..rows.len()], 1.0).unwrap();
+            let mut projection = Projection::default();
+            projection.closest_allowed(&push, &rows, others.iter().copied(), 1.0).unwrap();
+            let known: Vec<(usize, f64)> = projection.multipliers().collect();
+            let any: Vec<(usize, f64)> = multipliers.into_iter().enumerate().take(rows.len()).collect();
+            for start in [known, any] {
+                let v = projection.closest_allowed_from(&start, &push, &rows, gaps.iter().copied(), 1.0).unwrap();
+                prop_assert!(u.iter().zip(&v).all(|(a, b)| (a - b).abs() < 1e-9), "{start:?}: {u:?} {v:?}");
+            }
+        }
     }
 }
