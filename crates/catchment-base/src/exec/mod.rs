@@ -30,8 +30,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use threads::Threads;
 
-/// Bytes up to which the system's files are not read to learn whether they are free: that takes longer than the
-/// computation of such a result.
+/// Size of a result, in bytes, up to which the free memory of the system is not read: reading takes longer than such a
+/// result.
 const SMALL: u64 = 1 << 20;
 
 /// The computation was cancelled.
@@ -182,6 +182,8 @@ impl Exec {
     }
 
     /// Compares what a result needs with the budget, *before* anything is allocated.
+    ///
+    /// Without a set budget, 1 MiB and less always fits.
     ///
     /// # Errors
     /// If it needs more; `advice(budget)` gives the sizes that fit.

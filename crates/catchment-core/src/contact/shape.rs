@@ -169,6 +169,7 @@ impl Shape {
     /// Whether a corner is locally extreme against `toward`: no neighbour lies further along −`toward`, up to
     /// the sine `slack`. Within it a corner that is nearly flat would touch from inside, too, which is not meant.
     pub(super) fn supports(&self, corner: &Corner, toward: DVec3, slack: f64) -> bool {
+        // All are compared: which spoke is the first to lie further along is a guess that a processor mostly loses.
         self.spokes_of(corner).iter().filter(|s| toward.dot(**s) < -slack).count() == 0
             && (slack <= FLUSH || self.normals_of(corner).iter().any(|n| toward.dot(*n) < INSIDE))
     }
