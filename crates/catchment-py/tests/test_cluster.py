@@ -41,12 +41,12 @@ def test_a_sweep_survives_a_worker(client: Client, tmp_path: Path) -> None:
         shares.append(share)
 
     report = catchment.sweep(
-        problem, OVER, resolution=31, samples=300, client=client, output=tmp_path / "out", progress=on_progress
+        problem, OVER, resolution=15, samples=100, client=client, output=tmp_path / "out", progress=on_progress
     )
-    alone = catchment.sweep(problem, OVER, resolution=31, samples=300)
+    alone = catchment.sweep(problem, OVER, resolution=15, samples=100)
     assert bytes_of(report.json) == bytes_of(alone.json)
     over = ["--over", "aspect_ratio=0.25,0.5,1,2", "--over", "cor=-0.5,0.0,0.5"]
-    by_program = program("sweep", "designs/v-face.toml", *over, "--resolution", 31, "--samples", 300, "--json")
+    by_program = program("sweep", "designs/v-face.toml", *over, "--resolution", 15, "--samples", 100, "--json")
     ours, theirs = json.loads(report.json), json.loads(by_program)
     assert [trial["figures"] for trial in ours["designs"]] == [trial["figures"] for trial in theirs["designs"]]
     assert bytes_of((tmp_path / "out" / "report.json").read_text()) == bytes_of(alone.json)
