@@ -83,7 +83,7 @@ PICTURES = {
     "solids-x-face-3d": ["solids designs/x-face-3d.toml --free x,y -o PICTURE"],
     "success": ["success designs/v-face.toml --error-sigma 'x=0.15,pitch=15 deg' -o PICTURE"],
     "sweep": [
-        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 --resolution 60 --samples 100 -o out",
+        "sweep designs/v-face.toml --over aspect_ratio=0.25,0.5,1,2,3 --over cor=-1..1/5 --resolution 60 --samples 100 -o out",
         "out/outlines",
     ],
     "trials": ["zraa designs/x-face-3d.toml --beside drop --resolution 11,21 -o PICTURE"],
