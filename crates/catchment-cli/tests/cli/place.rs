@@ -17,6 +17,8 @@ fn home() -> tempfile::TempDir {
 }
 
 const PARTS: [&str; 4] = ["place", "parts/socket.stl", "parts/plug.stl", "--unit=mm"];
+/// How they lie, for tests that are not about finding it.
+const FACING: [&str; 2] = ["--facing-fixed=+z", "--facing-moving=+z"];
 
 /// The heights of the proposed design, from `outcome` on one list of errors.
 fn outcomes(folder: &Path, design: &str) -> String {
@@ -99,7 +101,7 @@ fn a_tight_fit_gets_an_error_box_of_its_size() {
 fn a_design_is_replaced_only_with_force() {
     let home = home();
     fs::write(home.path().join("mine.toml"), "precious").unwrap();
-    let again = |more: &[&str]| run(home.path(), &[&PARTS[..], &["-o", "mine.toml"], more].concat());
+    let again = |more: &[&str]| run(home.path(), &[&PARTS[..], &FACING, &["-o", "mine.toml"], more].concat());
     let refused = again(&[]);
     assert!(refused.starts_with("exit 2") && refused.contains("--force replaces it"), "{refused}");
     assert_eq!(fs::read(home.path().join("mine.toml")).unwrap(), b"precious");
@@ -213,7 +215,8 @@ fn input_files_of_a_half_are_never_overwritten() {
 #[test]
 fn files_are_placed_with_fewer_triangles() {
     let home = home();
-    let printed = run(home.path(), &[&PARTS[..], &["-o", "d.toml", "--simplify", "0.02 mm"]].concat());
+    let printed =
+        run(home.path(), &[&PARTS[..], &FACING, &["-o", "d.toml", "--simplify", "0.02 mm"]].concat());
     assert!(printed.starts_with("exit 0"), "{printed}");
     let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
     assert_eq!(text.matches("\nsimplify = \"0.02 mm\"").count(), 2, "{text}");

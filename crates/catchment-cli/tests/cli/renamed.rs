@@ -92,7 +92,7 @@ fn jams_is_rests_with_jams() {
 
 #[test]
 fn chance_is_dynamics() {
-    let base = "v.toml --draw speed=1 --trials 2";
+    let base = "v.toml --draw speed=1 --trials 1 --timeout 1";
     for more in ["", " --json", " --pose x=0.1"] {
         same(&format!("chance {base}{more} --overall 100"), &format!("dynamics {base}{more} --overall 100"));
     }
