@@ -174,7 +174,8 @@ fn existing_files_are_replaced_only_with_force() {
         "run v.toml --resolution 4 --samples 0 -o r.vti".to_owned(),
         format!("{quick} -o r.csv"),
         "run v.toml --samples 20 --sensitivity -o sensitivity.json".to_owned(),
-        "run v.toml --free x --method all --resolution 3 --samples 0 --boxes 100 -o methods.md".to_owned(),
+        "run v.toml --free x --method all --resolution 3 --samples 0 --time-limit 20ms -o methods.md"
+            .to_owned(),
         "trace v.toml --pose x=0.1 -o t.png".to_owned(),
         "trace v.toml --pose x=0.1 -o t.vtp".to_owned(),
         "zraa v.toml -o z.svg --figure y.png".to_owned(),
