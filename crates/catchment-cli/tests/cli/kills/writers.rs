@@ -18,10 +18,7 @@ pub(super) const WRITERS: [Writer; 35] = [
     Writer("outcome v.toml --poses poses.csv {} -o target --force", ["", "--json"]),
     Writer("export pyramid.toml --pose {} -o target", ["x=0.1", "x=0.2"]),
     Writer("run v.toml --free x --resolution {} --samples 0 --figures target", ["6", "7"]),
-    Writer(
-        "run v.toml --free x --method all --time-limit 20ms --samples 0 --resolution {} -o target",
-        ["2", "3"],
-    ),
+    Writer("run v.toml --free x --method all --boxes 100 --samples 0 --resolution {} -o target", ["2", "3"]),
     Writer("run v.toml --sensitivity --samples {} -o target", ["20", "30"]),
     Writer("run v.toml --free x --converge --samples 0 --time-limit {} -o target", ["20ms", "30ms"]),
     Writer("compare v.toml --methods flood,meyer --resolution {} -o target", ["6", "8"]),
