@@ -131,23 +131,15 @@ impl Bracket {
 }
 
 impl Motion<'_> {
-    /// Moves from `state`, with the direction `start`, by `step`, or to the first event before. `middle` is
-    /// the direction half-way to `step`, if it is the last that was found.
-    pub(super) fn until_event(
-        &mut self,
-        state: &State,
-        start: &Vector,
-        step: f64,
-        mut middle: Option<Vector>,
-    ) -> Reached {
+    /// Moves from `state`, with the direction `start`, by `step`, or to the first event before.
+    pub(super) fn until_event(&mut self, state: &State, start: &Vector, step: f64) -> Reached {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
         // Test overlap at the end of the step; once the halves overlap, test it at every length.
         let mut wary = false;
         for _ in 0..MOST_TRIALS {
-            let u = middle.take().unwrap_or_else(|| self.halfway(state, start, at));
-            let trial = self.attempt(state, &u, at, wary);
+            let trial = self.attempt(state, start, at, wary);
             let ends = match &trial {
                 Trial::Clear(next, _) => match &bracket {
                     Some(b) => b.event.kind == Kind::Met && b.lands(self.value(&b.event, next)),
@@ -224,8 +216,7 @@ impl Motion<'_> {
     ) -> f64 {
         let mut at = low + bracket.share() * (high - low);
         for _ in 0..NARROWINGS {
-            let u = self.halfway(state, start, at);
-            let Some(next) = self.step_of(state, &u, at) else { break };
+            let Some(next) = self.step_of(state, start, at) else { break };
             let value = self.value(&bracket.event, &next);
             if bracket.lands(value) || high - low < ROUNDING {
                 break;
@@ -257,23 +248,19 @@ impl Motion<'_> {
         (hold.foot + BORDER).min(hold.support + SUPPORT)
     }
 
-    /// A step of length `at` along `u`, with its result; overlaps that no contact predicts are detected only if `wary`.
-    fn attempt(&mut self, state: &State, u: &Vector, at: f64, wary: bool) -> Trial {
-        let Some(next) = self.step_of(state, u, at) else { return Trial::Failed };
+    /// A step of length `at`, with its result; overlaps that no contact predicts are detected only if `wary`.
+    fn attempt(&mut self, state: &State, start: &Vector, at: f64, wary: bool) -> Trial {
+        let Some(next) = self.step_of(state, start, at) else { return Trial::Failed };
         let carrying = std::mem::take(&mut self.sliding.carrying);
         let trial = self.judge(state, next, at, &carrying, wary);
         self.sliding.carrying = carrying;
         trial
     }
 
-    /// The direction half-way along a step of length `at`, which also finds the carrying contacts.
-    fn halfway(&mut self, state: &State, start: &Vector, at: f64) -> Vector {
+    /// End of a step of length `at`, with the carrying contacts kept as far as possible.
+    fn step_of(&mut self, state: &State, start: &Vector, at: f64) -> Option<State> {
         let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
-        self.direction(&middle).unwrap_or(*start)
-    }
-
-    /// End of a step of length `at` along `u`, with the carrying contacts kept as far as possible.
-    fn step_of(&mut self, state: &State, u: &Vector, at: f64) -> Option<State> {
+        let u = self.direction(&middle).unwrap_or(*start);
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
         let carrying = std::mem::take(&mut self.sliding.carrying);

@@ -123,8 +123,8 @@ impl Motion<'_> {
             if self.lets_go(&state) {
                 continue;
             }
-            let (step, middle) = self.straight(&state, &start, pace.step.min(self.settings.step));
-            match self.until_event(&state, &start, step, middle) {
+            let step = self.straight(&state, &start, pace.step.min(self.settings.step));
+            match self.until_event(&state, &start, step) {
                 Reached::At(next, length) => {
                     let least = self.settings.step * LEAST_TRY;
                     let further = if length < step { (FURTHER * length).max(least) } else { f64::INFINITY };
@@ -193,25 +193,22 @@ impl Motion<'_> {
             return Advance::Moved(landed, 0.0);
         }
         // Rims have crossed on the way without a contact between them.
-        match self.until_event(state, &self.push(state), state.cor.z - z, None) {
+        match self.until_event(state, &self.push(state), state.cor.z - z) {
             Reached::At(next, _) => Advance::Moved(next, 0.0),
             Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),
         }
     }
 
-    /// The longest of `step`, its half, its quarter … to whose middle the direction hardly turns from `start`,
-    /// and the direction there, if it is the last that was found.
-    fn straight(&mut self, state: &State, start: &Vector, mut step: f64) -> (f64, Option<Vector>) {
+    /// The longest of `step`, its half, its quarter … to whose middle the direction hardly turns from `start`.
+    fn straight(&mut self, state: &State, start: &Vector, mut step: f64) -> f64 {
         while step > self.settings.step * LEAST_SHARE {
             let middle = self.moved(state, &start.map(|x| 0.5 * step * x));
-            let found = self.direction(&middle).filter(|u| difference(u, start) <= BEND);
-            if found.is_some() {
-                // With friction the direction is iterated, from the last one on: once more is closer.
-                return (step, found.filter(|_| self.settings.friction == 0.0));
+            if self.direction(&middle).is_some_and(|u| difference(&u, start) <= BEND) {
+                break;
             }
             step *= 0.5;
         }
-        (step, None)
+        step
     }
 
     /// Direction of the body at `state` by the active contacts, regardless of borders, with its larger
