@@ -42,11 +42,6 @@ pub struct Peak {
 /// # Errors
 /// The computation was cancelled.
 pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cancelled> {
-    Ok(search(a, b, exec)?.map(|(peak, _)| peak))
-}
-
-/// The same, and whether the bounds of the outer regions have met to [`SLACK`] within the work budget.
-fn search(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<(Peak, bool)>, Cancelled> {
     let (Some([la, ha]), Some([lb, hb])) = (a.outer.bounds(), b.outer.bounds()) else { return Ok(None) };
     let overlap = RegionOverlap::new(&a.outer, &b.outer);
     let most = a.outer.area().min(b.outer.area());
@@ -67,12 +62,10 @@ fn search(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<(Peak, bool)>,
     };
     let middle = best.at;
     look(&mut best, &mut open, middle, 0.5 * (high - low).max_element());
-    let mut have_met = false;
     while let Some(cell) = open.pop() {
         exec.check()?;
         best.at_most = cell.bound.max(best.value);
-        have_met = cell.bound <= best.value * (1.0 + SLACK);
-        if have_met {
+        if cell.bound <= best.value * (1.0 + SLACK) {
             break;
         }
         let half = 0.5 * cell.half;
@@ -87,7 +80,7 @@ fn search(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<(Peak, bool)>,
         }
     }
     best.value = RegionOverlap::new(&a.inner, &b.inner).at(best.at);
-    Ok(Some((best, have_met)))
+    Ok(Some(best))
 }
 
 #[cfg(test)]
@@ -163,9 +156,9 @@ mod tests {
         let b = [(-2.2069, -2.3577), (0.434, -2.9091), (3.0947, -3.5099)];
         let [a, b] =
             [a, b].map(|outline| Region::of_outlines(&[outline.map(|(x, y)| DVec2::new(x, y)).to_vec()]));
-        let (result, have_met) =
-            search(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap().unwrap();
-        assert!(!have_met && 0.0 < result.value && result.value <= result.at_most, "{result:?}");
+        let result =
+            peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap().unwrap();
+        assert!(0.0 < result.value && result.value <= result.at_most, "{result:?}");
         assert!(result.at_most <= a.area().min(b.area()), "{result:?}");
         let open = (result.at_most - result.value) / result.at_most;
         assert!((1e-3..0.25).contains(&open), "{result:?}");
@@ -185,8 +178,8 @@ mod tests {
                 Region::of_outlines(&[corners.iter().map(|(x, y)| DVec2::new(*x, *y)).collect()])
             };
             let (a, b) = (region(&a), region(&b));
-            let result = search(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
-            if let Some((result, have_met)) = result {
+            let result = peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
+            if let Some(result) = result {
                 let overlap = RegionOverlap::new(&a, &b);
                 for pair in places.windows(2) {
                     let [d, other] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
@@ -197,8 +190,9 @@ mod tests {
                     prop_assert!(value <= around.at_most + 1e-9, "{value} {around:?}");
                 }
                 prop_assert!(result.value <= result.at_most + 1e-12);
-                // Chance draws slivers, too, which may spend the budget.
-                prop_assert!(!have_met || result.at_most <= result.value * (1.0 + SLACK) + 1e-9, "{result:?}");
+                // Chance draws slivers, too, which spend the budget: bounds within 0.2 % of the square around all outlines.
+                let open = result.at_most - result.value;
+                prop_assert!(open <= (result.value * SLACK).max(0.002 * 10.0 * 10.0) + 1e-9, "{result:?}");
             }
         }
     }
