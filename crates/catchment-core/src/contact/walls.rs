@@ -19,8 +19,8 @@ use crate::pose::Dof;
 use crate::tolerance;
 use glam::DVec3;
 
-/// Walls have normals within this sine of the horizontal. A peg with 7° of draft (0.12) centres itself and does not need to
-/// be followed from touch to touch.
+/// Walls have normals within this sine of the horizontal. Motions of pegs with up to 7° of draft (0.12) have
+/// to be followed from event to event; wider cones centre themselves.
 const STEEP: f64 = 0.15;
 /// Walls face each other if the cosine between their normals is below this: 45°.
 const FACING: f64 = -0.7;
