@@ -86,7 +86,7 @@ fn let_in(
     }
     let lie = sunk.lie;
     judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.display)
-        .map(|found| found.with_lattice(sunk, 0))
+        .map(|found| found.with_lattice(sunk, 0).searched_near_the_drawn_pose())
         .map_err(|refusal| refusal.of(lie))
 }
 

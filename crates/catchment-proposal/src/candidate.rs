@@ -7,6 +7,9 @@ use catchment_core::design::LengthUnit;
 use catchment_core::pose::PoseError;
 use std::fmt;
 
+/// A distance from the drawn pose below this is not printed, in D.
+const HARDLY: f64 = 1e-3;
+
 /// A relative pose in which the parts may dock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
@@ -32,6 +35,9 @@ pub struct Candidate {
     /// Position of the origin of the moving part across the approach, in the unit of the design and the
     /// rotated frame of the fixed half.
     pub offset: [f64; 2],
+    /// How far it is from the pose in which the parts are drawn, across the approach and along it, in the unit
+    /// of the design; if it was searched there, because the drawn pose itself is not a seat.
+    pub off_drawn: Option<[f64; 2]>,
     /// Whether it is a seat.
     pub seat: SeatCheck,
 }
@@ -83,7 +89,7 @@ pub fn shown_length(value: f64, unit: LengthUnit) -> String {
 
 /// A candidate in the user's terms: lengths times `unit` are in the unit of the design.
 pub(super) fn candidate(judged: &SeatCandidate, unit: f64, display: DisplayUnit) -> Candidate {
-    let SeatCandidate { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
+    let SeatCandidate { lie, width, climb, shared, seat, offset, lift, sunk, class, .. } = judged;
     Candidate {
         lie: *lie,
         score: judged.score(),
@@ -95,6 +101,7 @@ pub(super) fn candidate(judged: &SeatCandidate, unit: f64, display: DisplayUnit)
         shared: *shared,
         width: width * unit,
         offset: (*offset * unit).to_array(),
+        off_drawn: judged.is_near_drawn.then(|| [offset.length() * unit, lift.abs() * unit]),
         seat: match seat {
             None => SeatCheck::NotAsked,
             Some(Ok(Seat { settle: Some(off), .. })) => settles(off, width * display.scale, display.unit),
@@ -134,9 +141,24 @@ impl Candidate {
         format!(", its origin at ({x}, {y}) {}", shown.symbol())
     }
 
+    /// How the parts lie, in words, with lengths in this unit.
+    fn lie_in_words(&self, unit: LengthUnit) -> String {
+        let (PartLayout::Facing { moving, .. }, Some([across, along])) = (self.lie, self.off_drawn) else {
+            return self.lie.to_string();
+        };
+        let drawn = PartLayout::Assembled { approach: moving };
+        let off: Vec<String> = [(across, "across"), (along, "along")]
+            .into_iter()
+            .filter(|(length, _)| *length > HARDLY * self.width)
+            .map(|(length, way)| format!("{} {way} it", shown_length(length, unit)))
+            .collect();
+        if off.is_empty() { drawn.to_string() } else { format!("{drawn}, but for {}", off.join(" and ")) }
+    }
+
     /// The candidate in words, beside all of them, with lengths in this unit.
     pub fn in_words(&self, all: &[Self], unit: LengthUnit) -> String {
-        let Self { lie, score, climb, shared, seat, .. } = self;
+        let Self { score, climb, shared, seat, .. } = self;
+        let lie = self.lie_in_words(unit);
         if let Some([deep, play]) = self.sunk {
             return format!(
                 "{score:.2} (0: no seat, 1: steep seat without play): {lie}{}; sits {} deep along the approach, ±{} of sideways play at half of that depth; {seat}",

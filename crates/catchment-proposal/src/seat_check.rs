@@ -95,6 +95,8 @@ pub(super) struct SeatCandidate {
     pub(super) shared: f64,
     /// How high the origin of the turned moving half is.
     pub(super) lift: f64,
+    /// Whether it was searched near the pose in which the parts are drawn.
+    pub(super) is_near_drawn: bool,
     /// Its result from a lattice, if any, and the number of its place: places that differ by a rotation about
     /// the approach have the same number.
     pub(super) sunk: Option<Sunk>,
@@ -141,6 +143,11 @@ impl SeatCandidate {
     /// Adds the lattice result with which it was found.
     pub(super) fn with_lattice(self, sunk: Sunk, class: usize) -> Self {
         Self { sunk: Some(sunk), class, ..self }
+    }
+
+    /// Notes that it was searched near the pose in which the parts are drawn.
+    pub(super) fn searched_near_the_drawn_pose(self) -> Self {
+        Self { is_near_drawn: true, ..self }
     }
 
     /// The halves as the design of the seat will have them.
@@ -256,6 +263,7 @@ pub(super) fn judge(
         climb,
         shared,
         lift,
+        is_near_drawn: false,
         sunk: None,
         class: 0,
         seat: None,

@@ -254,8 +254,10 @@ fn parts_drawn_apart_slide_to_first_contact() {
     let fixed = on_a_plate(&socket(10.2));
     for (apart, doubt) in [(0.0, false), (3.8, false), (5.5, false)] {
         let home = two_parts(&fixed, &plug(10.0, [apart, 20.0 + apart]));
-        let printed = run(home.path(), &TWO);
+        let printed = run(home.path(), &TWO).unbroken();
         assert!(printed.starts_with("exit 0") && printed.contains("in doubt") == doubt, "{apart}\n{printed}");
+        let off = format!("docked as drawn, approach -z, but for {apart} mm along it");
+        assert_eq!(printed.contains(&off), apart > 0.0, "{apart}\n{printed}");
         let checked = run(home.path(), &["check", "d.toml"]);
         assert!(checked.starts_with("exit 0"), "{checked}");
     }
