@@ -84,8 +84,7 @@ fn let_in(
             return Ok(found);
         }
     }
-    let lie = sunk.lie;
-    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.display)
+    judge(both.halves, sunk.lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.display)
         .map(|found| found.with_lattice(sunk, 0).searched_near_the_drawn_pose())
         .map_err(|refusal| refusal.of(lie))
 }

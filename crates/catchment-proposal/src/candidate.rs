@@ -142,7 +142,7 @@ impl Candidate {
     }
 
     /// How the parts lie, in words, with lengths in this unit.
-    fn lie_in_words(&self, unit: LengthUnit) -> String {
+    pub(super) fn lie_in_words(&self, unit: LengthUnit) -> String {
         let (PartLayout::Facing { moving, .. }, Some([across, along])) = (self.lie, self.off_drawn) else {
             return self.lie.to_string();
         };

@@ -68,7 +68,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<D
             } else {
                 "another way to dock scores nearly as high"
             },
-            other.lie,
+            other.lie_in_words(design_unit(settings)),
             other.place_among(candidates, design_unit(settings)),
             other.score,
             best.score
@@ -77,7 +77,7 @@ pub(super) fn of(candidates: &[Candidate], settings: &ProposalSettings) -> Vec<D
         let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
         notes.push(look("rival-place", format!(
             "the parts dock as well {place} ({}{}): look at the picture to see if the right one was chosen",
-            other.lie,
+            other.lie_in_words(design_unit(settings)),
             other.place_among(candidates, design_unit(settings))
         )));
     }

@@ -1,6 +1,8 @@
 //! `catchment place`: from two part files to a design and its tolerances.
 
-use crate::prisms::{Prism, TWO, Unbroken, arc, deep, flat, obj, on_a_plate, plug, socket, two_parts};
+use crate::prisms::{
+    Prism, TWO, Unbroken, arc, deep, flat, obj, on_a_plate, plug, rectangle, socket, two_parts,
+};
 use crate::{catchment, designs, entries, run};
 use std::fs;
 use std::path::Path;
@@ -261,6 +263,15 @@ fn parts_drawn_apart_slide_to_first_contact() {
         let checked = run(home.path(), &["check", "d.toml"]);
         assert!(checked.starts_with("exit 0"), "{checked}");
     }
+}
+
+/// A plug of half width 10 mm drawn 0.5 mm off the axis of its hole, 0.3 mm into the wall: it docks in the middle of its play.
+#[test]
+fn the_distance_from_the_drawn_pose_is_reported() {
+    let plug = obj(&[(&rectangle([-9.5, 10.5], [-10.0, 10.0]), [0.0, 20.0], flat)]);
+    let home = two_parts(&on_a_plate(&socket(10.2)), &plug);
+    let printed = run(home.path(), &TWO).unbroken();
+    assert!(printed.contains("docked as drawn, approach -z, but for 0.5 mm across it; sits"), "{printed}");
 }
 
 /// The message on a blocked approach gives the overlap in the unit of the parts.
